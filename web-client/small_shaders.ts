@@ -1,4 +1,5 @@
-// Build plugins that make shaders small. No minifier touches them.
+// Build plugins that leave out what no minifier can tell from used code: the text of shaders, and
+// parts of three.
 
 import type {Plugin} from 'vite';
 
@@ -44,4 +45,41 @@ const three: Plugin = {
   },
 };
 
-export const smallShaders = (): Plugin[] => [own, three];
+/**
+ * Parts that every renderer of three has and this viewer never uses: virtual reality, shadows and
+ * surroundings that are mirrored. Each is here with the members that a renderer asks of it anyway.
+ */
+const kUnusedParts: Record<string, string> = {
+  WebXRManager: `class WebXRManager extends EventDispatcher {
+    enabled = false;
+    isPresenting = false;
+    getEnvironmentBlendMode() {}
+    dispose() {}
+  }`,
+  WebGLShadowMap: `class WebGLShadowMap {
+    enabled = false;
+    render() {}
+  }`,
+  WebGLEnvironments: `class WebGLEnvironments {
+    get(texture) { return texture; }
+    dispose() {}
+  }`,
+};
+
+const parts: Plugin = {
+  name: 'no-unused-parts',
+  apply: 'build',
+  transform(code, id) {
+    if (!/\/three\.module\.js$/.test(id)) return null;
+    let small = code;
+    for (const [name, part] of Object.entries(kUnusedParts)) {
+      const whole = new RegExp(`^(?:class|function) ${name}\\b[\\s\\S]*?^\\}$`, 'm');
+      if (!whole.test(small))
+        this.error(`three's ${name} is not in the known form: adapt small_shaders.ts`);
+      small = small.replace(whole, part);
+    }
+    return {code: small, map: null};
+  },
+};
+
+export const smallShaders = (): Plugin[] => [own, three, parts];

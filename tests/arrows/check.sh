@@ -164,6 +164,7 @@ declare -A below=(
   [viewer/settings]='core(/.*)?|three'
   [viewer/page]='core(/.*)?|three|viewer/settings'
   [viewer/panels]='core(/.*)?|three|viewer/(settings|page)'
+  [viewer/picture]='core(/.*)?|three|viewer/(settings|page|panels)'
   [viewer]='core(/.*)?|three|viewer/.*'
 )
 while read -r from to; do

@@ -263,9 +263,16 @@ async function givesItsNumbersAway({server, browser}) {
   const saved = page.waitForEvent('download');
   await page.getByRole('button', {name: 'Save as CSV'}).click();
   const rows = readFileSync(await (await saved).path(), 'utf8').split('\r\n');
-  assert.equal(rows[0], '"distance","Density"');
+  assert.equal(rows[0], '"distance","x","y","z","Density"');
   assert.ok(rows.length > 2, `${rows.length} rows`);
-  for (const row of rows.slice(1)) assert.match(row, /^[-\d.e]+,[-\d.e]*$/);
+  for (const row of rows.slice(1)) assert.match(row, /^([-\d.e]+,){4}[-\d.e]*$/);
+  const places = rows.slice(1).map((row) => row.split(',').slice(0, 4).map(Number));
+  places.slice(1).forEach(([at, ...position], i) => {
+    const [before, ...from] = places[i];
+    assert.ok(at > before, `${at} after ${before}`);
+    const step = Math.hypot(...position.map((x, axis) => x - from[axis]));
+    assert.ok(Math.abs(step - (at - before)) < 1e-6 * places.at(-1)[0], `${rows[i + 2]}`);
+  });
   await page.getByRole('button', {name: 'Copy', exact: true}).click();
   const copied = await page.evaluate(() => window.qtetCopied);
   assert.match(copied[0], /^Distance\t[\d.]+\nDifference\t/);

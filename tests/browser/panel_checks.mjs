@@ -34,9 +34,11 @@ async function showsItsActionsAtOnce(context) {
   await page.getByRole('button', {name: 'Controls'}).focus();
   await page.keyboard.press('Tab');
   await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter'); // the second of the row
+  await page.getByRole('dialog', {name: 'Save picture'}).waitFor();
   const [saved] = await Promise.all([
     page.waitForEvent('download'),
-    page.keyboard.press('Enter'), // the second of the row
+    page.keyboard.press('Enter'), // the button that has the focus
   ]);
   assert.equal(saved.suggestedFilename(), 'fin.png');
 }

@@ -3,7 +3,7 @@
 
 import {inflateSync} from 'node:zlib';
 
-/** {width, height, at(x, y)}: at gives [r, g, b]. */
+/** {width, height, at(x, y), alphaAt(x, y)}: at gives [r, g, b]. */
 export function readPng(file) {
   const width = file.readUInt32BE(16);
   const height = file.readUInt32BE(20);
@@ -19,6 +19,7 @@ export function readPng(file) {
   return {
     width,
     height,
+    alphaAt: (x, y) => (channels === 4 ? pixels[(y * width + x) * channels + 3] : 255),
     at: (x, y) => [...pixels.subarray((y * width + x) * channels, (y * width + x) * channels + 3)],
   };
 }

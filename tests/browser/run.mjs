@@ -14,6 +14,7 @@ import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
+import {pictureChecks} from './picture_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
@@ -45,7 +46,13 @@ const lists = {
   publish: publishChecks,
   volume: volumeChecks,
   edge: edgeChecks,
-  legend: {...legendChecks, ...panelChecks, ...undoChecks, ...histogramChecks},
+  legend: {
+    ...legendChecks,
+    ...panelChecks,
+    ...undoChecks,
+    ...histogramChecks,
+    ...pictureChecks,
+  },
   recovery: recoveryChecks,
   monkey: monkeyChecks,
   baseline: baselineChecks,

@@ -22,7 +22,7 @@ export {
 } from './picture/display';
 export {errorCode, errorText, QtetError} from './protocol/errors';
 export {kMagnitude, scalarRange, type Scalar} from './picture/field_scale';
-export type {FieldValue, Pick, Probe} from './session/inspector';
+export type {FieldValue, LineValues, Pick, Probe} from './session/inspector';
 export {errorOfLevel, kFull, limitText, parseLimit, type Limit} from './protocol/limit';
 export {
   fieldKeys,

@@ -1,6 +1,6 @@
 import {describe, expect, test} from 'vitest';
 import type {Vector} from '../core/protocol/geometry';
-import {along, barycentric, below, stretches, type Ray} from '../core/picture/cell_ray';
+import {along, barycentric, below, placesOf, stretches, type Ray} from '../core/picture/cell_ray';
 import {cubes} from './cubes';
 
 const {points, tetrahedra} = cubes(4, 10);
@@ -45,6 +45,44 @@ describe('a line through cells', () => {
     });
     expect(below([plane], line, {cell: 3, from: 7, to: 9})).toBeNull();
     expect(below([{normal: [0, 1, 0], offset: -1}], line, {cell: 3, from: 1, to: 9})).toBeNull();
+  });
+});
+
+describe('the places of a line', () => {
+  test('areEachBorderOnceInOrder', () => {
+    const line = ray([-5, 11.3, 17.7], [50, 0, 0]);
+    const found = stretches(cells, line, 0, 1);
+    const places = placesOf(found);
+    expect(places).toHaveLength(found.length + 1);
+    places.slice(1).forEach(({t}, i) => expect(t).toBeGreaterThan(places[i]!.t));
+    expect(places[0]!.t).toBeCloseTo(0.1);
+    expect(places.at(-1)!.t).toBeCloseTo(0.9);
+  });
+
+  test('haveTheCellAheadAndOneWithoutCellInEachGap', () => {
+    const found = [
+      {cell: 7, from: 0.6, to: 1},
+      {cell: 5, from: 0, to: 0.25},
+      {cell: 6, from: 0.25, to: 0.4},
+      {cell: 8, from: 0.4, to: 0.4 + 1e-9}, // it only touches the line
+    ];
+    expect(placesOf(found)).toEqual([
+      {t: 0, cell: 5},
+      {t: 0.25, cell: 6},
+      {t: 0.4, cell: 6},
+      {t: 0.5, cell: null},
+      {t: 0.6, cell: 7},
+      {t: 1, cell: 7},
+    ]);
+    expect(placesOf([])).toEqual([]);
+  });
+
+  test('areNotDoubledByCellsOnBothSidesOfTheLine', () => {
+    const beside = [1, 2, 3].flatMap((cell) => [
+      {cell, from: 0.1 * cell, to: 0.1 * cell + 0.1},
+      {cell: 10 + cell, from: 0.1 * cell, to: 0.1 * cell + 0.1},
+    ]);
+    expect(placesOf(beside).map(({t}) => t.toFixed(2))).toEqual(['0.10', '0.20', '0.30', '0.40']);
   });
 });
 

@@ -188,12 +188,15 @@ export class OrbitCamera {
     return {distance, target};
   }
 
-  /** Must be called before every frame. Tight depths keep the digits of a parallel view. */
-  setDepths(): void {
-    const distance = this.camera.position.length();
-    this.camera.near = Math.max(kMinNear, distance - kDepth);
-    this.camera.far = distance + kDepth;
-    this.camera.updateProjectionMatrix();
+  /**
+   * Must be called before every frame, and for a camera of another picture. Tight depths keep the
+   * digits of a parallel view.
+   */
+  setDepths(camera = this.camera): void {
+    const distance = camera.position.length();
+    camera.near = Math.max(kMinNear, distance - kDepth);
+    camera.far = distance + kDepth;
+    camera.updateProjectionMatrix();
   }
 
   dispose(): void {

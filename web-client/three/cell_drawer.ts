@@ -1,6 +1,12 @@
 // Draws cells: at once, or in strips of pixels with pauses in which the graphics are free.
 
-import type {PerspectiveCamera, Scene, WebGLRenderer} from 'three';
+import {
+  Vector2,
+  type PerspectiveCamera,
+  type Scene,
+  type WebGLRenderer,
+  type WebGLRenderTarget,
+} from 'three';
 import type {CellMesh} from './cell_mesh';
 import {DeepTarget} from './deep_target';
 import {reachesPixels, whenDrawn} from './frame_budget';
@@ -26,6 +32,8 @@ export interface Picture extends Sight {
   renderer: WebGLRenderer;
   scene: Scene;
   camera: PerspectiveCamera;
+  /** Null: the canvas. */
+  target: WebGLRenderTarget | null;
 }
 
 export class CellDrawer {
@@ -47,13 +55,13 @@ export class CellDrawer {
     const {renderer} = picture;
     const gl = renderer.getContext() as WebGL2RenderingContext;
     const start = performance.now();
-    if (this.begin(picture, its, share)) caster.cast(renderer, deep, 0, deep.height);
+    if (this.begin(picture, its, share, deep)) caster.cast(renderer, deep, 0, deep.height);
     const reached: Promise<boolean>[] = [];
     while (reached.length < its.layers) {
       reached.push(reachesPixels(gl, () => caster.enter(renderer)));
       caster.cast(renderer, deep, 0, deep.height);
     }
-    deep.present(renderer);
+    deep.present(renderer, null);
     const ms = await whenDrawn(gl, start);
     const needed = (await Promise.all(reached)).filter(Boolean).length;
     const isCut = needed === its.layers && needed < kMaxLayers;
@@ -66,14 +74,33 @@ export class CellDrawer {
    * give up, and then returns null.
    */
   async drawStrips(picture: Picture, its: CellMesh, ends: () => boolean): Promise<number | null> {
-    const {caster, deep} = this;
+    const {renderer, target} = picture;
+    // what was drawn for the canvas may be presented again
+    const deep = target ? new DeepTarget() : this.deep;
+    try {
+      const ms = await this.drawRows(picture, its, deep, ends);
+      if (ms !== null) deep.present(renderer, target);
+      return ms;
+    } finally {
+      if (deep !== this.deep) deep.dispose();
+    }
+  }
+
+  /** As drawStrips, without presenting. */
+  private async drawRows(
+    picture: Picture,
+    its: CellMesh,
+    deep: DeepTarget,
+    ends: () => boolean,
+  ): Promise<number | null> {
+    const {caster} = this;
     const {renderer} = picture;
     const gl = renderer.getContext() as WebGL2RenderingContext;
     const begun = performance.now();
     let last = this.rate > 0 ? Infinity : 0; // pixels of the previous strip
     let rate = this.rate;
     this.rate = 0;
-    const isInside = this.begin(picture, its, 1);
+    const isInside = this.begin(picture, its, 1, deep);
     for (let layer = isInside ? -1 : 0; layer < kMaxLayers; ++layer) {
       const reaches = layer < 0 || reachesPixels(gl, () => caster.enter(renderer));
       if (layer > 0 && !(await reaches)) break;
@@ -89,13 +116,12 @@ export class CellDrawer {
         if (ends()) return null;
       }
     }
-    deep.present(renderer);
     return performance.now() - begun;
   }
 
   /** Shows the last picture again on a canvas that has been cleared. */
   present(renderer: WebGLRenderer): void {
-    this.deep.present(renderer);
+    this.deep.present(renderer, null);
   }
 
   dispose(): void {
@@ -105,11 +131,14 @@ export class CellDrawer {
 
   /** Returns true if the eye is inside a cell, as RayCaster.begin. */
   private begin(
-    {renderer, scene, camera, ...sight}: Picture,
+    {renderer, scene, camera, target, ...sight}: Picture,
     its: CellMesh,
     share: number,
+    deep: DeepTarget,
   ): boolean {
-    this.deep.begin(renderer, share, scene, camera);
-    return this.caster.begin(its.shown!, sight, this.deep);
+    const {width, height} = target ?? renderer.getDrawingBufferSize(new Vector2());
+    deep.resize(renderer, Math.round(width * share), Math.round(height * share));
+    deep.begin(renderer, scene, camera);
+    return this.caster.begin(its.shown!, sight, deep);
   }
 }

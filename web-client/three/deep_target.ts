@@ -14,7 +14,6 @@ import {
   ShaderMaterial,
   UnsignedByteType,
   UnsignedIntType,
-  Vector2,
   WebGLRenderTarget,
   type Camera,
   type WebGLRenderer,
@@ -59,24 +58,20 @@ export class DeepTarget {
     return this.scene.depthTexture!;
   }
 
-  /**
-   * Begins a picture with the scene and an empty volume. `share` is that of the canvas's pixels,
-   * each way.
-   */
-  begin(renderer: WebGLRenderer, share: number, scene: Scene, camera: Camera): void {
-    const {extensions} = renderer;
+  /** Must be called before a picture. It may keep nothing of the picture before. */
+  resize({extensions}: WebGLRenderer, width: number, height: number): void {
     const type =
       extensions.has('EXT_color_buffer_float') || extensions.has('EXT_color_buffer_half_float')
         ? HalfFloatType
         : UnsignedByteType;
-    const {width, height} = renderer.getDrawingBufferSize(new Vector2());
     for (const target of [this.scene, this.volume]) {
       target.texture.type = type;
-      target.setSize(
-        Math.max(1, Math.round(width * share)),
-        Math.max(1, Math.round(height * share)),
-      );
+      target.setSize(Math.max(1, width), Math.max(1, height));
     }
+  }
+
+  /** Begins a picture with the scene and an empty volume. */
+  begin(renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
     renderer.setRenderTarget(this.volume);
     renderer.clear();
     renderer.setRenderTarget(this.scene);
@@ -84,10 +79,11 @@ export class DeepTarget {
     renderer.setRenderTarget(null);
   }
 
-  /** Copies the picture onto the canvas. */
-  present(renderer: WebGLRenderer): void {
-    renderer.setRenderTarget(null);
+  /** Copies the picture onto `target`, or (null) onto the canvas. */
+  present(renderer: WebGLRenderer, target: WebGLRenderTarget | null): void {
+    renderer.setRenderTarget(target);
     renderer.render(this.planes, this.camera);
+    renderer.setRenderTarget(null);
   }
 
   dispose(): void {

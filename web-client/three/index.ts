@@ -8,4 +8,4 @@ export {openView} from './worker_view';
 export {MeshView} from './mesh_view';
 export type {Pose} from './pose';
 export {SoupMesh} from './soup_mesh';
-export type {Insets, Look, View, ViewListeners} from './view';
+export type {Frame, Insets, Look, Tile, View, ViewListeners} from './view';

@@ -1,13 +1,15 @@
 // The camera of one mesh: where the mesh lies, and from where it is seen.
 
-import {Frustum, Group, Matrix4, Vector3} from 'three';
+import {Frustum, Group, Matrix4, Vector3, type PerspectiveCamera} from 'three';
 import type {TriangleSoup} from '../core/picture/triangle_soup';
 import type {Vector} from '../core/protocol/geometry';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
 import {cornersOf, outlineOf} from './outline';
 import {checkedCamera, type Pose} from './pose';
-import type {Insets} from './view';
+import type {Sight} from './ray_caster';
+import type {Part} from './tiles';
+import type {Frame, Insets} from './view';
 import type {ViewCanvas} from './worker_canvas';
 
 export class MeshCamera {
@@ -108,12 +110,58 @@ export class MeshCamera {
     this.changed();
   }
 
+  /** A camera for a part of another picture, as View.render says. REQUIRES: hasMesh. */
+  cameraFor({width, height, margin}: Frame, part: Part): PerspectiveCamera {
+    const {camera: seen, direction, fitted} = this.orbit;
+    const camera = seen.clone();
+    let full = {width, height};
+    if (fitted) {
+      const insets = {left: 0, right: 0, top: margin, bottom: margin};
+      const {distance, target} = this.framing(insets, width / height);
+      camera.position.copy(direction).multiplyScalar(distance).add(target);
+    } else {
+      const {left, right, top, bottom} = this.insets;
+      const {fullWidth, fullHeight} = seen.view!;
+      const scale = Math.min(
+        width / (fullWidth * (1 - left - right)),
+        (height * (1 - 2 * margin)) / (fullHeight * (1 - top - bottom)),
+      );
+      full = {width: scale * fullWidth, height: scale * fullHeight};
+    }
+    camera.setViewOffset(
+      full.width,
+      full.height,
+      (full.width - width) / 2 + part.x,
+      (full.height - height) / 2 + part.y,
+      part.width,
+      part.height,
+    );
+    this.orbit.setDepths(camera);
+    return camera;
+  }
+
+  /** The lines of sight of a camera in this scene. */
+  sightOf(camera: PerspectiveCamera): Sight {
+    camera.updateMatrixWorld();
+    this.lattice.updateMatrixWorld();
+    const {position, scale, matrixWorld} = this.lattice;
+    const toCanvas = new Matrix4()
+      .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
+      .multiply(matrixWorld);
+    return {
+      toCanvas: toCanvas.toArray(),
+      fromCanvas: toCanvas.clone().invert().toArray(),
+      eye: camera.position.clone().sub(position).divide(scale).toArray(),
+      // the length of the bounds' diagonal, in lattice steps
+      diagonal: 2 / scale.x,
+    };
+  }
+
   /** The pose of now, drawn or not. `frameMs` is the time of the last frame. */
   pose(frameMs: number): Pose {
     const {camera, fitted} = this.orbit;
     camera.updateMatrixWorld();
-    this.lattice.updateMatrixWorld();
-    const toCanvas = new Matrix4().multiplyMatrices(
+    const toCube = new Matrix4().multiplyMatrices(
       camera.projectionMatrix,
       camera.matrixWorldInverse,
     );
@@ -122,15 +170,15 @@ export class MeshCamera {
     const frustum =
       fitted || !this.hasMesh
         ? []
-        : new Frustum().setFromProjectionMatrix(toCanvas).planes.map(({normal, constant}) => ({
+        : new Frustum().setFromProjectionMatrix(toCube).planes.map(({normal, constant}) => ({
             normal: normal.toArray(),
             offset: -(constant + normal.dot(this.lattice.position)) / scale,
           }));
-    toCanvas.multiply(this.lattice.matrixWorld);
     const {x, y, z, w} = camera.quaternion;
+    const {toCanvas, fromCanvas} = this.sightOf(camera);
     return {
-      toCanvas: toCanvas.toArray(),
-      fromCanvas: toCanvas.clone().invert().toArray(),
+      toCanvas,
+      fromCanvas,
       rotation: {x, y, z, w},
       camera: this.orbit.state,
       fitted,
@@ -138,16 +186,6 @@ export class MeshCamera {
       frustum,
       frameMs,
     };
-  }
-
-  /** The eye in lattice coordinates. */
-  get eye(): Vector {
-    const {position, scale} = this.lattice;
-    return this.orbit.camera.position.clone().sub(position).divide(scale).toArray();
-  }
-  /** The length of the bounds' diagonal, in lattice steps. */
-  get diagonal(): number {
-    return 2 / this.lattice.scale.x;
   }
 
   private refit(): void {
@@ -167,18 +205,19 @@ export class MeshCamera {
     return new Vector3(x, y, z).multiply(this.lattice.scale).add(this.lattice.position);
   }
 
-  /** Frames the mesh itself, not its box: a box leaves its corners empty. */
-  private framing(): Framing {
-    const whole = this.framed(this.outline);
-    if (!this.focus || this.orbit.isStandard) return whole;
-    const seen = seenPart(this.focus, this.bounds, this.orbit.direction);
-    return seen ? this.framed(cornersOf(seen)) : whole;
-  }
-
-  private framed(corners: Vector[]): Framing {
-    const {left, right, top, bottom} = this.insets;
-    const points = corners.map((corner) => this.placed(corner));
-    return this.orbit.framing(points, 1 - left - right, 1 - top - bottom);
+  /**
+   * Frames the mesh itself, not its box: a box leaves its corners empty. `aspect` may be that of
+   * another picture than the canvas.
+   */
+  private framing(
+    {left, right, top, bottom} = this.insets,
+    aspect = this.orbit.camera.aspect,
+  ): Framing {
+    const isWhole = !this.focus || this.orbit.isStandard;
+    const seen = isWhole ? null : seenPart(this.focus!, this.bounds, this.orbit.direction);
+    const points = (seen ? cornersOf(seen) : this.outline).map((corner) => this.placed(corner));
+    const wider = aspect / this.orbit.camera.aspect;
+    return this.orbit.framing(points, (1 - left - right) * wider, 1 - top - bottom);
   }
 }
 

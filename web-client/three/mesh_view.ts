@@ -1,7 +1,7 @@
 // A canvas that shows a progressive mesh: surface, cuts and layers. It draws only after
 // changes.
 
-import {Scene, WebGLRenderer} from 'three';
+import {Scene, WebGLRenderer, type PerspectiveCamera, type WebGLRenderTarget} from 'three';
 import type {Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
 import {transferTables} from '../core/picture/transfer';
@@ -15,7 +15,8 @@ import {whenDrawn} from './frame_budget';
 import {MeshCamera} from './mesh_camera';
 import {MeshParts} from './mesh_parts';
 import {project, rayAt, type Pose} from './pose';
-import type {Insets, Look, View, ViewListeners} from './view';
+import {partsOf, tileOf} from './tiles';
+import type {Frame, Insets, Look, Tile, View, ViewListeners} from './view';
 import {VolumeView} from './volume_view';
 import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './worker_canvas';
 
@@ -38,6 +39,8 @@ export class MeshView implements View {
   private frame = 0;
   private frameMs = 0;
   private afterFrame: ((ms: number) => void)[] = [];
+  /** Settled when the picture in tiles is drawn; null: there is none. */
+  private inTiles: Promise<void> | null = null;
 
   /** Throws when the browser has no WebGL 2. */
   constructor(
@@ -68,6 +71,8 @@ export class MeshView implements View {
 
   /** Shows the picture. `drawn` is called after the frame that contains it. */
   show(snapshot: Snapshot, drawn: (ms: number) => void): void {
+    // A picture in tiles shows one mesh.
+    if (this.inTiles) return void this.inTiles.finally(() => this.show(snapshot, drawn));
     this.afterFrame.push(drawn);
     this.invalidate(snapshot.volume == null);
     if (snapshot.volume !== undefined) this.volume.take(this.fitting(snapshot.volume));
@@ -86,14 +91,14 @@ export class MeshView implements View {
   }
 
   setLook(next: Look): void {
-    const {map, reversed, edges, opacity, volume} = next;
-    const look = JSON.stringify([map, reversed, edges, opacity, volume]);
+    const {map, reversed, edges, opacity, volume, onDark} = next;
+    const look = JSON.stringify([map, reversed, edges, opacity, volume, onDark]);
     // it is called with every attribute change, and a picture costs more than a comparison
     if (look === this.last.look) return;
     this.parts.setLook(next);
-    const transfer = volume ? `${map} ${reversed} ${volume.join()}` : '';
+    const transfer = volume ? `${map} ${reversed} ${onDark} ${volume.join()}` : '';
     if (volume && transfer !== this.last.transfer)
-      this.volume.setTransfer(transferTables(volume, map, reversed));
+      this.volume.setTransfer(transferTables(volume, map, reversed, onDark));
     Object.assign(this.last, {look, transfer});
     this.invalidate();
   }
@@ -180,7 +185,7 @@ export class MeshView implements View {
 
   /** The current picture on `background` (a CSS colour). */
   async picture(background: string): Promise<Blob> {
-    if (this.drawsVolume) await this.volume.drawWhole(this.volumePicture);
+    if (this.drawsVolume) await this.volume.drawWhole(this.pictureOf());
     // Drawing and copying share a task: a canvas that has been shown is empty.
     if (this.volume.hasCells) this.volume.present(this.renderer);
     else this.draw();
@@ -190,6 +195,21 @@ export class MeshView implements View {
     context.fillRect(0, 0, copy.width, copy.height);
     context.drawImage(this.surfaceCanvas, 0, 0);
     return copy.convertToBlob({type: 'image/png'});
+  }
+
+  async render(frame: Frame): Promise<Tile[]> {
+    while (this.inTiles) await this.inTiles;
+    if (!this.camera.hasMesh) return [];
+    const tiles = this.drawTiles(frame);
+    this.inTiles = tiles.then(
+      () => undefined,
+      () => undefined,
+    );
+    void this.inTiles.then(() => {
+      this.inTiles = null;
+      this.invalidate(false);
+    });
+    return tiles;
   }
 
   dispose(): void {
@@ -241,12 +261,41 @@ export class MeshView implements View {
     return this.volume.hasCells && this.camera.hasMesh;
   }
 
-  private get volumePicture(): Picture {
-    this.orbit.setDepths();
-    const {toCanvas, fromCanvas} = this.pose;
-    const {eye, diagonal, orbit} = this.camera;
+  /** By default the canvas's. */
+  private pictureOf(
+    camera: PerspectiveCamera = this.orbit.camera,
+    target: WebGLRenderTarget | null = null,
+  ): Picture {
+    this.orbit.setDepths(camera);
     const {renderer, scene} = this;
-    return {renderer, scene, camera: orbit.camera, toCanvas, fromCanvas, eye, diagonal};
+    return {renderer, scene, camera, target, ...this.camera.sightOf(camera)};
+  }
+
+  private async drawTiles(frame: Frame): Promise<Tile[]> {
+    const tiles: Tile[] = [];
+    for (const part of partsOf(frame)) {
+      const camera = this.camera.cameraFor(frame, part);
+      tiles.push(
+        await tileOf(this.renderer, part, (target) => this.drawTile(camera, target, frame)),
+      );
+    }
+    return tiles;
+  }
+
+  private async drawTile(
+    camera: PerspectiveCamera,
+    target: WebGLRenderTarget,
+    {pixelRatio}: Frame,
+  ): Promise<void> {
+    const {parts, renderer, scene} = this;
+    parts.setPixelRatio(pixelRatio);
+    if (this.drawsVolume) await this.volume.drawWhole(this.pictureOf(camera, target));
+    else {
+      renderer.setRenderTarget(target);
+      renderer.render(scene, camera);
+      renderer.setRenderTarget(null);
+    }
+    parts.setPixelRatio(renderer.getPixelRatio());
   }
 
   /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
@@ -274,7 +323,7 @@ export class MeshView implements View {
     const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
     try {
       this.orbit.setDepths();
-      if (this.drawsVolume) this.volume.draw(this.volumePicture, this.moved);
+      if (this.drawsVolume) this.volume.draw(this.pictureOf(), this.moved);
       else this.renderer.render(this.scene, this.orbit.camera);
       this.moved = false;
       this.frameMs = performance.now() - start;

@@ -18,6 +18,24 @@ export interface Insets {
   bottom: number;
 }
 
+/** A picture that is drawn apart from the canvas. */
+export interface Frame {
+  /** In pixels. */
+  width: number;
+  height: number;
+  /** The share of the height that stays free above the mesh, and below it, below 0.5. */
+  margin: number;
+  /** How many pixels a cell's edge takes where it takes one on the canvas. */
+  pixelRatio: number;
+}
+
+/** A part of such a picture, without ground. `x` and `y` are those of its upper left corner. */
+export interface Tile {
+  x: number;
+  y: number;
+  bitmap: ImageBitmap;
+}
+
 export interface Look {
   map: ColorMapName;
   reversed: boolean;
@@ -26,6 +44,8 @@ export interface Look {
   opacity: number;
   /** Opacities of the volume at even shares of the range; null hides it. */
   volume?: number[] | null;
+  /** The canvas lies on a dark ground: the volume's colours stand off from it. */
+  onDark?: boolean;
 }
 
 /**
@@ -88,5 +108,10 @@ export interface View {
   project(point: Vector): {x: number; y: number};
   /** The current picture on `background` (a CSS colour). */
   picture(background: string): Promise<Blob>;
+  /**
+   * The mesh of now in a picture of another size. A fitted mesh is fitted to it, else it shows all
+   * that lies between the insets, in the middle.
+   */
+  render(frame: Frame): Promise<Tile[]>;
   dispose(): void;
 }

@@ -5,7 +5,7 @@ import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import type {CanvasEvent, CanvasSize} from './worker_canvas';
 import type {Pose} from './pose';
-import type {View} from './view';
+import type {Frame, Tile, View} from './view';
 
 /** Methods of View without a result. */
 export type Command =
@@ -29,11 +29,14 @@ export type ToView =
   | {type: 'size'; size: CanvasSize}
   | {type: 'event'; event: CanvasEvent}
   | {type: 'show'; id: number; snapshot: Snapshot}
-  | {type: 'picture'; id: number; background: string}
+  | ({id: number} & Wanted)
   /** Asks whether the worker responds. */
   | {type: 'ping'}
   /** Answers `coarse`; null if there are no cells. */
   | {type: 'coarse'; id: number; answer: CoarseCells | null};
+
+/** The worker answers each by `pictured` or `failed` with the same id. */
+export type Wanted = {type: 'picture'; background: string} | {type: 'render'; frame: Frame};
 
 export type FromView =
   /** The worker is running. It tells its own address, and whether it can draw with WebGL 2. */
@@ -44,6 +47,6 @@ export type FromView =
   | {type: 'works'; working: boolean}
   | {type: 'lost'; lost: boolean}
   | {type: 'coarse'; id: number; have: number}
-  | {type: 'pictured'; id: number; blob: Blob}
+  | {type: 'pictured'; id: number; picture: Blob | Tile[]}
   /** With `id` this picture cannot be taken; without it the view cannot start. */
   | {type: 'failed'; message: string; id?: number};

@@ -20,8 +20,22 @@ let view: MeshView | null = null;
 let nextId = 0;
 const asked = new Map<number, {resolve(cells: CoarseCells): void; reject(why: Error): void}>();
 
-function post(message: FromView): void {
-  self.postMessage(message);
+function post(message: FromView, transfer: Transferable[] = []): void {
+  self.postMessage(message, {transfer});
+}
+
+/** Answers with a picture. */
+async function answer(
+  id: number,
+  taking: Promise<Extract<FromView, {type: 'pictured'}>['picture']>,
+): Promise<void> {
+  try {
+    const picture = await taking;
+    const bitmaps = Array.isArray(picture) ? picture.map(({bitmap}) => bitmap) : [];
+    post({type: 'pictured', id, picture}, bitmaps);
+  } catch (thrown) {
+    post({type: 'failed', id, message: errorText(thrown)});
+  }
 }
 
 /** Asked of the page. */
@@ -62,10 +76,9 @@ function obey(message: Exclude<ToView, {type: 'begin' | 'ping'}>, its: MeshView)
         post({type: 'shown', id: message.id, drawingMs}),
       );
     case 'picture':
-      return void its.picture(message.background).then(
-        (blob) => post({type: 'pictured', id: message.id, blob}),
-        (thrown: unknown) => post({type: 'failed', id: message.id, message: errorText(thrown)}),
-      );
+      return void answer(message.id, its.picture(message.background));
+    case 'render':
+      return void answer(message.id, its.render(message.frame));
     case 'coarse': {
       const waiting = asked.get(message.id);
       asked.delete(message.id);

@@ -12,8 +12,8 @@ import {watchDensity} from './density';
 import {checkedDirection, type Direction} from './directions';
 import type {CanvasEvent, CanvasSize} from './worker_canvas';
 import {checkedCamera, project, rayAt, type Pose} from './pose';
-import type {Insets, Look, View, ViewListeners} from './view';
-import type {Command, FromView, ToView} from './view_messages';
+import type {Frame, Insets, Look, Tile, View, ViewListeners} from './view';
+import type {Command, FromView, ToView, Wanted} from './view_messages';
 
 /**
  * The canvas's events that a view needs. Moves are forwarded only while a button or a finger is
@@ -75,7 +75,7 @@ class WorkerView implements View {
   private readonly shown = new Map<number, (ms: number) => void>();
   private readonly pictures = new Map<
     number,
-    {resolve(blob: Blob): void; reject(why: Error): void}
+    {resolve(picture: unknown): void; reject(why: Error): void}
   >();
   private readonly ended = new AbortController();
   private readonly resizes: ResizeObserver;
@@ -156,8 +156,8 @@ class WorkerView implements View {
   clear(): void {
     this.command('clear');
   }
-  setLook({map, reversed, edges, opacity, volume = null}: Look): void {
-    this.command('setLook', {map, reversed, edges, opacity, volume});
+  setLook({map, reversed, edges, opacity, volume = null, onDark = false}: Look): void {
+    this.command('setLook', {map, reversed, edges, opacity, volume, onDark});
   }
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     this.command('setRange', low, high, scaleRange, logarithmic);
@@ -195,9 +195,10 @@ class WorkerView implements View {
   }
 
   picture(background: string): Promise<Blob> {
-    const id = this.nextId++;
-    this.send({type: 'picture', id, background});
-    return new Promise((resolve, reject) => this.pictures.set(id, {resolve, reject}));
+    return this.take({type: 'picture', background});
+  }
+  render(frame: Frame): Promise<Tile[]> {
+    return this.take({type: 'render', frame});
   }
 
   dispose(): void {
@@ -205,6 +206,14 @@ class WorkerView implements View {
     this.ended.abort();
     this.resizes.disconnect();
     this.worker.terminate();
+  }
+
+  private take<Picture>(wanted: Wanted): Promise<Picture> {
+    const id = this.nextId++;
+    this.send({...wanted, id});
+    return new Promise<unknown>((resolve, reject) =>
+      this.pictures.set(id, {resolve, reject}),
+    ) as Promise<Picture>;
   }
 
   private ping(): void {
@@ -228,7 +237,7 @@ class WorkerView implements View {
       case 'shown':
         return taken(this.shown, message.id)?.(message.drawingMs);
       case 'pictured':
-        return taken(this.pictures, message.id)?.resolve(message.blob);
+        return taken(this.pictures, message.id)?.resolve(message.picture);
       case 'failed':
         return taken(this.pictures, message.id)?.reject(new Error(message.message));
       case 'lost':

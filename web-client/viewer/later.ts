@@ -11,6 +11,7 @@ import {Undo} from './page/undo';
 import {HistogramPanel} from './panels/histogram_panel';
 import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
+import type {Pictures} from './picture/pictures';
 
 export interface LaterHost {
   readonly client: Client;
@@ -19,6 +20,9 @@ export interface LaterHost {
   readonly settings: Settings;
   readonly range: ShownRange | null;
   look(direction: Direction | null): void;
+  readonly stream: {choose(mesh: string): void};
+  readonly notices: {end(code: string): void};
+  failed(code: string, message: string): void;
 }
 
 export class Later {
@@ -26,9 +30,10 @@ export class Later {
   private readonly hover: Hover;
   private readonly ends = new AbortController();
   private seen = '';
+  private pictures: Promise<Pictures> | null = null;
 
   constructor(
-    page: Page,
+    private readonly page: Page,
     private readonly host: LaterHost,
   ) {
     this.cube = new OrientationCube(find(page.root, '.orientation-cube'), (direction) =>
@@ -55,11 +60,54 @@ export class Later {
       this.ends.signal,
     );
     new HistogramPanel(page, host, this.ends.signal);
+    this.takeDrops();
     this.follow();
   }
 
   dispose(): void {
     this.ends.abort();
+  }
+
+  /** Opens the dialog that makes a picture. */
+  async picture(): Promise<void> {
+    (await this.loadPictures())?.picture();
+  }
+
+  /** The next call tries again if the server is away. */
+  private async loadPictures(): Promise<Pictures | null> {
+    this.pictures ??= import('./picture/pictures').then(
+      ({Pictures}) => new Pictures(this.page, this.host),
+    );
+    try {
+      return await this.pictures;
+    } catch {
+      this.pictures = null;
+      this.host.failed('no-picture', 'What makes pictures cannot be loaded. Try again later.');
+      return null;
+    }
+  }
+
+  /** A picture that is dropped opens its view. */
+  private takeDrops(): void {
+    const {element} = this.page;
+    const {signal} = this.ends;
+    element.addEventListener(
+      'dragover',
+      (event) => {
+        if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
+      },
+      {signal},
+    );
+    element.addEventListener(
+      'drop',
+      (event) => {
+        const [file] = event.dataTransfer?.files ?? [];
+        if (!file) return;
+        event.preventDefault();
+        void this.loadPictures().then((pictures) => pictures?.open(file));
+      },
+      {signal},
+    );
   }
 
   /** Must be called after every frame. */

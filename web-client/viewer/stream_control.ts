@@ -100,6 +100,18 @@ export class StreamControl {
     this.listeners.changed(state, attempt, delayMs);
   }
 
+  /** Opens another mesh. The attributes of this one end. */
+  choose(mesh: string): void {
+    this.isChoosing = true;
+    for (const name of kOfOneMesh) this.page.write(name, null);
+    this.page.write('mesh', mesh);
+    this.isChoosing = false;
+    // A list that lacks it may be old; otherwise opening says what there is.
+    if (!this.catalog.some(({id}) => id === mesh)) return void this.open();
+    this.menu.fill(this.catalog, mesh);
+    this.openMesh(mesh);
+  }
+
   dispose(): void {
     ++this.openings;
   }
@@ -179,13 +191,5 @@ export class StreamControl {
   private refineFully(): void {
     if (this.page.read('quality') !== null) this.page.write('quality', null);
     else this.client.setLimit(kFull);
-  }
-
-  private choose(mesh: string): void {
-    this.isChoosing = true;
-    for (const name of kOfOneMesh) this.page.write(name, null);
-    this.page.write('mesh', mesh);
-    this.isChoosing = false;
-    this.openMesh(mesh);
   }
 }

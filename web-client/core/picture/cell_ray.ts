@@ -50,6 +50,35 @@ export function stretches(cells: Cells, ray: Ray, first: number, last: number): 
   return found;
 }
 
+/** A place on a line; null: no cell is there. */
+export interface LinePlace {
+  t: number;
+  cell: number | null;
+}
+
+/** Places closer than this, as a share of the line, are one. */
+const kSamePlace = 1e-6;
+
+/**
+ * Where a line enters and leaves cells, in order and each place once. Between two cells it is the
+ * cell ahead. A stretch without cells has one place, in its middle.
+ */
+export function placesOf(found: readonly Stretch[]): LinePlace[] {
+  const places: LinePlace[] = [];
+  let end = -Infinity;
+  for (const {cell, from, to} of [...found].sort((a, b) => a.from - b.from)) {
+    if (to - from <= kSamePlace) continue; // it only touches the line
+    if (from > end + kSamePlace) {
+      if (places.length > 0) places.push({t: (end + from) / 2, cell: null});
+      places.push({t: from, cell});
+    } else if (from > end - kSamePlace) places.at(-1)!.cell = cell;
+    if (to <= end + kSamePlace) continue;
+    places.push({t: to, cell});
+    end = to;
+  }
+  return places;
+}
+
 /** Shortens a stretch to the part below every plane; null if nothing is left. */
 export function below(planes: readonly Plane[], ray: Ray, stretch: Stretch): Stretch | null {
   let {from, to} = stretch;

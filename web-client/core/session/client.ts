@@ -8,7 +8,7 @@ import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
 import {kFull, type Limit} from '../protocol/limit';
 import type {ViewRequest} from '../protocol/view_request';
-import type {Pick, Probe} from './inspector';
+import type {LineValues, Pick, Probe} from './inspector';
 import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
@@ -102,6 +102,10 @@ export class Client {
   }
   probe(from: Vector, to: Vector): Promise<Probe | null> {
     return this.ask({type: 'probe', from, to});
+  }
+  /** All fields that are here along a line; empty if it meets no cell. */
+  line(from: Vector, to: Vector): Promise<LineValues[]> {
+    return this.ask({type: 'line', from, to});
   }
   /** Counts the values of the coloured field, as they are now; null while there are none. */
   histogram(axis: Axis): Promise<Histogram | null> {

@@ -8,6 +8,7 @@ import {
   along,
   barycentric,
   below,
+  placesOf,
   stretches,
   valueAt,
   type Ray,
@@ -48,6 +49,14 @@ export interface Probe {
   length: number;
 }
 
+/** A place on a line. It has no fields where no cell is. */
+export interface LineValues {
+  /** The distance from the line's beginning, in the mesh's unit. */
+  at: number;
+  position: Vector;
+  fields: FieldValue[];
+}
+
 export class Inspector {
   constructor(private readonly assembler: Assembler) {}
 
@@ -67,10 +76,9 @@ export class Inspector {
   /** The coloured field from one lattice point to another; null while there is none. */
   probe(from: Vector, to: Vector, display: Display): Probe | null {
     const mesh = meshArrays(this.assembler);
-    const manifest = this.assembler.manifest;
-    if (!mesh || !manifest) return null;
-    const ray: Ray = {origin: from, direction: [to[0] - from[0], to[1] - from[1], to[2] - from[2]]};
-    const length = manifest.lattice.step * Math.hypot(...ray.direction);
+    if (!mesh) return null;
+    const ray = rayBetween(from, to);
+    const length = this.lengthOf(ray);
     const scale = display.color && mesh.scale(display.color);
     const probe: Probe = {at: [], values: [], length};
     if (!scale || length === 0) return probe;
@@ -85,6 +93,20 @@ export class Inspector {
       end = last;
     }
     return this.unscaled(probe, display);
+  }
+
+  /** All fields that are here from one lattice point to another, each place once. */
+  line(from: Vector, to: Vector, display: Display): LineValues[] {
+    const mesh = meshArrays(this.assembler);
+    if (!mesh) return [];
+    const ray = rayBetween(from, to);
+    const cells: Cells = {...mesh, kept: keptCells(mesh, display)};
+    const length = this.lengthOf(ray);
+    return placesOf(stretches(cells, ray, 0, 1)).map(({t, cell}) => {
+      const place = along(ray, t);
+      const fields = cell === null ? [] : this.fieldsAt(cells, cell, place);
+      return {at: t * length, position: this.positionOf(place), fields};
+    });
   }
 
   /** Counts the values of the coloured field; null while there are none. */
@@ -102,10 +124,30 @@ export class Inspector {
   }
 
   private pickAt(cells: Cells, cell: number, lattice: Vector): Pick {
+    return {
+      cell,
+      corners: cornersOf(cells, cell),
+      lattice,
+      position: this.positionOf(lattice),
+      fields: this.fieldsAt(cells, cell, lattice),
+    };
+  }
+
+  /** In the mesh's own coordinates. */
+  private positionOf(lattice: Vector): Vector {
+    const {origin, step} = this.assembler.manifest!.lattice;
+    return lattice.map((x, axis) => origin[axis]! + step * x) as Vector;
+  }
+
+  /** In the mesh's own unit. */
+  private lengthOf({direction}: Ray): number {
+    return this.assembler.manifest!.lattice.step * Math.hypot(...direction);
+  }
+
+  private fieldsAt(cells: Cells, cell: number, lattice: Vector): FieldValue[] {
     const {codec, manifest} = this.assembler;
-    const {origin, step} = manifest!.lattice;
     const shares = barycentric(cells, cell, lattice);
-    const corners = [...cells.tetrahedra.subarray(4 * cell, 4 * cell + 4)];
+    const corners = cornersOf(cells, cell);
     const fields: FieldValue[] = [];
     manifest!.fields.forEach((info, field) => {
       const values = codec.field(field, info.components);
@@ -115,14 +157,16 @@ export class Inspector {
           values: components(info, values, info.association === 'cell' ? [cell] : corners, shares),
         });
     });
-    return {
-      cell,
-      corners,
-      lattice,
-      position: lattice.map((x, axis) => origin[axis]! + step * x) as Vector,
-      fields,
-    };
+    return fields;
   }
+}
+
+const cornersOf = ({tetrahedra}: Cells, cell: number): number[] => [
+  ...tetrahedra.subarray(4 * cell, 4 * cell + 4),
+];
+
+function rayBetween(from: Vector, to: Vector): Ray {
+  return {origin: from, direction: to.map((x, axis) => x - from[axis]!) as Vector};
 }
 
 /** The t at which the ray first sees something of this stretch; Infinity if it never does. */

@@ -111,6 +111,12 @@ function obey(
         id: message.id,
         answer: inspector.probe(message.from, message.to, publisher.display),
       });
+    case 'line':
+      return post({
+        type: 'answer',
+        id: message.id,
+        answer: inspector.line(message.from, message.to, publisher.display),
+      });
     case 'histogram':
       return post({
         type: 'answer',

@@ -16,7 +16,7 @@ import type {Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
 import type {ViewRequest} from '../protocol/view_request';
 import type {LogAddress} from '../transport/transports';
-import type {Pick, Probe} from './inspector';
+import type {LineValues, Pick, Probe} from './inspector';
 
 /** The state of the stream. `paused`: by the user; `held`: it has reached the limit. */
 export type StreamState =
@@ -54,6 +54,7 @@ export type Question =
   | {type: 'digest'}
   | {type: 'pick'; ray: Ray}
   | {type: 'probe'; from: Vector; to: Vector}
+  | {type: 'line'; from: Vector; to: Vector}
   /** Counts the values of the coloured field. */
   | {type: 'histogram'; axis: Axis}
   /** Asks for a volume with few cells. The page has version `have`. */
@@ -79,6 +80,8 @@ export interface Snapshot extends LayerSoups {
    * mesh refines.
    */
   middle: [number, number];
+  /** The result of amountsOf at that time; absent without a volume. */
+  amounts?: number[];
   statistics: Statistics;
   /** How long the worker took to make it. */
   costMs: number;
@@ -86,6 +89,8 @@ export interface Snapshot extends LayerSoups {
 
 /** With its run. Messages without one come from before the first start. */
 export type Posted = FromWorker & {run?: number};
+
+export type Answer = string | Pick | Probe | LineValues[] | Histogram | CoarseCells | null;
 
 export type FromWorker =
   | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
@@ -103,4 +108,4 @@ export type FromWorker =
   | {type: 'progress'; statistics: Statistics; received: number}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
-  | {type: 'answer'; id: number; answer: string | Pick | Probe | Histogram | CoarseCells | null};
+  | {type: 'answer'; id: number; answer: Answer};

@@ -1,20 +1,19 @@
 // The actions of buttons and keys.
 
 import {clipText} from '../../core/layers/clip';
-import {errorText} from '../../core/protocol/errors';
 import {kDirections, type Direction} from '../../three/directions';
 import type {View} from '../../three/view';
 import type {Settings} from '../settings/settings';
 import {find} from './find';
 import type {KeyActions} from './keys';
 import type {Page} from './page';
-import {save} from './save';
 import {ShareDialog} from './share_dialog';
 
 export interface ActionsHost {
   readonly settings: Settings;
   readonly view: View | null;
-  picture(): Promise<Blob | null>;
+  /** Null before the first picture is on the screen. */
+  readonly later: {picture(): Promise<void>} | null;
   /** Shows a standard view, or (null) the first one, beside the cards that are open now. */
   look(direction: Direction | null): void;
   togglePause(): void;
@@ -54,14 +53,9 @@ export class Actions {
     find<HTMLDialogElement>(this.page.root, '.help-dialog').showModal();
   }
 
-  async savePicture(): Promise<void> {
-    const picture = await this.host
-      .picture()
-      .catch((thrown: unknown) =>
-        this.host.failed('no-picture', `The picture cannot be taken: ${errorText(thrown)}.`),
-      );
-    if (!picture) return;
-    save(picture, `${find(this.page.root, '.mesh-name').textContent}.png`);
+  /** Opens the dialog that makes a picture. */
+  picture(): void {
+    void this.host.later?.picture();
   }
 
   toggleFullscreen(): void {
@@ -88,7 +82,7 @@ export class Actions {
       toggle: (what) => this.toggle(what),
       moveClip: (step) => this.host.moveClip(step),
       inspect: () => this.host.inspect(),
-      picture: () => void this.savePicture(),
+      picture: () => this.picture(),
       help: () => this.help(),
       escape: () => this.host.endTool(),
     };

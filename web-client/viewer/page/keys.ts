@@ -13,7 +13,7 @@ export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['[ ]', 'move the clip plane'],
   ['Space', 'pause, continue'],
   ['I', 'what lies in the middle'],
-  ['P', 'save the picture'],
+  ['P', 'save a picture'],
   ['W', 'whole screen'],
   ['?', 'this list'],
   ['Ctrl Z', 'undo (on a Mac: ⌘)'],

@@ -9,6 +9,7 @@ import {cornersOf} from '../../three/outline';
 import type {View} from '../../three/view';
 import {formatCount, formatTo, formatValue, resolutionOf} from '../page/format';
 import type {Point} from '../page/card_place';
+import {save} from '../page/save';
 import {ResultCard} from './result_card';
 
 export type Tool = 'none' | 'point' | 'line';
@@ -55,6 +56,7 @@ export class Inspect {
       root,
       (text) => host.announce(text),
       () => this.clear(),
+      () => void this.saveTable(),
     );
     this.marks = root.querySelector('.marks')!;
     const onCanvas = (
@@ -185,6 +187,14 @@ export class Inspect {
     this.card.show('Line', rows, hasPlot);
     if (opens) this.placeCard();
     if (hasPlot) await this.card.drawPlot(probe, this.host.fieldTitle);
+  }
+
+  private async saveTable(): Promise<void> {
+    const {client, manifest} = this.host;
+    const [from, to] = this.points.map(({lattice}) => lattice);
+    const {tableOf} = await import('./probe_plot'); // the plot has loaded it
+    const places = await client!.line(from!, to!);
+    save(tableOf(places, manifest!.fields), 'line.csv');
   }
 
   /** Rounds to a ten-thousandth of the lattice's span. */

@@ -4,8 +4,8 @@
 import type {Vector} from '../../core/protocol/geometry';
 import {kDirections, type Direction} from '../../three/directions';
 
-/** Half of an edge. The corners stay inside the picture. */
-const kHalf = 16;
+/** Half of an edge: so far are faces from the middle. The corners stay inside the picture. */
+export const kHalf = 16;
 /** The side of the picture, in its own unit (template.ts). */
 const kSpan = 60;
 /** A face that is seen more obliquely than this has no room for its name. */

@@ -1,10 +1,13 @@
-// A field along a line, drawn by uPlot. It is loaded at the first request.
+// A field along a line, drawn by uPlot, and all fields as a table. It is loaded at the first
+// request.
 
 import uPlot from 'uplot';
 import plotStyles from 'uplot/dist/uPlot.min.css?inline';
 import type {Probe} from '../../core/session/inspector';
 import {formatTo} from '../page/format';
 import {adopt} from '../page/trusted';
+
+export {tableOf} from './line_table';
 
 const kHeight = 170;
 /** The readout shows this share of the line and of the values' range. */

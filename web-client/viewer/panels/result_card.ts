@@ -4,28 +4,25 @@
 import type {Probe} from '../../core/session/inspector';
 import {placeCard, type Point, type Surroundings} from '../page/card_place';
 import {find, onClick} from '../page/find';
-import {save} from '../page/save';
 
 export class ResultCard {
   private readonly card: HTMLElement;
   private plot: {destroy(): void} | null = null;
-  /** The text to copy, and the plot as CSV. */
+  /** The text to copy. */
   private text = '';
-  private table = '';
   /** The user has chosen the card's place. */
   private dragged = false;
 
-  /** `closed` is called when the user closes it. */
+  /** `closed` is called when the user closes it, `saveTable` when the line is to be saved. */
   constructor(
     private readonly root: ShadowRoot,
     private readonly announce: (text: string) => void,
     closed: () => void,
+    saveTable: () => void,
   ) {
     this.card = find(root, '.result');
     onClick(root, '.copy-result', () => void this.copy());
-    onClick(root, '.save-table', () =>
-      save(new Blob([this.table], {type: 'text/csv'}), 'line.csv'),
-    );
+    onClick(root, '.save-table', saveTable);
     onClick(root, '.close-result', closed);
     find(this.card, 'h2').addEventListener('pointerdown', (event) => this.drag(event));
   }
@@ -74,9 +71,6 @@ export class ResultCard {
     const {drawProbe} = await import('./probe_plot');
     this.endPlot();
     this.plot = drawProbe(this.root, find(this.card, '.plot'), probe, title);
-    this.table = [['distance', title], ...probe.at.map((at, i) => [at, probe.values[i]!])]
-      .map((row) => row.map(csvCell).join(','))
-      .join('\r\n');
     find(this.card, '.save-table').hidden = false;
   }
 
@@ -120,10 +114,4 @@ export class ResultCard {
     );
     this.announce(copied ? 'Copied' : 'The browser does not let this page copy');
   }
-}
-
-/** A missing value is an empty cell. */
-function csvCell(value: string | number): string {
-  if (typeof value === 'string') return `"${value.replaceAll('"', '""')}"`;
-  return Number.isNaN(value) ? '' : String(value);
 }

@@ -25,7 +25,7 @@ export class ViewPanel {
       button.addEventListener('click', () => actions.look(button.value as Direction));
     onClick(root, '.reset', () => actions.look(null));
     onClick(root, '.pause', () => actions.togglePause());
-    onClick(root, '.picture', () => void actions.savePicture());
+    onClick(root, '.picture', () => actions.picture());
     onClick(root, '.fullscreen', () => actions.toggleFullscreen());
     onClick(root, '.share', () => actions.share());
     onClick(root, '.help', () => actions.help());

@@ -1,0 +1,94 @@
+import {describe, expect, test} from 'vitest';
+import {colorGradient, labelGradient} from '../core/picture/color_maps';
+import {frameOf, stopsOf, unitOf, type Figure, type LegendTexts} from '../viewer/picture/figure';
+import {refusalOf} from '../viewer/picture/picture_dialog';
+
+const kFigure: Figure = {
+  width: 3000,
+  height: 2000,
+  ground: 'white',
+  hasLegend: true,
+  hasAxes: true,
+  title: 'fin',
+  unit: 'Pa',
+};
+const kLegend: LegendTexts = {
+  name: 'Pressure',
+  factor: '',
+  gradient: '',
+  ticks: [],
+  marks: [],
+  notes: [],
+  missing: '',
+};
+const kCanvas = {clientWidth: 1280, clientHeight: 800};
+
+describe('stops of a gradient', () => {
+  test('areSpacedEvenlyIfItDoesNotSayWhere', () => {
+    expect(stopsOf('linear-gradient(90deg, rgb(68, 1, 84), rgb(1, 2, 3), rgb(9 8 7))')).toEqual([
+      [0, 'rgb(68, 1, 84)'],
+      [0.5, 'rgb(1, 2, 3)'],
+      [1, 'rgb(9 8 7)'],
+    ]);
+    expect(stopsOf(colorGradient('viridis', false, 33))).toHaveLength(33);
+  });
+  test('standWhereItSays', () => {
+    const stops = stopsOf(labelGradient(3));
+    expect(stops.map(([at]) => at.toFixed(2))).toEqual([
+      '0.00',
+      '0.33',
+      '0.33',
+      '0.67',
+      '0.67',
+      '1.00',
+    ]);
+    expect(stops[0]![1]).toBe(stops[1]![1]);
+    expect(stopsOf('radial-gradient(120% 90% at 42% 38%, #ffffff 0%, rgb(1, 2, 3) 55%)')).toEqual([
+      [0, '#ffffff'],
+      [0.55, 'rgb(1, 2, 3)'],
+    ]);
+  });
+  test('areNoneOfNoGradient', () => expect(stopsOf('none')).toEqual([]));
+});
+
+describe('the frame of a figure', () => {
+  test('leavesRoomForWhatStandsRoundTheMesh', () => {
+    const none = {...kFigure, title: '', hasLegend: false};
+    expect(frameOf(none, kLegend, kCanvas).margin).toBe(0);
+    expect(frameOf({...none, hasLegend: true}, null, kCanvas).margin).toBe(0);
+    const titled = frameOf({...none, title: 'fin'}, kLegend, kCanvas).margin;
+    const whole = frameOf(kFigure, kLegend, kCanvas).margin;
+    expect(titled).toBeGreaterThan(0.05);
+    expect(whole).toBeGreaterThan(titled);
+    const noted = frameOf(kFigure, {...kLegend, notes: ['No value']}, kCanvas).margin;
+    expect(noted).toBeGreaterThan(whole);
+    expect(noted).toBeLessThan(0.2);
+  });
+  test('growsWithThePictureSoThatItLooksTheSame', () => {
+    const twice = {...kFigure, width: 6000, height: 4000};
+    expect(unitOf(twice)).toBeCloseTo(2 * unitOf(kFigure));
+    expect(frameOf(twice, kLegend, kCanvas).margin).toBeCloseTo(
+      frameOf(kFigure, kLegend, kCanvas).margin,
+    );
+    expect(frameOf(twice, kLegend, kCanvas).pixelRatio).toBeCloseTo(
+      2 * frameOf(kFigure, kLegend, kCanvas).pixelRatio,
+    );
+  });
+  test('leavesMostOfALowPictureToTheMesh', () => {
+    const low = {...kFigure, width: 6000, height: 300};
+    expect(frameOf(low, kLegend, kCanvas).margin).toBeCloseTo(0.3);
+  });
+});
+
+test.each([
+  [7680, 4320, /^$/],
+  [4320, 7680, /^$/],
+  [100, 100, /^$/],
+  [7681, 100, /from 100 to 7680/],
+  [99, 100, /from 100 to 7680/],
+  [7680, 4321, /7680 × 4320 pixels/],
+  [1000.5, 1000, /whole numbers/],
+  [NaN, 1000, /whole numbers/],
+])('aPictureOf%dx%dIsMadeOrRefusedByASentence', (width, height, said) => {
+  expect(refusalOf({width, height})).toMatch(said);
+});

@@ -1,0 +1,37 @@
+import {expect, test} from 'vitest';
+import type {LineValues} from '../core/session/inspector';
+import type {FieldInfo} from '../core/protocol/manifest';
+import {tableOf} from '../viewer/panels/line_table';
+
+const info = (name: string, components: number): FieldInfo => ({
+  name,
+  components,
+  association: 'point',
+  step: 1,
+  minimum: [],
+  range: [0, 1],
+});
+const kFields = [info('p', 1), info('absent', 1), info('a "b"', 2)];
+
+test('eachRowIsAPlaceWithAllFieldsThatAreHere', async () => {
+  const places: LineValues[] = [
+    {
+      at: 0,
+      position: [1, 2, 3],
+      fields: [
+        {field: 0, values: [0.1 + 0.2]},
+        {field: 2, values: [4, NaN]},
+      ],
+    },
+    {at: 0.5, position: [1, 2, 3.5], fields: []},
+  ];
+  expect((await tableOf(places, kFields).text()).split('\r\n')).toEqual([
+    '"distance","x","y","z","p","a ""b"", x","a ""b"", y"',
+    '0,1,2,3,0.3,4,',
+    '0.5,1,2,3.5,,,',
+  ]);
+});
+
+test('aLineBesideTheMeshHasNoRows', async () => {
+  expect(await tableOf([], kFields).text()).toBe('"distance","x","y","z"');
+});

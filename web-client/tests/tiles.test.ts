@@ -1,0 +1,105 @@
+import {describe, expect, test} from 'vitest';
+import {Vector3} from 'three';
+import {MeshCamera} from '../three/mesh_camera';
+import {partsOf, straighten, type Part} from '../three/tiles';
+import type {Frame} from '../three/view';
+import {WorkerCanvas} from '../three/worker_canvas';
+
+const kFrame: Frame = {width: 3000, height: 2100, margin: 0.1, pixelRatio: 2};
+const kWhole: Part = {x: 0, y: 0, width: 3000, height: 2100};
+const kInsets = {left: 0.05, right: 0.25, top: 0, bottom: 0.15};
+
+test('partsCoverThePictureOnce', () => {
+  for (const [width, height] of [
+    [1, 1],
+    [2048, 2048],
+    [2049, 100],
+    [7680, 4320],
+  ] as const) {
+    const parts = partsOf({width, height});
+    expect(parts.reduce((sum, part) => sum + part.width * part.height, 0)).toBe(width * height);
+    expect(new Set(parts.map(({x, y}) => `${x} ${y}`)).size).toBe(parts.length);
+    for (const part of parts) {
+      expect(Math.max(part.width, part.height)).toBeLessThanOrEqual(2048);
+      expect(part.x + part.width).toBeLessThanOrEqual(width);
+      expect(part.y + part.height).toBeLessThanOrEqual(height);
+    }
+  }
+});
+
+test('coloursAreDividedByTheirOpacity', () => {
+  const pixels = new Uint8ClampedArray([10, 20, 30, 255, 0, 0, 0, 0, 50, 100, 128, 128]);
+  straighten(pixels);
+  expect([...pixels]).toEqual([10, 20, 30, 255, 0, 0, 0, 0, 100, 199, 255, 128]);
+});
+
+/** The camera of a box of 200 x 100 x 50 lattice steps on a canvas of 1280 x 800. */
+function meshCamera(): MeshCamera {
+  const canvas = new WorkerCanvas({} as OffscreenCanvas);
+  canvas.resize({width: 1280, height: 800, pixelRatio: 1});
+  const camera = new MeshCamera(canvas, () => undefined);
+  camera.setInsets(kInsets);
+  camera.resize(1280, 800);
+  camera.growTo([0, 0, 0, 200, 100, 50], undefined);
+  return camera;
+}
+
+/** The places of the box's corners in a part, in pixels of the whole picture. */
+function corners(camera: MeshCamera, part: Part): Vector3[] {
+  const seen = camera.cameraFor(kFrame, part);
+  seen.updateMatrixWorld();
+  camera.lattice.updateMatrixWorld();
+  return Array.from({length: 8}, (_, i) => {
+    const at = new Vector3(i & 1 ? 200 : 0, i & 2 ? 100 : 0, i & 4 ? 50 : 0)
+      .applyMatrix4(camera.lattice.matrixWorld)
+      .project(seen);
+    const {x, y, width, height} = part;
+    return new Vector3(x + ((at.x + 1) / 2) * width, y + ((1 - at.y) / 2) * height, 0);
+  });
+}
+
+function boundsOf(places: Vector3[], side: 'x' | 'y'): [number, number] {
+  const all = places.map((place) => place[side]);
+  return [Math.min(...all), Math.max(...all)];
+}
+
+describe('the camera of a picture', () => {
+  test.each([false, true])('isTheSameInEveryPart (moved: %s)', (moved) => {
+    const camera = meshCamera();
+    if (moved) camera.orbit.orbit(0.3, 0.1);
+    const whole = corners(camera, kWhole);
+    for (const part of partsOf(kFrame))
+      corners(camera, part).forEach((place, i) =>
+        expect(place.distanceTo(whole[i]!)).toBeLessThan(1e-6),
+      );
+  });
+
+  test('hasAFittedMeshInItsMiddleAndTheMarginFree', () => {
+    const camera = meshCamera();
+    const state = camera.orbit.state;
+    const places = corners(camera, kWhole);
+    const [left, right] = boundsOf(places, 'x');
+    const [top, bottom] = boundsOf(places, 'y');
+    expect((left + right) / 2).toBeCloseTo(1500, 0);
+    // It is fitted exactly in one direction, and nearly in the other.
+    expect(Math.abs((top + bottom) / 2 - 1050)).toBeLessThan(10);
+    expect(left).toBeGreaterThan(0);
+    expect(top).toBeGreaterThan(210);
+    expect(Math.max((right - left) / 3000, (bottom - top) / 1680)).toBeCloseTo(0.88, 1);
+    expect(camera.orbit.state).toEqual(state);
+  });
+
+  test('showsAMovedMeshAsLargeAsItsFreeAreaAllows', () => {
+    const camera = meshCamera();
+    camera.orbit.zoom(0.9);
+    const {view} = camera.orbit.camera;
+    expect(view!.offsetX).not.toBe(0);
+    // 896 x 680 CSS pixels are free; the picture's height without its margins is 1680 pixels.
+    const scale = Math.min(3000 / (1280 * 0.7), 1680 / (800 * 0.85));
+    const seen = camera.cameraFor(kFrame, kWhole);
+    expect(seen.view).toMatchObject({fullWidth: 1280 * scale, fullHeight: 800 * scale});
+    const target = camera.orbit.controls.target.clone().project(seen);
+    expect(target.x).toBeCloseTo(0);
+    expect(target.y).toBeCloseTo(0);
+  });
+});

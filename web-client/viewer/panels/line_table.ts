@@ -1,0 +1,28 @@
+// A line's places and values as CSV.
+
+import type {LineValues} from '../../core/session/inspector';
+import type {FieldInfo} from '../../core/protocol/manifest';
+import {scalarTitle} from './panel';
+
+/** More are noise of the arithmetic: a float has nine, and a large coordinate some more. */
+const kDigits = 12;
+
+/** Each row is a place: distance, position, and each component of the fields that are here. */
+export function tableOf(places: readonly LineValues[], infos: readonly FieldInfo[]): Blob {
+  const here = places.find(({fields}) => fields.length > 0)?.fields ?? [];
+  const titles = here.flatMap(({field, values}) =>
+    values.map((_, component) => scalarTitle({field, component}, infos)),
+  );
+  const rows = places.map(({at, position, fields}) => {
+    const values = fields.flatMap((its) => its.values);
+    return [at, ...position, ...titles.map((_, i) => values[i] ?? NaN)];
+  });
+  const table = [['distance', 'x', 'y', 'z', ...titles], ...rows];
+  return new Blob([table.map((row) => row.map(cell).join(',')).join('\r\n')], {type: 'text/csv'});
+}
+
+/** A missing value is an empty cell. */
+function cell(value: string | number): string {
+  if (typeof value === 'string') return `"${value.replaceAll('"', '""')}"`;
+  return Number.isNaN(value) ? '' : String(Number(value.toPrecision(kDigits)));
+}

@@ -1,0 +1,265 @@
+// A picture to publish: the mesh in tiles, and what stands round it. Its sizes are those of a
+// picture of kUnitPixels and grow with it.
+
+import type {Frame, Tile} from '../../three/view';
+import {facePlaces, kHalf, type Rotation} from '../panels/orientation_cube';
+
+/** A text of 14 of these pixels is legible on a slide and, with two columns, on paper. */
+const kUnitPixels = 960 * 640;
+const kGap = 24;
+const kTitle = 22;
+const kText = 14;
+const kSmallText = 12.5;
+const kLine = 1.4;
+const kBarWidth = 380;
+const kBarHeight = 12;
+const kAxis = 34;
+/** Texts leave at least this share of the height to the mesh. */
+const kMinFree = 0.4;
+
+/** Inks of a light ground. */
+const kInk = '#16202c';
+const kSoftInk = '#556273';
+/** The axes' colours, legible on both grounds. */
+const kAxisInks = ['#d0453c', '#2f9150', '#3b78d8'];
+
+export type Ground = 'white' | 'transparent' | 'seen';
+
+export interface Figure {
+  width: number;
+  height: number;
+  ground: Ground;
+  hasLegend: boolean;
+  hasAxes: boolean;
+  /** Empty: none. */
+  title: string;
+  unit: string;
+}
+
+/** The page's legend as texts and places in [0, 1]; null if nothing is coloured. */
+export interface LegendTexts {
+  name: string;
+  factor: string;
+  /** A CSS gradient. */
+  gradient: string;
+  ticks: {at: number; label: string}[];
+  marks: number[];
+  notes: string[];
+  /** The colour of what has no value; empty: everything has one. */
+  missing: string;
+}
+
+/** The look of the page. */
+export interface Looks {
+  ink: string;
+  softInk: string;
+  ground: string;
+  /** A CSS gradient over the ground, or another background. */
+  back: string;
+  font: string;
+  rotation: Rotation;
+}
+
+/** Reads the legend from the page, so that both say the same. */
+export function legendOf(root: ParentNode): LegendTexts | null {
+  const legend = root.querySelector<HTMLElement>('.legend')!;
+  if (legend.hidden) return null;
+  const part = (name: string): HTMLElement => legend.querySelector<HTMLElement>(`.legend-${name}`)!;
+  const text = (name: string): string => (part(name).hidden ? '' : part(name).textContent);
+  const at = (its: HTMLElement): number => parseFloat(its.style.left) / 100;
+  const notes = [text('note'), text('missing').trim()];
+  return {
+    name: text('name'),
+    factor: text('factor'),
+    gradient: getComputedStyle(part('bar')).backgroundImage,
+    ticks: [...part('ticks').children].map((its) => ({
+      at: at(its as HTMLElement),
+      label: its.textContent,
+    })),
+    marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
+    notes: notes.filter(Boolean),
+    missing: notes[1] ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor : '',
+  };
+}
+
+/** [share, colour] of a CSS gradient's stops. Without shares they are evenly spaced. */
+export function stopsOf(gradient: string): [number, string][] {
+  const stops = [...gradient.matchAll(/(rgba?\([^)]*\)|#\w+)((?: [\d.]+%)*)/g)];
+  return stops.flatMap(([, color, shares], i): [number, string][] => {
+    const given = shares!.match(/[\d.]+/g)?.map((share) => Number(share) / 100);
+    return (given ?? [i / Math.max(1, stops.length - 1)]).map((share) => [share, color!]);
+  });
+}
+
+/** Pixels of the picture in a unit. */
+export const unitOf = ({width, height}: Pick<Figure, 'width' | 'height'>): number =>
+  Math.sqrt((width * height) / kUnitPixels);
+
+const legendHeight = ({notes}: LegendTexts): number =>
+  kText * kLine + 8 + kBarHeight + 6 + kSmallText * kLine * (1 + notes.length);
+
+/** The frame of the figure's mesh. `canvas` is the page's, in CSS pixels. */
+export function frameOf(
+  figure: Figure,
+  legend: LegendTexts | null,
+  canvas: {clientWidth: number; clientHeight: number},
+): Frame {
+  const {width, height, title, hasLegend} = figure;
+  const above = title ? kTitle * kLine : 0;
+  const below = hasLegend && legend ? legendHeight(legend) : 0;
+  const most = Math.max(above, below);
+  const margin = most > 0 ? ((most + kGap) * unitOf(figure)) / height : 0;
+  return {
+    width,
+    height,
+    margin: Math.min(margin, (1 - kMinFree) / 2),
+    pixelRatio: Math.sqrt((width * height) / (canvas.clientWidth * canvas.clientHeight)),
+  };
+}
+
+export function draw(
+  figure: Figure,
+  tiles: readonly Tile[],
+  legend: LegendTexts | null,
+  looks: Looks,
+): OffscreenCanvas {
+  const canvas = new OffscreenCanvas(figure.width, figure.height);
+  const context = canvas.getContext('2d')!;
+  const {title, unit, hasLegend, hasAxes} = figure;
+  fillGround(context, figure, looks);
+  for (const {x, y, bitmap} of tiles) context.drawImage(bitmap, x, y);
+  const its = figure.ground === 'seen' ? looks : {...looks, ink: kInk, softInk: kSoftInk};
+  const scale = unitOf(figure);
+  context.scale(scale, scale);
+  const width = figure.width / scale;
+  const height = figure.height / scale;
+  const pen = new Pen(context, its);
+  if (title) pen.write(title, kTitle, width / 2, kGap + kTitle, {align: 'center', bold: true});
+  if (hasLegend && legend) drawLegend(pen, legend, unit, width, height);
+  if (hasAxes) drawAxes(pen, kGap + kAxis + kText / 2, height - kGap - kAxis - kText / 2);
+  return canvas;
+}
+
+interface Writing {
+  align?: CanvasTextAlign;
+  bold?: boolean;
+  soft?: boolean;
+  maxWidth?: number;
+}
+
+class Pen {
+  constructor(
+    readonly context: OffscreenCanvasRenderingContext2D,
+    readonly looks: Looks,
+  ) {}
+
+  write(text: string, size: number, x: number, y: number, how: Writing = {}): void {
+    const {context, looks} = this;
+    const {align = 'left', bold = false, soft = false, maxWidth} = how;
+    context.font = `${bold ? 600 : 400} ${size}px ${looks.font}`;
+    context.textAlign = align;
+    context.fillStyle = soft ? looks.softInk : looks.ink;
+    context.fillText(text, x, y, maxWidth);
+  }
+}
+
+function fillGround(
+  context: OffscreenCanvasRenderingContext2D,
+  {ground, width, height}: Figure,
+  looks: Looks,
+): void {
+  if (ground === 'transparent') return;
+  context.fillStyle = ground === 'white' ? '#fff' : looks.ground;
+  context.fillRect(0, 0, width, height);
+  const oval = /radial-gradient\(([\d.]+)% ([\d.]+)% at ([\d.]+)% ([\d.]+)%/.exec(looks.back);
+  if (ground === 'white' || !oval) return;
+  const [across, down, x, y] = oval.slice(1).map((share) => Number(share) / 100);
+  const gradient = context.createRadialGradient(0, 0, 0, 0, 0, 1);
+  for (const stop of stopsOf(looks.back)) gradient.addColorStop(...stop);
+  context.save();
+  context.transform(across! * width, 0, 0, down! * height, x! * width, y! * height);
+  context.fillStyle = gradient;
+  context.fillRect(-9, -9, 18, 18);
+  context.restore();
+}
+
+/** In the middle below the mesh, beside the axes. */
+function drawLegend(
+  pen: Pen,
+  legend: LegendTexts,
+  unit: string,
+  width: number,
+  height: number,
+): void {
+  const {context} = pen;
+  const bar = Math.min(kBarWidth, width - 2 * (kGap + 2 * kAxis + kText));
+  const left = (width - bar) / 2;
+  let y = height - kGap - legendHeight(legend) + kText;
+  const factor = {align: 'right', soft: true} as const;
+  pen.write(legend.factor, kText, left + bar, y, factor);
+  const free = bar - (legend.factor ? context.measureText(legend.factor).width + kText : 0);
+  const name = unit ? `${legend.name} (${unit})` : legend.name;
+  pen.write(name, kText, left, y, {bold: true, maxWidth: free});
+  y += kText * (kLine - 1) + 8;
+  const gradient = context.createLinearGradient(left, 0, left + bar, 0);
+  for (const stop of stopsOf(legend.gradient)) gradient.addColorStop(...stop);
+  context.fillStyle = gradient;
+  context.beginPath();
+  context.roundRect(left, y, bar, kBarHeight, kBarHeight / 2);
+  context.fill();
+  for (const at of legend.marks) drawMark(context, left + at * bar, y);
+  y += kBarHeight;
+  for (const {at, label} of legend.ticks) {
+    const x = left + at * bar;
+    context.fillStyle = pen.looks.softInk;
+    context.fillRect(x - 0.5, y, 1, 4);
+    pen.write(label, kSmallText, x, y + 6 + kSmallText, {align: 'center', soft: true});
+  }
+  y += 6 + kSmallText;
+  legend.notes.forEach((note, i) => {
+    y += kSmallText * kLine;
+    const isMissing = legend.missing !== '' && i === legend.notes.length - 1;
+    if (isMissing) {
+      context.fillStyle = legend.missing;
+      context.fillRect(left, y - 9, 18, 10);
+    }
+    const indent = isMissing ? 26 : 0;
+    pen.write(note, kSmallText, left + indent, y, {soft: true, maxWidth: bar - indent});
+  });
+}
+
+/** The value of an isosurface or the end of a threshold. */
+function drawMark(context: OffscreenCanvasRenderingContext2D, x: number, y: number): void {
+  for (const [ink, side] of [
+    ['#fff', 2],
+    ['#1b1f27', 1],
+  ] as const) {
+    context.fillStyle = ink;
+    context.fillRect(x - side, y - 1 - side, 2 * side, kBarHeight + 2 + 2 * side);
+  }
+}
+
+/** The farthest axis comes first, so that the others lie over it. */
+function drawAxes(pen: Pen, x: number, y: number): void {
+  const {context, looks} = pen;
+  const axes = facePlaces(looks.rotation)
+    .filter(({direction}) => direction[0] === '+')
+    .sort((a, b) => a.near - b.near);
+  const long = kAxis / kHalf;
+  context.lineWidth = 2;
+  context.lineCap = 'round';
+  for (const {direction, matrix} of axes) {
+    const letter = direction[1]!;
+    const [dx, dy] = [long * matrix[4], long * matrix[5]];
+    context.strokeStyle = kAxisInks['xyz'.indexOf(letter)]!;
+    context.beginPath();
+    context.moveTo(x, y);
+    context.lineTo(x + dx, y + dy);
+    context.stroke();
+    const share = 1 + kText / 2 / kAxis + 0.05;
+    pen.write(letter, kText, x + share * dx, y + share * dy + 0.35 * kText, {
+      align: 'center',
+      bold: true,
+    });
+  }
+}
