@@ -48,7 +48,7 @@ std::vector<po::options_description> settingGroups() {
   group("Running")("threads", text(), "threads for connections (default: one a core)")(
       "watch", text(), "on, off: whether logs that come, change and go are noticed (default: on)")(
       "ready-early", text(),
-      "on, off: whether /readyz is 200 while the folder is still being read (default: off)")(
+      "on, off: whether /readyz is 200 before the folder's names are known (default: off)")(
       "cache-bytes", text(), "how much the cache may hold (default: 2 GiB)")(
       "viewer", text(),
       "folder of the built viewer (default: ../share/qtet/viewer beside this program)")(

@@ -5,6 +5,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -62,9 +64,10 @@ std::optional<fs::path> wantedCache(const CommandLine& options) {
   return options.cache || ofSystemd == nullptr ? options.cache : std::optional(fs::path(ofSystemd));
 }
 
-void logRefused(const std::vector<Catalogue::Refused>& refused) {
-  for (const Catalogue::Refused& file : refused)
-    spdlog::error("{} is not served: {}", file.path.string(), file.error.text());
+template <class Files>
+void logRefused(const Files& refused) {
+  for (const RefusedPointer& file : refused)
+    spdlog::error("{} is not served: {}", file->path.string(), file->error.text());
 }
 
 void logChange(const FolderChange& change) {
@@ -84,12 +87,20 @@ void lookAgain(const MeshStore& store) {
   logChange(*change);
 }
 
-/// Reads on in a folder that was not read to its end at the start, beside the serving.
+/// Reads what the start and the watch have left unread, beside the serving: at most half of the time
+/// and after the threads that serve.
 std::jthread readOn(const MeshStore& store) {
   return std::jthread([&store](const std::stop_token& stop) {
-    while (!stop.stop_requested() && !store.catalogue()->unread.empty()) {
-      lookAgain(store);
-      std::this_thread::sleep_for(limits::kFolderReadRest);
+    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), limits::kReadingNiceness);
+    using Clock = std::chrono::steady_clock;
+    Clock::duration rest{};
+    while (store.awaitUnread(stop, rest)) {
+      const Clock::time_point began = Clock::now();
+      const Result<FolderChange> change = store.readOn();
+      if (change) logChange(*change);
+      if (!change) spdlog::error("{}; what was served is served on", change.error().message);
+      rest = change ? std::max<Clock::duration>(limits::kFolderReadRest, Clock::now() - began)
+                    : limits::kFolderInterval;
     }
   });
 }
@@ -227,7 +238,8 @@ int serve(const CommandLine& options) {
   if (!watch) return cannotServe(watch.error());
   const std::size_t count = catalogue->meshes.size() + catalogue->unread.size();
   std::cout << "qtet-server: listening on " << server.url() << " (" << count
-            << (count == 1 ? " mesh)" : " meshes)") << std::endl;
+            << (count == 1 ? " mesh" : " meshes")
+            << (catalogue->named ? ")" : ", more names are being read)") << std::endl;
   if (options.adminHost)
     std::cout << "qtet-server: operators' address is " << *options.adminHost << ":"
               << server.adminPort() << std::endl;

@@ -108,9 +108,8 @@ struct Server::State {
   /// Why new work is not welcome; "": it is.
   [[nodiscard]] std::string_view unready() {
     if (draining || ending) return "the server is ending";
-    // Files that come later make no server unready.
-    if (!hasRead && store.catalogue()->unread.empty()) hasRead = true;
-    return options.readyEarly || hasRead ? "" : "the folder is still being read";
+    return options.readyEarly || store.catalogue()->named ? ""
+                                                          : "the folder's names are not known yet";
   }
   void end();
   void drain();
@@ -124,7 +123,6 @@ struct Server::State {
   ServerOptions options;
   Metrics metrics;
   std::atomic<bool> draining = false, ending = false;
-  std::atomic<bool> hasRead = false;  ///< the folder, once to its end
   AdminRoutes admin{metrics, [this] { return unready(); }, [this] { return figures(); }};
   Uploads uploads;
   Router router;

@@ -101,10 +101,13 @@ std::optional<Reply> readingRefusal(const RequestView& request, const std::strin
 std::optional<std::string> readableName(const MayRead& mayRead, const ServedMesh& mesh,
                                         const Catalogue& catalogue) {
   if (mayRead(mesh.id)) return mesh.id;
-  const auto found = std::ranges::find_if(catalogue.meshes, [&](const auto& entry) {
-    return entry.second->digest == mesh.log.digest() && mayRead(entry.first);
-  });
-  return found == catalogue.meshes.end() ? std::nullopt : std::optional(found->first);
+  const std::string& digest = mesh.log.digest();
+  for (auto at = catalogue.logs.lowerBound({digest, ""});
+       at != catalogue.logs.end() && (*at)->digest == digest; ++at)
+    if (const EntryPointer* served = catalogue.meshes.find((*at)->id);
+        served != nullptr && *served == *at && mayRead((*at)->id))
+      return (*at)->id;
+  return std::nullopt;
 }
 
 /// Handles the part that is the same for every path: methods, and invalid targets.

@@ -21,7 +21,7 @@ std::optional<std::size_t> pageSize(const RequestTarget& target) {
 
 /// Where the page begins, and how long it may be.
 struct PageStart {
-  Catalogue::Meshes::const_iterator at;
+  Catalogue::Meshes::Iterator at;
   std::size_t limit = 0;
 };
 
@@ -35,20 +35,20 @@ PlainPage makePage(const Catalogue& catalogue, PageStart start, const MayRead& m
   std::string last;
   auto it = start.at;
   const auto skipHidden = [&] {
-    while (it != catalogue.meshes.end() && mayRead && !mayRead(it->first)) ++it;
+    while (it != catalogue.meshes.end() && mayRead && !mayRead((*it)->id)) ++it;
   };
   std::size_t count = 0;
   for (skipHidden(); it != catalogue.meshes.end() && count < start.limit;
        ++it, ++count, skipHidden()) {
-    out.text += (count > 0 ? "," : "") + it->second->listEntry;
-    last = it->first;
+    out.text += (count > 0 ? "," : "") + (*it)->listEntry;
+    last = (*it)->id;
   }
   out.text += "]";
   if (it != catalogue.meshes.end()) {
     out.next = "/v1/meshes?limit=" + std::to_string(start.limit) + "&after=" + percentEncode(last);
     out.text += ",\"next\":" + dumpJson(Json(out.next));
   }
-  if (!catalogue.unread.empty()) out.text += R"(,"complete":false)";
+  if (!catalogue.complete()) out.text += R"(,"complete":false)";
   out.text += "}";
   return out;
 }
@@ -75,11 +75,11 @@ std::string keyOf(std::string key, std::time_t changed, ContentCoding coding) {
 /// The same for all: made once for each version of the catalogue.
 KeptPagePointer openPage(const Catalogue& catalogue, PageStart start, ContentCoding coding,
                          KeptPages& kept) {
-  std::string version = catalogue.etag;
-  version += catalogue.unread.empty() ? " " : " incomplete ";
+  std::string version = catalogue.etag();
+  version += catalogue.complete() ? " " : " incomplete ";
   version += std::to_string(start.limit);
   version += ' ';
-  if (start.at != catalogue.meshes.end()) version += start.at->first;
+  if (start.at != catalogue.meshes.end()) version += (*start.at)->id;
   const std::string key = keyOf(version, catalogue.changed, coding);
   KeptPagePointer out = kept.find(key);
   if (out) return out;
@@ -109,7 +109,7 @@ Reply meshListReply(const RequestView& request, const RequestTarget& target,
                    "limit is a whole number from 1 to " + std::to_string(limits::kMaxListPage));
   const std::string after = target.parameter("after").value_or("");
   const PageStart start = {
-      after.empty() ? catalogue->meshes.begin() : catalogue->meshes.upper_bound(after), *limit};
+      after.empty() ? catalogue->meshes.begin() : catalogue->meshes.upperBound(after), *limit};
   const ContentCoding coding = chooseCoding(request.acceptEncoding.value_or(""), true, true);
   KeptPagePointer page = mayRead ? restrictedPage(*catalogue, start, mayRead, coding, kept)
                                  : openPage(*catalogue, start, coding, kept);

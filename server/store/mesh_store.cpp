@@ -3,168 +3,271 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <iterator>
+#include <condition_variable>
 #include <mutex>
 #include <set>
 
 #include "proto/json_reader.h"
+#include "server/store/folder_names.h"
 #include "server/store/store_limits.h"
-#include "server/wire/digest.h"
 
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using Ids = std::set<std::string, std::less<>>;
 
-constexpr std::string_view kSuffix = ".qtet";
+/// The result of a look at a file.
+struct Found {
+  std::string id;
+  fs::path path;
+  std::optional<FileIdentity> file;  ///< nullopt: it has gone
+  Result<EntryPointer> mesh = nullptr;
+};
 
-/// Whether the file that `path` leads to, links resolved, lies in `root` (resolved already).
-bool liesIn(const fs::path& path, const fs::path& root) {
-  std::error_code ec;
-  const fs::path real = fs::canonical(path, ec);
-  return !ec && std::ranges::mismatch(root, real).in1 == root.end();
+/// Whether the old log may stay under its name: its own file is untouched (renamed over, not written
+/// into) and still open.
+bool staysSound(const MeshEntry& old, const FileIdentity& file) {
+  return old.file.inode != file.inode && old.pin();
 }
 
-Result<std::vector<fs::path>> listLogs(const fs::path& folder) {
-  std::error_code ec;
-  const fs::path root = fs::canonical(folder, ec);
-  std::vector<fs::path> out;
-  if (!ec)
-    for (fs::directory_iterator it(root, ec), end; !ec && it != end; it.increment(ec)) {
-      std::error_code gone;
-      const bool candidate =
-          it->path().extension() == kSuffix && !it->path().filename().native().starts_with('.');
-      if (candidate && it->is_regular_file(gone) &&
-          (!it->is_symlink(gone) || liesIn(it->path(), root)))
-        out.push_back(it->path());
-    }
-  if (ec)
-    return fail(ErrorCode::kIo,
-                folder.string() + ": " + ec.message() + "; name a folder that holds .qtet files");
-  std::ranges::sort(out);
+void drop(Catalogue& catalogue, const std::string& id, FolderChange& change) {
+  if (catalogue.drop(id)) change.removed.push_back(id);
+}
+
+/// Names that the folder has, against what is known of it.
+struct Comparison {
+  std::vector<std::string> toRead, gone;
+};
+
+/// REQUIRES: sorted names.
+Comparison compare(const fs::path& folder, std::vector<std::string> names,
+                   const Catalogue& before) {
+  Comparison out;
+  const auto isGone = [&](std::string_view id) { return !std::ranges::binary_search(names, id); };
+  const auto addGone = [&](const auto& known) {
+    for (const auto& value : known)
+      if (isGone(Catalogue::IdOf()(value))) out.gone.emplace_back(Catalogue::IdOf()(value));
+  };
+  addGone(before.meshes);
+  addGone(before.refused);
+  addGone(before.unread);
+  const auto isSettled = [&](const std::string& id) {
+    const EntryPointer* mesh = before.meshes.find(id);
+    const RefusedPointer* refused = before.refused.find(id);
+    if (mesh == nullptr && refused == nullptr) return before.unread.contains(id);
+    const auto file = identityOf(folder / (id + std::string(kLogSuffix)));
+    // A file that could not be read may be readable now; a damaged one stays damaged.
+    return !file || (mesh != nullptr && (*mesh)->file == *file) ||
+           (refused != nullptr && (*refused)->file == *file &&
+            (*refused)->error.code != ErrorCode::kIo);
+  };
+  std::erase_if(names, isSettled);
+  out.toRead = std::move(names);
   return out;
 }
-
-/// The tag of a list: what stands in it decides.
-std::string listTag(const Catalogue::Meshes& meshes) {
-  std::string all;
-  for (const auto& [id, mesh] : meshes) all += std::to_string(id.size()) + ':' + id + mesh->digest;
-  return hexDigestOf(all);
-}
-
-/// Builds a catalogue out of the one before and the folder.
-class Scan {
- public:
-  Scan(const Catalogue& before, std::chrono::milliseconds time, std::shared_ptr<OpenMeshes> open)
-      : before_(before),
-        open_(std::move(open)),
-        end_(Clock::now() + time),
-        next_(std::make_shared<Catalogue>()) {}
-
-  void look(const fs::path& path) {
-    const std::optional<FileIdentity> file = identityOf(path);
-    if (!file) return;  // gone since the folder was read
-    const std::string id = path.stem().string();
-    const auto known = before_.meshes.find(id);
-    const EntryPointer old = known == before_.meshes.end() ? nullptr : known->second;
-    if (old && old->file == *file) return keep(old);
-    // A file that could not be read may be readable now; a damaged one stays damaged.
-    const auto refused = std::ranges::find_if(before_.refused, [&](const auto& r) {
-      return r.path == path && r.file == *file && r.error.code != ErrorCode::kIo;
-    });
-    if (refused != before_.refused.end()) {
-      next_->refused.push_back(*refused);
-      return keepSound(old, *file);
-    }
-    if (++read_ > limits::kLogsReadAtOnce && Clock::now() > end_) {
-      next_->unread.push_back(id);
-      return old ? keepSound(old, *file) : void();
-    }
-    const bool holds = !open_->full();
-    Result<MeshPointer> mesh = openMesh(path, id, holds);
-    if (mesh) return add(path, std::move(*mesh), holds);
-    next_->refused.push_back({path, *file, mesh.error()});
-    change_.refused.push_back(next_->refused.back());
-    keepSound(old, *file);
-  }
-
-  void finish() {
-    for (const auto& [id, mesh] : before_.meshes)
-      if (!next_->meshes.contains(id)) change_.removed.push_back(id);
-    for (const auto& [id, mesh] : next_->meshes) next_->logs.emplace(mesh->digest, mesh);
-    std::ranges::sort(next_->unread);
-    next_->etag = listTag(next_->meshes);
-    const bool first = before_.etag.empty();
-    next_->changed = first || change_.any()
-                         ? std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())
-                         : before_.changed;
-  }
-
-  [[nodiscard]] const std::shared_ptr<Catalogue>& next() const { return next_; }
-  [[nodiscard]] FolderChange& change() { return change_; }
-
- private:
-  void add(const fs::path& path, MeshPointer mesh, bool holds) {
-    const auto entry = std::make_shared<const MeshEntry>(*mesh, path, open_);
-    if (holds) entry->hold(std::move(mesh));
-    next_->meshes[entry->id] = entry;
-    change_.added.push_back(entry);
-  }
-  void keep(const EntryPointer& mesh) { next_->meshes[mesh->id] = mesh; }
-  /// The old log stays under its name if its own file is untouched (renamed over, not written into)
-  /// and still open.
-  void keepSound(const EntryPointer& old, const FileIdentity& file) {
-    if (old && old->file.inode != file.inode && old->pin()) keep(old);
-  }
-
-  const Catalogue& before_;
-  const std::shared_ptr<OpenMeshes> open_;
-  const Clock::time_point end_;
-  std::size_t read_ = 0;  // files that were looked into
-  std::shared_ptr<Catalogue> next_;
-  FolderChange change_;
-};
 
 }  // namespace
 
 struct MeshStore::State {
   fs::path folder;
-  std::chrono::milliseconds readTime{};
+  StoreOptions options{};
   std::shared_ptr<OpenMeshes> open = std::make_shared<OpenMeshes>(1);
-  std::mutex scanning;                          // one rescan at a time
-  std::set<std::string, std::less<>> wanted{};  // ids, guarded by `mutex`
-  /// Replaced logs, and until when they are to be had under their digests. Guarded by `scanning`.
-  std::vector<std::pair<Clock::time_point, EntryPointer>> retired;
+
+  std::mutex scanning;                 ///< one look at the folder at a time
+  std::optional<FolderNames> names{};  ///< not read to their end; guarded by `scanning`
+
+  /// One change of the catalogue at a time; requests that read a log wait for it, others do not.
+  std::mutex changing;
+  /// Replaced logs, and until when they are to be had under their digests. Guarded by `changing`.
+  std::vector<std::pair<Clock::time_point, EntryPointer>> retired{};
+  FolderChange news{};  ///< of requests, for the next look to report; guarded by `changing`
+
   mutable std::mutex mutex;
   CataloguePointer current = std::make_shared<Catalogue>();  // guarded by `mutex`
+  Ids wanted{};                                              // guarded by `mutex`
+  std::condition_variable_any work{};                        // of `current` and `wanted`
 
   CataloguePointer snapshot() const {
     const std::scoped_lock lock(mutex);
     return current;
   }
-  void retire(const Catalogue& before, Catalogue& next);
+  /// Publishes a copy of the catalogue that `edit` has changed.
+  template <class Edit>
+  void change(Edit edit) {
+    const std::scoped_lock lock(changing);
+    auto next = std::make_shared<Catalogue>(*snapshot());
+    edit(*next);
+    const std::scoped_lock swap(mutex);
+    current = std::move(next);
+    work.notify_all();
+  }
+
+  void want(std::string_view id) {
+    const std::scoped_lock lock(mutex);
+    if (wanted.size() < limits::kMaxWantedLogs) wanted.emplace(id);
+    work.notify_all();
+  }
   /// Ids to be looked at before all others, which are forgotten by this.
-  std::set<std::string, std::less<>> takeWanted(std::string_view first) {
-    std::set<std::string, std::less<>> out;
+  Ids takeWanted(std::string_view first) {
+    Ids out;
     const std::scoped_lock lock(mutex);
     out.swap(wanted);
     if (!first.empty()) out.emplace(first);
     return out;
   }
+
+  [[nodiscard]] bool isUnread(const Catalogue& now, std::string_view id) const;
+  [[nodiscard]] Found look(const std::string& id) const;
+  void settle(const Found& found, Catalogue& next, FolderChange& change);
+  void retire(const EntryPointer& old, Catalogue& next);
+  void forgetRetired(Catalogue& next);
+  MeshPointer readNow(const std::string& id);
+  [[nodiscard]] Status beginNames();
+  FolderChange read(Comparison difference, bool named, std::string_view first);
+  Result<FolderChange> lookAtNames(Clock::time_point end, std::string_view first);
 };
 
-void MeshStore::State::retire(const Catalogue& before, Catalogue& next) {
-  const auto now = Clock::now();
-  std::erase_if(retired, [now](const auto& entry) { return entry.first <= now; });
-  for (const auto& [id, mesh] : before.meshes) {
-    const auto it = next.meshes.find(id);
-    // its file has gone: unless it is open it cannot be had any more
-    if (it != next.meshes.end() && it->second != mesh && mesh->pin())
-      retired.emplace_back(now + limits::kReplacedLogTime, mesh);
+/// While the names are not known, the folder itself says whether there is such a file.
+bool MeshStore::State::isUnread(const Catalogue& now, std::string_view id) const {
+  if (now.named || now.refused.contains(id)) return now.unread.contains(id);
+  const std::optional<fs::path> path = pathOfMesh(folder, id);
+  std::error_code ec;
+  return path && isServable(*path, fs::canonical(folder, ec));
+}
+
+Found MeshStore::State::look(const std::string& id) const {
+  Found out{id, folder / (id + std::string(kLogSuffix)), {}};
+  out.file = identityOf(out.path);
+  if (!out.file) return out;
+  const bool holds = !open->full();
+  Result<MeshPointer> mesh = openMesh(out.path, id, holds);
+  if (!mesh) {
+    out.mesh = std::unexpected(mesh.error());
+    return out;
   }
-  while (retired.size() > limits::kMaxReplacedLogs) retired.erase(retired.begin());
-  for (const auto& [until, mesh] : retired) next.logs.emplace(mesh->digest, mesh);
+  auto entry = std::make_shared<const MeshEntry>(**mesh, out.path, open);
+  if (holds) entry->hold(std::move(*mesh));
+  out.mesh = std::move(entry);
+  return out;
+}
+
+void MeshStore::State::settle(const Found& found, Catalogue& next, FolderChange& change) {
+  next.unread.remove(found.id);
+  if (!found.file) {
+    next.refused.remove(found.id);
+    return drop(next, found.id, change);
+  }
+  const EntryPointer* known = next.meshes.find(found.id);
+  if (!found.mesh) {
+    next.refused.put(std::make_shared<const RefusedFile>(
+        RefusedFile{found.id, found.path, *found.file, found.mesh.error()}));
+    change.refused.push_back(*next.refused.find(found.id));
+    if (known != nullptr && !staysSound(**known, *found.file)) drop(next, found.id, change);
+    return;
+  }
+  if (known != nullptr && (*known)->file == (*found.mesh)->file) return;  // a request was faster
+  next.refused.remove(found.id);
+  if (const EntryPointer old = next.put(*found.mesh)) retire(old, next);
+  change.added.push_back(*found.mesh);
+}
+
+void MeshStore::State::retire(const EntryPointer& old, Catalogue& next) {
+  if (!old->pin()) return;  // its file has gone: it cannot be had any more
+  retired.emplace_back(Clock::now() + limits::kReplacedLogTime, old);
+  if (!next.logs.contains(Catalogue::LogOf()(old))) next.logs.put(old);
+}
+
+void MeshStore::State::forgetRetired(Catalogue& next) {
+  const auto now = Clock::now();
+  const auto over = std::ssize(retired) - std::ptrdiff_t{limits::kMaxReplacedLogs};
+  for (std::ptrdiff_t i = 0; i < std::ssize(retired); ++i) {
+    auto& [until, mesh] = retired[static_cast<std::size_t>(i)];
+    if (i >= over && until > now) continue;
+    const EntryPointer* kept = next.logs.find(Catalogue::LogOf()(mesh));
+    const EntryPointer* served = next.meshes.find(mesh->id);
+    if (kept != nullptr && *kept == mesh && (served == nullptr || *served != mesh))
+      next.logs.remove(Catalogue::LogOf()(mesh));
+    mesh = nullptr;
+  }
+  std::erase_if(retired, [](const auto& entry) { return entry.second == nullptr; });
+}
+
+/// On the thread of a request. nullptr: there is none, it is damaged, or too large for that.
+MeshPointer MeshStore::State::readNow(const std::string& id) {
+  const auto file = identityOf(folder / (id + std::string(kLogSuffix)));
+  if (file && static_cast<std::uintmax_t>(file->bytes) > options.maxReadWhenAsked) return nullptr;
+  const Found found = look(id);
+  change([&](Catalogue& next) {
+    settle(found, next, news);
+    forgetRetired(next);
+  });
+  return found.mesh && *found.mesh ? (*found.mesh)->open() : nullptr;
+}
+
+/// Reads what is wanted, then what is new, then what is unread, in one look's time.
+FolderChange MeshStore::State::read(Comparison difference, bool named, std::string_view first) {
+  const CataloguePointer before = snapshot();
+  const Clock::time_point end = Clock::now() + options.readTime;
+  std::vector<Found> found;
+  const auto mayRead = [&](std::size_t least) {
+    return found.size() < least || Clock::now() < end;
+  };
+  std::vector<std::string>& toRead = difference.toRead;
+  const Ids urgent = takeWanted(first);
+  const auto isUrgent = [&](const std::string& id) { return urgent.contains(id); };
+  if (!urgent.empty()) std::ranges::sort(std::ranges::partition(toRead, isUrgent));
+  for (const std::string& id : urgent)
+    if (isUnread(*before, id)) mayRead(1) ? found.push_back(look(id)) : want(id);
+  auto next = toRead.begin();
+  while (next != toRead.end() && mayRead(limits::kLogsReadAtOnce)) found.push_back(look(*next++));
+  for (auto at = before->unread.begin(); at != before->unread.end() && mayRead(1); ++at)
+    if (!isUrgent(*at)) found.push_back(look(*at));
+  toRead.erase(toRead.begin(), next);
+  std::ranges::sort(toRead);
+
+  FolderChange out;
+  change([&](Catalogue& now) {
+    std::swap(out, news);
+    now.named = now.named || named;
+    if (now.changed == 0) now.changed = std::time(nullptr);
+    for (const std::string& id : difference.gone) {
+      now.refused.remove(id);
+      now.unread.remove(id);
+      drop(now, id, out);
+    }
+    for (const Found& file : found) settle(file, now, out);
+    for (const std::string& id : toRead)
+      if (const EntryPointer* old = now.meshes.find(id)) {
+        const auto file = identityOf((*old)->path);
+        if (file && !staysSound(**old, *file)) drop(now, id, out);
+      }
+    now.leaveUnread(std::move(toRead));
+    forgetRetired(now);
+  });
+  return out;
+}
+
+/// REQUIRES: `scanning`, as the next.
+Status MeshStore::State::beginNames() {
+  Result<FolderNames> begun = FolderNames::open(folder);
+  if (!begun) return std::unexpected(begun.error());
+  names.emplace(std::move(*begun));
+  return {};
+}
+
+/// REQUIRES: `names`.
+Result<FolderChange> MeshStore::State::lookAtNames(Clock::time_point end, std::string_view first) {
+  const Result<bool> whole = names->read(end);
+  if (!whole) {
+    names.reset();
+    return std::unexpected(whole.error());
+  }
+  if (!*whole) return read({}, false, first);
+  std::vector<std::string> ids = std::move(*names).take();
+  names.reset();
+  return read(compare(folder, std::move(ids), *snapshot()), true, first);
 }
 
 MeshStore::MeshStore() : state_(std::make_unique<State>()) {}
@@ -180,28 +283,36 @@ std::size_t StoreOptions::descriptorsForLogs() {
 
 Result<MeshStore> MeshStore::open(const fs::path& folder, const StoreOptions& options) {
   MeshStore out;
-  out.state_->folder = folder;
-  out.state_->readTime = options.readTime;
-  out.state_->open = std::make_shared<OpenMeshes>(options.maxOpen);
-  if (Result<FolderChange> found = out.rescan(); !found) return std::unexpected(found.error());
+  State& state = *out.state_;
+  state.folder = folder;
+  state.options = options;
+  state.open = std::make_shared<OpenMeshes>(options.maxOpen);
+  const std::scoped_lock lock(state.scanning);
+  if (const Status begun = state.beginNames(); !begun) return std::unexpected(begun.error());
+  const Result<FolderChange> found = state.lookAtNames(Clock::now() + options.nameTime, "");
+  if (!found) return std::unexpected(found.error());
   return out;
 }
 
 Result<FolderChange> MeshStore::rescan(std::string_view first) const {
   const std::scoped_lock lock(state_->scanning);
-  Result<std::vector<fs::path>> paths = listLogs(state_->folder);
-  if (!paths) return std::unexpected(paths.error());
-  if (const auto wanted = state_->takeWanted(first); !wanted.empty())
-    std::ranges::partition(
-        *paths, [&](const fs::path& path) { return wanted.contains(path.stem().native()); });
-  const CataloguePointer before = state_->snapshot();
-  Scan scan(*before, state_->readTime, state_->open);
-  for (const fs::path& path : *paths) scan.look(path);
-  scan.finish();
-  state_->retire(*before, *scan.next());
-  const std::scoped_lock swap(state_->mutex);
-  state_->current = scan.next();
-  return std::move(scan.change());
+  if (const Status begun = state_->beginNames(); !begun) return std::unexpected(begun.error());
+  return state_->lookAtNames(Clock::time_point::max(), first);
+}
+
+Result<FolderChange> MeshStore::readOn() const {
+  const std::scoped_lock lock(state_->scanning);
+  if (!state_->names && state_->snapshot()->named) return state_->read({}, false, "");
+  if (!state_->names)  // an error ended the reading of names
+    if (const Status begun = state_->beginNames(); !begun) return std::unexpected(begun.error());
+  return state_->lookAtNames(Clock::now() + state_->options.readTime, "");
+}
+
+bool MeshStore::awaitUnread(const std::stop_token& stop, Clock::duration rest) const {
+  std::unique_lock lock(state_->mutex);
+  state_->work.wait_for(lock, stop, rest, [this] { return !state_->wanted.empty(); });
+  state_->work.wait(lock, stop, [this] { return !state_->current->complete(); });
+  return !stop.stop_requested();
 }
 
 const fs::path& MeshStore::folder() const { return state_->folder; }
@@ -209,27 +320,25 @@ CataloguePointer MeshStore::catalogue() const { return state_->snapshot(); }
 
 MeshPointer MeshStore::find(std::string_view id) const {
   const CataloguePointer now = catalogue();
-  const auto it = now->meshes.find(id);
-  return it == now->meshes.end() ? nullptr : it->second->open();
+  if (const EntryPointer* mesh = now->meshes.find(id)) return (*mesh)->open();
+  return state_->isUnread(*now, id) ? state_->readNow(std::string(id)) : nullptr;
 }
 
 MeshPointer MeshStore::findLog(std::string_view digest) const {
-  const CataloguePointer now = catalogue();
-  const auto it = now->logs.find(digest);
-  return it == now->logs.end() ? nullptr : it->second->open();
+  const EntryPointer mesh = catalogue()->findLog(digest);
+  return mesh ? mesh->open() : nullptr;
 }
 
 bool MeshStore::mayHave(std::string_view id) const {
   const CataloguePointer now = catalogue();
-  if (!std::ranges::binary_search(now->unread, id)) return now->meshes.contains(id);
-  const std::scoped_lock lock(state_->mutex);
-  if (state_->wanted.size() < limits::kMaxWantedLogs) state_->wanted.emplace(id);
+  if (!state_->isUnread(*now, id)) return now->meshes.contains(id);
+  state_->want(id);
   return true;
 }
 
 bool MeshStore::mayHaveLog(std::string_view digest) const {
   const CataloguePointer now = catalogue();
-  return !now->unread.empty() || now->logs.contains(digest);
+  return !now->complete() || now->findLog(digest) != nullptr;
 }
 
 std::optional<fs::path> pathOfMesh(const fs::path& folder, std::string_view id) {
@@ -240,7 +349,7 @@ std::optional<fs::path> pathOfMesh(const fs::path& folder, std::string_view id) 
     return std::nullopt;
   // dumpJson replaces what is not UTF-8, so a name that survives it is.
   if (Json::parse(dumpJson(Json(std::string(id)))).get<std::string>() != id) return std::nullopt;
-  return folder / (std::string(id) + std::string(kSuffix));
+  return folder / (std::string(id) + std::string(kLogSuffix));
 }
 
 }  // namespace qtet

@@ -3,62 +3,51 @@
 #pragma once
 
 #include <chrono>
-#include <ctime>
 #include <filesystem>
-#include <map>
 #include <memory>
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "server/store/mesh_entry.h"
+#include "server/store/catalogue.h"
 #include "server/store/served_mesh.h"
 
 namespace qtet {
 
 namespace limits {
-/// One scan of a folder reads files for this time, and at least this many of them. The start waits
-/// for one scan; a folder of 100,000 logs takes many.
-inline constexpr auto kFolderReadTime = std::chrono::seconds(1);
-/// Ids that were asked for and are read first: as many as clients may ask for in such a time.
-inline constexpr std::size_t kMaxWantedLogs = 1000;
+/// The start waits so long for the folder's names: a million from a local disk.
+inline constexpr auto kFolderNameTime = std::chrono::seconds(3);
+/// One look at a folder reads files for this time, and at least kLogsReadAtOnce of them. The start
+/// waits for one look, so a small folder is complete at once.
+inline constexpr auto kFolderReadTime = std::chrono::milliseconds(200);
 inline constexpr std::size_t kLogsReadAtOnce = 64;
+/// An unread log up to so many bytes is read by the request that asks for it, within a few ms. A
+/// larger one would hold up other clients of the same thread.
+inline constexpr std::uintmax_t kMaxReadWhenAsked = 1u << 20;
+/// Ids of larger logs that were asked for and are read first: as many as clients may ask for in
+/// such a time.
+inline constexpr std::size_t kMaxWantedLogs = 1000;
 }  // namespace limits
 
-/// The meshes that are served at one moment.
-struct Catalogue {
-  /// A file that is not served, and why.
-  struct Refused {
-    std::filesystem::path path;
-    FileIdentity file;
-    Error error;
-  };
-  using Meshes = std::map<std::string, EntryPointer, std::less<>>;
-
-  Meshes meshes;  ///< by id
-  Meshes logs;    ///< by digest, with those that were replaced a short while ago
-  std::vector<Refused> refused;
-  /// Ids of files that nobody has looked into yet, in order; the next rescans do.
-  std::vector<std::string> unread;
-  std::string etag;         ///< changes with the ids and their logs; without quotes
-  std::time_t changed = 0;  ///< seconds since 1970
-};
-using CataloguePointer = std::shared_ptr<const Catalogue>;
-
-/// The result of `rescan`.
+/// The result of a look at the folder.
 struct FolderChange {
   std::vector<EntryPointer> added;  ///< new or replaced
   std::vector<std::string> removed;
-  std::vector<Catalogue::Refused> refused;  ///< newly
+  std::vector<RefusedPointer> refused;  ///< newly
   [[nodiscard]] bool any() const { return !added.empty() || !removed.empty(); }
 };
 
 struct StoreOptions {
   /// Logs held open at a time, but for those that clients are reading: a descriptor each.
   std::size_t maxOpen = descriptorsForLogs();
-  /// After this time a scan of the folder leaves the remaining files to the next scan. It always
+  /// After this time a look at the folder leaves the remaining files to the next one. It always
   /// reads the first limits::kLogsReadAtOnce.
   std::chrono::milliseconds readTime = limits::kFolderReadTime;
+  /// After this time the start leaves the remaining names to readOn().
+  std::chrono::milliseconds nameTime = limits::kFolderNameTime;
+  std::uintmax_t maxReadWhenAsked = limits::kMaxReadWhenAsked;
 
   /// A quarter of what the process may open, and at most limits::kMaxOpenLogs: the rest is for
   /// clients.
@@ -74,26 +63,35 @@ class MeshStore {
   MeshStore& operator=(MeshStore&&) noexcept;
   ~MeshStore();
 
-  /// Checks every `*.qtet` of `folder` (not below it, and no link that leads out of it), as far as
-  /// the time allows. Damaged ones end up in `refused`. Errors: io (the folder cannot be read).
+  /// Learns the names of every `*.qtet` of `folder` (not below it, and no link that leads out of
+  /// it), and checks the files, both as far as the time allows. Damaged ones end up in `refused`.
+  /// Errors: io (the folder cannot be read).
   [[nodiscard]] static Result<MeshStore> open(const std::filesystem::path& folder,
                                               const StoreOptions& options = {});
 
-  /// Looks at the folder again; opens what is new or has changed. A damaged file that took the
-  /// place of a sound one leaves the sound one served, if it is open. `first` is the id that is
-  /// looked at before all others. Errors: io (the folder cannot be read; everything stays as it
-  /// was).
+  /// Learns the names again; opens what is new or has changed, and then what is unread. A damaged
+  /// file that took the place of a sound one leaves the sound one served, if it is open. `first` is
+  /// the id that is looked at before all others. Errors: io (the folder cannot be read; everything
+  /// stays as it was).
   [[nodiscard]] Result<FolderChange> rescan(std::string_view first = "") const;
+  /// Learns further names, if some are unknown, and opens what is unread: one look's work. Does not
+  /// look at the logs that are served. Errors: as those of rescan().
+  [[nodiscard]] Result<FolderChange> readOn() const;
+  /// Waits for `rest`, or until somebody asks for an id that is unread, and then until readOn() has
+  /// something to do. False: `stop` was requested.
+  [[nodiscard]] bool awaitUnread(const std::stop_token& stop,
+                                 std::chrono::steady_clock::duration rest) const;
 
   [[nodiscard]] const std::filesystem::path& folder() const;
   [[nodiscard]] CataloguePointer catalogue() const;
-  /// nullptr when there is none of that name, or it cannot be opened now.
+  /// Reads the log first if it is unread and not too large. nullptr when there is none of that name,
+  /// or it cannot be opened now.
   [[nodiscard]] MeshPointer find(std::string_view id) const;
   /// nullptr when there is none of that digest.
   [[nodiscard]] MeshPointer findLog(std::string_view digest) const;
   /// Whether a mesh that find() or findLog() did not find may be found soon. Either the log is
   /// known but cannot be opened now, or nobody has looked into its file yet. An id that is asked
-  /// for so is among the first that the next rescan looks at.
+  /// for so is among the first that the next look reads.
   [[nodiscard]] bool mayHave(std::string_view id) const;
   [[nodiscard]] bool mayHaveLog(std::string_view digest) const;
 

@@ -12,8 +12,10 @@ using namespace std::chrono_literals;
 /// Logs held open beside those that are being read, a descriptor and a mapping each: as many as are
 /// popular at a time. Opening another takes a millisecond or so.
 inline constexpr std::size_t kMaxOpenLogs = 256;
-/// Between two looks at a folder that is not read to its end.
+/// Between two looks at a folder that is not read to its end, at least: as long as a look takes.
 inline constexpr auto kFolderReadRest = 50ms;
+/// The niceness of the thread that reads such a folder, so that requests go first.
+inline constexpr int kReadingNiceness = 10;
 /// Up to so many logs that arrive together are logged one by one.
 inline constexpr std::size_t kMaxLoggedMeshes = 20;
 /// Meshes of one page of the list: about 1 KB each.

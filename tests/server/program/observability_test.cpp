@@ -117,7 +117,7 @@ TEST(AccessLog, aStreamHasALineAtItsEnd) {
     test::RunningServer server(logged.folder.store(), logged.folder.viewer(),
                                {.accessLog = logged.log->get()});
     test::StreamClient client(server.port());
-    const std::string mesh = logged.folder.store().catalogue()->meshes.begin()->first;
+    const std::string mesh = logged.folder.store().catalogue()->meshes.begin()->get()->id;
     ASSERT_TRUE(client.send(R"({"type":"open","mesh":")" + mesh + R"(","credit":1})"));
     while (const auto message = client.receive(frames == 1 ? test::kQuiet : test::kPatience)) {
       bytes += message->bytes.size();
@@ -296,30 +296,35 @@ TEST(Operators, anAddressOfTheirOwnHasTheirPathsAlone) {
 }
 
 TEST(Operators, aServerThatStillReadsItsFolderSaysSo) {
+  constexpr auto kNoTime = std::chrono::milliseconds::zero();
   const test::ServedFolder viewer;
   test::TempFolder folder;
   const Bytes log = test::makeLog({.chunks = 1, .fields = {}});
-  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + 1; ++i)
-    folder.write(std::to_string(1000 + i) + ".qtet", log);
-  const auto store =
-      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
+  for (std::size_t i = 0; i < 300; ++i) folder.write(std::to_string(1000 + i) + ".qtet", log);
+  folder.write("large.qtet", test::makeLog({.chunks = 20}));
+  const auto store = MeshStore::open(
+      folder.path(), {.readTime = kNoTime, .nameTime = kNoTime, .maxReadWhenAsked = log.size()});
   ASSERT_TRUE(store);
   test::RunningServer server(*store, viewer.viewer()),
       early(*store, viewer.viewer(), {.readyEarly = true});
   test::RawClient client(server.port());
-  EXPECT_EQ(client.get("/readyz").status, 503u);
+  EXPECT_EQ(client.get("/readyz").status, 503u) << "names are missing";
   EXPECT_EQ(test::RawClient(early.port()).get("/readyz").status, 200u);
   EXPECT_EQ(client.get("/livez").status, 200u);
+  EXPECT_EQ(client.get("/v1/meshes/1299").status, 200u);
+  while (!store->catalogue()->named) ASSERT_TRUE(store->readOn());
+  ASSERT_FALSE(store->catalogue()->complete());
+  EXPECT_EQ(client.get("/readyz").status, 200u) << "names are known";
   const auto partial = client.get("/v1/meshes?limit=1");
   EXPECT_NE(partial.body.find(R"("complete":false)"), std::string::npos) << partial.body;
-  EXPECT_EQ(client.get("/v1/meshes/1064").status, 503u);
+  EXPECT_EQ(client.get("/v1/meshes/1298").status, 200u);
+  EXPECT_EQ(client.get("/v1/meshes/large").status, 503u) << "nobody waits for a large one";
   EXPECT_EQ(client.get("/v1/meshes/nothing").status, 404u);
-  ASSERT_TRUE(store->rescan());
-  EXPECT_EQ(client.get("/readyz").status, 200u);
+  while (!store->catalogue()->complete()) ASSERT_TRUE(store->readOn());
   const auto whole = client.get("/v1/meshes?limit=1");
   EXPECT_FALSE(Json::parse(whole.body).contains("complete")) << whole.body;
   EXPECT_NE(whole.header("etag"), partial.header("etag"));
-  EXPECT_EQ(client.get("/v1/meshes/1064").status, 200u);
+  EXPECT_EQ(client.get("/v1/meshes/large").status, 200u);
 }
 
 TEST(Operators, aServerThatDrainsServesOnAndIsNotReady) {

@@ -24,7 +24,7 @@ TEST_F(SampleServer, everyLevelIsServedAsEveryKindOfFile) {
   ASSERT_TRUE(store_) << store_.error().message;
   const CataloguePointer catalogue = store_->catalogue();
   ASSERT_EQ(catalogue->meshes.size(), 1u);
-  const MeshPointer sample = catalogue->meshes.begin()->second->open();
+  const MeshPointer sample = catalogue->meshes.begin()->get()->open();
   const ServedMesh& mesh = *sample;
   test::RunningServer server(*store_, viewer_);
   test::RawClient client(server.port());

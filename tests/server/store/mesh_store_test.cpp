@@ -24,7 +24,7 @@ TEST(MeshStore, servesTheSoundLogsInTheOrderOfTheirNames) {
   const auto store = MeshStore::open(folder.path());
   ASSERT_TRUE(store);
   ASSERT_EQ(store->catalogue()->meshes.size(), 2u);
-  EXPECT_EQ(store->catalogue()->meshes.begin()->first, "a");
+  EXPECT_EQ(store->catalogue()->meshes.begin()->get()->id, "a");
   EXPECT_TRUE(store->catalogue()->refused.empty());
   EXPECT_NE(store->find("b"), nullptr);
   EXPECT_EQ(store->find("c"), nullptr);
@@ -40,7 +40,7 @@ ErrorCode refusalOfDamaged(const Bytes& bytes) {
   const CataloguePointer catalogue = store->catalogue();
   EXPECT_EQ(catalogue->meshes.size(), 1u) << "the sound one is served all the same";
   EXPECT_EQ(catalogue->refused.size(), 1u);
-  return catalogue->refused.empty() ? ErrorCode::kIo : catalogue->refused[0].error.code;
+  return catalogue->refused.empty() ? ErrorCode::kIo : (*catalogue->refused.begin())->error.code;
 }
 
 TEST(MeshStore, aDamagedLogIsRefusedWithItsReason) {
@@ -99,7 +99,7 @@ TEST(MeshStore, newReplacedAndRemovedLogsAreNoticed) {
   const auto store = MeshStore::open(folder.path());
   ASSERT_TRUE(store);
   const MeshPointer old = store->find("a");
-  const std::string tag = store->catalogue()->etag;
+  const std::string tag = store->catalogue()->etag();
   EXPECT_FALSE(store->rescan()->any());
   EXPECT_EQ(store->find("a"), old) << "what has not changed is not opened again";
 
@@ -114,7 +114,7 @@ TEST(MeshStore, newReplacedAndRemovedLogsAreNoticed) {
   EXPECT_NE(store->find("a")->log.digest(), old->log.digest());
   EXPECT_EQ(store->findLog(old->log.digest()), old) << "who reads it piece by piece may finish";
   EXPECT_EQ(store->find("b"), nullptr);
-  EXPECT_NE(store->catalogue()->etag, tag);
+  EXPECT_NE(store->catalogue()->etag(), tag);
   EXPECT_TRUE(old->log.verifyChecksums()) << "the old file's mapping is untouched";
 }
 
@@ -163,43 +163,131 @@ TEST(MeshStore, moreLogsThanMayBeOpenAreServedAllTheSame) {
   EXPECT_EQ(store->find("7"), kept) << "not opened twice";
 }
 
-TEST(MeshStore, whatThereWasNoTimeForIsReadByTheNextLooks) {
-  constexpr std::size_t kMore = 5;
-  test::TempFolder folder;
-  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + kMore; ++i)
-    folder.write(std::to_string(1000 + i) + ".qtet",
-                 test::makeLog({.chunks = 1, .fields = {}, .seed = static_cast<std::uint32_t>(i)}));
-  const auto store =
-      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
-  ASSERT_TRUE(store);
-  EXPECT_EQ(store->catalogue()->meshes.size(), limits::kLogsReadAtOnce);
-  EXPECT_EQ(store->catalogue()->unread,
-            (std::vector<std::string>{"1064", "1065", "1066", "1067", "1068"}));
-  EXPECT_FALSE(store->mayHave("nothing")) << "no file has that name";
-  EXPECT_EQ(store->find("1066"), nullptr);
-  EXPECT_TRUE(store->mayHave("1066"));
-  EXPECT_EQ(store->rescan("1068")->added.size(), kMore);
-  EXPECT_TRUE(store->catalogue()->unread.empty());
-  EXPECT_NE(store->find("1066"), nullptr);
-  EXPECT_FALSE(store->mayHave("nothing"));
+constexpr auto kNoTime = std::chrono::milliseconds::zero();
+
+std::vector<std::string> unreadOf(const MeshStore& store) {
+  const CataloguePointer now = store.catalogue();
+  return {now->unread.begin(), now->unread.end()};
 }
 
-TEST(MeshStore, aNameThatIsAskedForIsReadFirst) {
-  constexpr std::size_t kMore = limits::kLogsReadAtOnce + 5;  // two more looks
+/// Logs 1000, 1001, ...: `more` than one look reads.
+void fillWithMore(test::TempFolder& out, std::size_t more) {
+  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + more; ++i)
+    out.write(std::to_string(1000 + i) + ".qtet",
+              test::makeLog({.chunks = 1, .fields = {}, .seed = static_cast<std::uint32_t>(i)}));
+}
+
+TEST(MeshStore, whatThereWasNoTimeForIsReadByTheNextLooks) {
   test::TempFolder folder;
-  const Bytes log = test::makeLog({.chunks = 1, .fields = {}});
-  for (std::size_t i = 0; i < limits::kLogsReadAtOnce + kMore; ++i)
-    folder.write(std::to_string(1000 + i) + ".qtet", log);
-  const auto store =
-      MeshStore::open(folder.path(), {.readTime = std::chrono::milliseconds::zero()});
+  fillWithMore(folder, 5);
+  const auto store = MeshStore::open(folder.path(), {.readTime = kNoTime});
   ASSERT_TRUE(store);
-  ASSERT_EQ(store->catalogue()->unread.size(), kMore);
-  const std::string last = std::to_string(1000 + limits::kLogsReadAtOnce + kMore - 1);
-  EXPECT_TRUE(store->mayHave(last));
-  ASSERT_TRUE(store->rescan());
-  EXPECT_EQ(store->catalogue()->unread.size(), 5u);
-  EXPECT_NE(store->find(last), nullptr);
-  EXPECT_EQ(store->find(std::to_string(1000 + limits::kLogsReadAtOnce + kMore - 2)), nullptr);
+  EXPECT_TRUE(store->catalogue()->named);
+  EXPECT_EQ(store->catalogue()->meshes.size(), limits::kLogsReadAtOnce);
+  EXPECT_EQ(unreadOf(*store), (std::vector<std::string>{"1064", "1065", "1066", "1067", "1068"}));
+  EXPECT_EQ(store->readOn()->added.size(), 1u);
+  EXPECT_EQ(unreadOf(*store), (std::vector<std::string>{"1065", "1066", "1067", "1068"}));
+  EXPECT_EQ(store->rescan("1068")->added.size(), 1u);
+  EXPECT_EQ(unreadOf(*store), (std::vector<std::string>{"1065", "1066", "1067"}));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(store->readOn());
+  EXPECT_TRUE(store->catalogue()->complete());
+  EXPECT_EQ(store->catalogue()->meshes.size(), limits::kLogsReadAtOnce + 5);
+}
+
+TEST(MeshStore, aNameThatIsAskedForIsReadByWhoAsks) {
+  test::TempFolder folder;
+  fillWithMore(folder, 5);
+  const auto store = MeshStore::open(folder.path(), {.readTime = kNoTime});
+  ASSERT_TRUE(store);
+  const std::string tag = store->catalogue()->etag();
+  const MeshPointer mesh = store->find("1067");
+  ASSERT_TRUE(mesh);
+  EXPECT_EQ(store->find("1067"), mesh);
+  EXPECT_EQ(store->findLog(mesh->log.digest()), mesh);
+  EXPECT_NE(store->catalogue()->etag(), tag);
+  EXPECT_EQ(unreadOf(*store), (std::vector<std::string>{"1064", "1065", "1066", "1068"}));
+  EXPECT_EQ(store->find("nothing"), nullptr);
+  EXPECT_FALSE(store->mayHave("nothing")) << "no file has that name";
+  const auto change = store->readOn();
+  ASSERT_TRUE(change);
+  EXPECT_EQ(change->added.size(), 2u) << "what was asked for is reported as well";
+}
+
+TEST(MeshStore, aDamagedLogThatIsAskedForIsNotToBeHad) {
+  test::TempFolder folder;
+  fillWithMore(folder, 3);
+  folder.write("1065.qtet", "nonsense");
+  folder.write("1066.qtet", "nonsense");
+  const auto store = MeshStore::open(folder.path(), {.readTime = kNoTime});
+  ASSERT_TRUE(store);
+  std::filesystem::remove(folder.path() / "1066.qtet");
+  for (const char* id : {"1065", "1066"}) {
+    EXPECT_TRUE(store->mayHave(id)) << id;
+    EXPECT_EQ(store->find(id), nullptr) << id;
+    EXPECT_FALSE(store->mayHave(id)) << id;
+  }
+  EXPECT_EQ(store->catalogue()->refused.size(), 1u);
+}
+
+TEST(MeshStore, aLargeLogThatIsAskedForIsReadFirst) {
+  test::TempFolder folder;
+  fillWithMore(folder, 5);
+  const auto store = MeshStore::open(folder.path(), {.readTime = kNoTime, .maxReadWhenAsked = 10});
+  ASSERT_TRUE(store);
+  EXPECT_EQ(store->find("1067"), nullptr);
+  EXPECT_TRUE(store->mayHave("1067"));
+  EXPECT_TRUE(store->awaitUnread({}, std::chrono::hours(1))) << "at once";
+  ASSERT_TRUE(store->readOn());
+  EXPECT_NE(store->find("1067"), nullptr);
+  EXPECT_EQ(store->find("1064"), nullptr);
+}
+
+TEST(MeshStore, aStopEndsTheWaitForWork) {
+  std::stop_source stop;
+  stop.request_stop();
+  for (const std::size_t unread : {0, 5}) {
+    test::TempFolder folder;
+    fillWithMore(folder, unread);
+    const auto store = MeshStore::open(folder.path(), {.readTime = kNoTime});
+    ASSERT_TRUE(store);
+    ASSERT_EQ(store->catalogue()->unread.size(), unread);
+    EXPECT_FALSE(store->awaitUnread(stop.get_token(), std::chrono::hours(1)));
+  }
+}
+
+TEST(MeshStore, namesThatAreNotKnownYetAreServedAllTheSame) {
+  const std::size_t files = 600;  // names are read by 256
+  test::TempFolder folder, elsewhere;
+  const Bytes log = test::makeLog({.chunks = 1, .fields = {}});
+  for (std::size_t i = 0; i < files; ++i) folder.write(std::to_string(1000 + i) + ".qtet", log);
+  elsewhere.write("a.qtet", log);
+  std::filesystem::create_symlink(elsewhere.path() / "a.qtet", folder.path() / "a.qtet");
+  const auto store = MeshStore::open(folder.path(), {.readTime = kNoTime, .nameTime = kNoTime});
+  ASSERT_TRUE(store);
+  EXPECT_FALSE(store->catalogue()->named);
+  EXPECT_FALSE(store->catalogue()->complete());
+  EXPECT_TRUE(store->catalogue()->meshes.empty());
+  EXPECT_TRUE(store->mayHave("1599"));
+  EXPECT_NE(store->find("1599"), nullptr);
+  for (const char* id : {"a", "nothing", "../a", ""}) {
+    EXPECT_EQ(store->find(id), nullptr) << id;
+    EXPECT_FALSE(store->mayHave(id)) << id;
+  }
+  for (int looks = 0; looks < 5 && !store->catalogue()->named; ++looks)
+    ASSERT_TRUE(store->readOn());
+  EXPECT_TRUE(store->catalogue()->named);
+  EXPECT_EQ(store->catalogue()->meshes.size() + store->catalogue()->unread.size(), files);
+  EXPECT_EQ(store->catalogue()->meshes.size(), limits::kLogsReadAtOnce + 1);
+}
+
+TEST(MeshStore, unreadLogsThatGoAreForgotten) {
+  test::TempFolder folder;
+  fillWithMore(folder, 3);
+  const auto store = MeshStore::open(folder.path(), {.readTime = kNoTime});
+  ASSERT_TRUE(store);
+  std::filesystem::remove(folder.path() / "1065.qtet");
+  ASSERT_TRUE(store->rescan("1064"));
+  EXPECT_EQ(unreadOf(*store), std::vector<std::string>{"1066"});
 }
 
 TEST(MeshStore, aLogThatWasChangedSinceItWasCheckedIsNotServedUnderItsDigest) {
