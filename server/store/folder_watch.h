@@ -7,12 +7,17 @@
 #include <memory>
 #include <thread>
 
+#include "proto/bytes.h"
 #include "proto/error.h"
 
 namespace qtet {
 
-/// Runs `changed` on a thread of its own, limits::kFolderRest after something in the folder has
-/// changed. Runs it every limits::kFolderInterval in any case, since network folders report no
+/// Whether one of the kernel's inotify events is of a log's name, of the folder itself, or of lost
+/// events. Other events are those of parts of uploads, and of the nameless copies that logs are
+/// served from. A large folder must not be read again for each of them.
+[[nodiscard]] bool tellOfLogs(ByteView events);
+
+/// Runs `changed` on a thread of its own, limits::kFolderRest after a log in the folder has changed. Runs it every limits::kFolderInterval in any case, since network folders report no
 /// changes. Ends with the object, after a running call.
 class FolderWatch {
  public:

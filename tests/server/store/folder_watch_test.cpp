@@ -1,10 +1,15 @@
 #include "server/store/folder_watch.h"
 
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <cstring>
+#include <iterator>
 #include <mutex>
+#include <string_view>
 
 #include "server/store/mesh_store.h"
 #include "tests/server/program/loopback.h"
@@ -14,6 +19,32 @@ namespace qtet {
 namespace {
 
 using test::eventually;
+
+/// An event as the kernel writes it: its name ends with zeros.
+Bytes eventOf(std::string_view name) {
+  inotify_event event{};
+  event.mask = IN_CLOSE_WRITE;
+  event.len = name.empty() ? 0 : static_cast<std::uint32_t>((name.size() / 16 + 1) * 16);
+  Bytes out(sizeof(event) + event.len);
+  std::memcpy(out.data(), &event, sizeof(event));
+  std::ranges::copy(name, out.begin() + sizeof(event));
+  return out;
+}
+
+TEST(FolderWatch, onlyEventsOfLogsCount) {
+  Bytes others;
+  for (const char* name : {"#10977484", ".upload-a.qtet", "notes.txt", "a.qtet.tmp"}) {
+    EXPECT_FALSE(tellOfLogs(eventOf(name))) << name;
+    std::ranges::copy(eventOf(name), std::back_inserter(others));
+  }
+  EXPECT_FALSE(tellOfLogs(others));
+  EXPECT_FALSE(tellOfLogs({}));
+  for (const char* name : {"a.qtet", "a name of sixteen or more.qtet", ""}) {
+    Bytes events = others;
+    std::ranges::copy(eventOf(name), std::back_inserter(events));
+    EXPECT_TRUE(tellOfLogs(events)) << name;
+  }
+}
 
 TEST(FolderWatch, newReplacedAndRemovedLogsAppearWithoutARestart) {
   test::TempFolder folder;
@@ -51,14 +82,17 @@ TEST(FolderWatch, newReplacedAndRemovedLogsAppearWithoutARestart) {
 }
 
 TEST(FolderWatch, aFolderThatNeverRestsIsReadAllTheSame) {
-  test::TempFolder folder;
-  std::atomic<bool> read = false;
-  const auto watch = FolderWatch::start(folder.path(), [&] { read = true; });
-  ASSERT_TRUE(watch);
-  EXPECT_TRUE(eventually([&] {
-    folder.write("busy", std::string_view("again"));
-    return read.load();
-  }));
+  for (const char* busy : {"busy.qtet", "busy"}) {
+    test::TempFolder folder;
+    std::atomic<bool> read = false;
+    const auto watch = FolderWatch::start(folder.path(), [&] { read = true; });
+    ASSERT_TRUE(watch);
+    folder.write("a.qtet", std::string_view("once"));
+    EXPECT_TRUE(eventually([&] {
+      folder.write(busy, std::string_view("again"));
+      return read.load();
+    })) << busy;
+  }
 }
 
 TEST(FolderWatch, aFolderThatIsNotThereIsAnError) {
