@@ -32,7 +32,7 @@ Manifest sample(bool withErrors = true) {
     const double e = roundedUp(0.02 * std::pow(0.9, l)), half = roundedUp(e / 2);
     if (withErrors)
       m.levels.back().error =
-          LevelError{{half, e}, {0, 1e-12}, 0.9 - l * 1e-6, 0.5, {{half, 0.676}, {3e-7, 2.5}}};
+          LevelError{{half, e}, {0, 1e-12}, (900'000 - l) / 1e6, 0.5, {{half, 0.676}, {3e-7, 2.5}}};
   }
   return m;
 }
