@@ -217,11 +217,7 @@ FolderChange MeshStore::State::read(Comparison difference, bool named, std::stri
   std::vector<std::string>& toRead = difference.toRead;
   const Ids urgent = takeWanted(first);
   const auto isUrgent = [&](const std::string& id) { return urgent.contains(id); };
-<<<<<<< HEAD
-  if (!urgent.empty()) std::ranges::stable_partition(toRead, isUrgent);
-=======
   if (!urgent.empty()) std::ranges::sort(std::ranges::partition(toRead, isUrgent));
->>>>>>> server-35b
   for (const std::string& id : urgent)
     if (isUnread(*before, id)) mayRead(1) ? found.push_back(look(id)) : want(id);
   auto next = toRead.begin();
