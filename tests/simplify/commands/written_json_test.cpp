@@ -54,11 +54,11 @@ TEST_F(WrittenJson, extractTellsTheLevelAndItsErrors) {
 }
 
 TEST_F(WrittenJson, onlyFieldsThatTheFileHoldsAreNamed) {
-  const Json errors = run("info box.qtet --json").json()["levels"][3]["error"]["fields"];
-  const Json chosen = run("extract box.qtet --level 3 --fields Part -o a.vtu --json").json();
+  const Json errors = run("info box.qtet --json").json()["levels"][0]["error"]["fields"];
+  const Json chosen = run("extract box.qtet --level 0 --fields Part -o a.vtu --json").json();
   EXPECT_THAT(namesOf(chosen["fields"]), ElementsAre("Part"));
   EXPECT_EQ(chosen["error"]["fields"], Json::array({errors[1]}));
-  const Json surface = run("extract box.qtet --level 3 -o a.ply --json").json();
+  const Json surface = run("extract box.qtet --level 0 -o a.ply --json").json();
   EXPECT_THAT(namesOf(surface["fields"]), ElementsAre("Scalar"));
   EXPECT_EQ(surface["error"]["fields"], Json::array({errors[0]}));
   EXPECT_TRUE(run("convert box.vtu -o a.stl --json").json()["fields"].empty());
