@@ -146,8 +146,7 @@ export function readManifest(
     throw damaged('has flags that its version does not know');
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
-  const columns =
-    errors === 'none' ? kCountColumns : firstPairOf(errors) + 2 * (2 + fields.length);
+  const columns = errors === 'none' ? kCountColumns : firstPairOf(errors) + 2 * (2 + fields.length);
   const levels = levelsOf(levelColumns(reader.rest(), errors, columns), columns, errors);
   return {source, lattice, ...(focus && {focus}), ...(opening && {opening}), fields, levels};
 }
