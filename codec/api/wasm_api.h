@@ -22,7 +22,8 @@ const char* qtet_error();
 std::uint32_t qtet_chunk_count();
 std::uint32_t qtet_level_count();
 /// Decodes the end of the manifest, the figures of all levels (codec/coding/level_columns.h);
-/// `errors` is a KnownErrors, 0 to 2. qtet_level_numbers() then gives them until the next such call.
+/// `errors` is a KnownErrors, 0 to 2. qtet_level_numbers() then gives them until the next such
+/// call.
 int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors);
 const std::uint32_t* qtet_level_numbers();
 /// File offset (a double: exact up to 2^53), size and tuples of a block; part 0 structure, 1

@@ -1,5 +1,5 @@
-// The figures of all levels as columns of integers, range-coded (MANIFEST.md, "Level columns"). Part
-// of the decoder: the browser reads them by it too.
+// The figures of all levels as columns of integers, range-coded (MANIFEST.md, "Level columns").
+// Part of the decoder: the browser reads them by it too.
 #pragma once
 
 #include <cstdint>

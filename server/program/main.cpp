@@ -87,8 +87,8 @@ void lookAgain(const MeshStore& store) {
   logChange(*change);
 }
 
-/// Reads what the start and the watch have left unread, beside the serving: at most half of the time
-/// and after the threads that serve.
+/// Reads what the start and the watch have left unread, beside the serving: at most half of the
+/// time and after the threads that serve.
 std::jthread readOn(const MeshStore& store) {
   return std::jthread([&store](const std::stop_token& stop) {
     (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), limits::kReadingNiceness);

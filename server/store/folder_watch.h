@@ -17,7 +17,8 @@ namespace qtet {
 /// served from. A large folder must not be read again for each of them.
 [[nodiscard]] bool tellOfLogs(ByteView events);
 
-/// Runs `changed` on a thread of its own, limits::kFolderRest after a log in the folder has changed. Runs it every limits::kFolderInterval in any case, since network folders report no
+/// Runs `changed` on a thread of its own, limits::kFolderRest after a log in the folder has
+/// changed. Runs it every limits::kFolderInterval in any case, since network folders report no
 /// changes. Ends with the object, after a running call.
 class FolderWatch {
  public:

@@ -26,8 +26,8 @@ struct Found {
   Result<EntryPointer> mesh = nullptr;
 };
 
-/// Whether the old log may stay under its name: its own file is untouched (renamed over, not written
-/// into) and still open.
+/// Whether the old log may stay under its name: its own file is untouched (renamed over, not
+/// written into) and still open.
 bool staysSound(const MeshEntry& old, const FileIdentity& file) {
   return old.file.inode != file.inode && old.pin();
 }

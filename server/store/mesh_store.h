@@ -84,8 +84,8 @@ class MeshStore {
 
   [[nodiscard]] const std::filesystem::path& folder() const;
   [[nodiscard]] CataloguePointer catalogue() const;
-  /// Reads the log first if it is unread and not too large. nullptr when there is none of that name,
-  /// or it cannot be opened now.
+  /// Reads the log first if it is unread and not too large. nullptr when there is none of that
+  /// name, or it cannot be opened now.
   [[nodiscard]] MeshPointer find(std::string_view id) const;
   /// nullptr when there is none of that digest.
   [[nodiscard]] MeshPointer findLog(std::string_view digest) const;

@@ -21,7 +21,8 @@ class SortedBlocks {
 
  public:
   using Key = std::invoke_result_t<KeyOf, const Value&>;
-  /// Values of a block: a copy of a million takes some thousand pointers, and a change a microsecond.
+  /// Values of a block: a copy of a million takes some thousand pointers, and a change a
+  /// microsecond.
   static constexpr std::size_t kMaxBlock = 256;
 
   class Iterator {

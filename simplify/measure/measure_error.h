@@ -72,11 +72,11 @@ struct MeasureOptions {
 /// The errors, coarse-first; the first and the last level have one. The last one (the original
 /// itself) has all zero, or the error of rounding alone. Figures are those that a log can state
 /// (errors rounded up to three significant digits, volumes to 10^-6) and depend on the history and
-/// the options only. With bounds or a rule, `history` forgets the coarse levels behind the last one,
-/// counted from the finest, that keeps them. Level 0 is then the coarsest measured one such that it
-/// and all finer measured ones keep them. Errors: not-found (a bound names no field of the history),
-/// cancelled (the history is unspecified then).
-/// REQUIRES: as HistoryLevels; it stands at level 0 before and after.
+/// the options only. With bounds or a rule, `history` forgets the coarse levels behind the last
+/// one, counted from the finest, that keeps them. Level 0 is then the coarsest measured one such
+/// that it and all finer measured ones keep them. Errors: not-found (a bound names no field of the
+/// history), cancelled (the history is unspecified then). REQUIRES: as HistoryLevels; it stands at
+/// level 0 before and after.
 [[nodiscard]] Result<LevelErrors> measureLevels(FusionHistory& history,
                                                 const MeasureOptions& options);
 
