@@ -233,9 +233,12 @@ std::optional<LevelError> readError(LevelReader& reader, std::size_t fields, Kno
     out.volumeLost = reader.volume();
     out.volumeGained = reader.volume();
   } else {  // what is left of both after they have cancelled each other out
-    const double kept = reader.volume();
-    out.volumeLost = std::max(0.0, 1 - kept);
-    out.volumeGained = std::max(0.0, kept - 1);
+    const std::uint32_t kept = reader.next();
+    const auto share = [](std::uint32_t more, std::uint32_t less) {
+      return more > less ? (more - less) / static_cast<double>(kVolumeFigure) : 0;
+    };
+    out.volumeLost = share(kVolumeFigure, kept);
+    out.volumeGained = share(kept, kVolumeFigure);
   }
   for (OneSidedDistance* side : {&out.toLevel, &out.toOriginal})
     side->mean = reader.error(), side->max = reader.error();

@@ -80,6 +80,7 @@ Built build(const SyntheticLog& options) {
   Built out;
   out.index.positionBits = 16;
   out.index.manifest = manifestBlock(manifest).value();
+  out.index.manifestMinor = minorOf(manifest);
   for (const ManifestField& field : manifest.fields)
     out.index.fields.push_back({field.components, Association::kPoint});
   if (options.bands > 0) out.index.layout = Layout::kRegions;
