@@ -9,10 +9,6 @@
 namespace qtet {
 namespace {
 
-/// Fitting takes as long as searches in boxes that are too large once one triangle in so many has
-/// grown (measured).
-constexpr std::size_t kGrownPerFit = 1;
-
 /// The fused vertex before it has a number: no boundary triangle has the ghost as a corner.
 constexpr VertexId kFused = kGhost;
 
@@ -56,11 +52,8 @@ void LiveBoundary::beginLevel() {
   const auto live = static_cast<std::size_t>(std::ranges::count(live_, 1));
   if (live > 0 && live <= tree_.builtOver() / 2)
     tree_ = treeOfLive();
-  else if (grown_ * kGrownPerFit < live)
-    return;
   else
     tree_.refit(live_);
-  grown_ = 0;
 }
 
 void LiveBoundary::place(CellId ghost, std::size_t corner, VertexId vertex,
@@ -149,7 +142,6 @@ void LiveBoundary::decideOn(const Proposal& proposal, VertexId fused) {
       if (isPrey(proposal.prey, vertices_[numberOf(c)][i]))
         place(c, i, fused, proposal.where.point);
     tree_.grow(numberOf(c));
-    ++grown_;
   }
 }
 

@@ -19,8 +19,7 @@ class LiveBoundary {
   LiveBoundary(const LiveBoundary&) = delete;
   LiveBoundary& operator=(const LiveBoundary&) = delete;
 
-  /// Fits the boxes again once they have grown for many triangles. Makes a new tree where half of
-  /// the triangles are gone.
+  /// Fits the boxes again. Where half of the tree's triangles are gone, makes a new tree.
   void beginLevel();
   /// Whether, with the proposal's prey at its point, a new triangle of the boundary would meet
   /// another one. Also true where a part of the boundary would end inside the solid. Never false
@@ -47,7 +46,6 @@ class LiveBoundary {
   std::vector<std::array<VertexId, 3>> vertices_;
   std::vector<std::uint8_t> live_;
   TriangleTree tree_;
-  std::size_t grown_ = 0;  // times that boxes have grown since they were fitted
   // new_: the boundary triangles of the proposal in hand with the prey at its point. left_: the
   // triangles of the prey as it is which that point is outside of.
   std::vector<PlacedTriangle> new_, left_;
