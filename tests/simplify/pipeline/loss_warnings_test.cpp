@@ -84,7 +84,7 @@ std::string after(const std::string& words, const std::string& text) {
                            text.find(' ', at + words.size()) - at - words.size());
 }
 
-/// The number of cells that a warning tells to give takes it away, and fewer do not.
+/// The number of cells that a warning tells to give takes it away, and half of it does not.
 void expectItsAdviceToHelp(const TetMesh& mesh, PipelineOptions options) {
   const std::vector<std::string> warnings = warningsOf(mesh, options);
   ASSERT_EQ(warnings.size(), 1u);
@@ -92,7 +92,7 @@ void expectItsAdviceToHelp(const TetMesh& mesh, PipelineOptions options) {
   options.fusion.targetRatio.reset();
   options.fusion.baseCells = cells;
   EXPECT_EQ(warningsOf(mesh, options), std::vector<std::string>{});
-  options.fusion.baseCells = cells * 4 / 5;
+  options.fusion.baseCells = cells / 2;
   EXPECT_EQ(warningsOf(mesh, options).size(), 1u) << "fewer cells would do";
 }
 
