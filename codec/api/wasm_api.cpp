@@ -82,6 +82,8 @@ std::uint32_t qtet_level_count() {
 
 int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors) {
   if (!refiner) return noLog();
+  if (errors > static_cast<std::uint32_t>(qtet::KnownErrors::kSome))
+    return report({ErrorCode::kBadValue, std::to_string(errors) + " is no kind of known errors"});
   const auto fields = static_cast<std::uint32_t>(refiner->index().fields.size());
   auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), fields,
                                           static_cast<qtet::KnownErrors>(errors));

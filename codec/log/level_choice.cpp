@@ -1,6 +1,7 @@
 #include "codec/log/level_choice.h"
 
 #include <cassert>
+
 #include "codec/log/log_levels.h"
 #include "proto/level_error.h"
 #include "proto/manifest.h"

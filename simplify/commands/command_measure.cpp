@@ -31,11 +31,12 @@ std::pair<std::string, double> parseNamedError(const std::string& option, const 
 
 void addMeasureOptions(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
-  options.add_options()("measure", po::value<std::string>()->default_value("levels"),
-                        "the known errors in the log's manifest: none, levels (about a dozen of "
-                        "them; a quarter of the time of simplifying, on parts of many faces as "
-                        "much), or all (every level, by 200,000 samples of the volume and of each "
-                        "boundary)")(
+  options.add_options()(
+      "measure", po::value<std::string>()->default_value("levels"),
+      "the known errors in the log's manifest: none, levels (about a dozen of "
+      "them; a quarter to two thirds of the time of simplifying, on parts of "
+      "many faces as much), or all (every level, by 200,000 samples of the volume and "
+      "of each boundary)")(
       "base-error", po::value<double>(),
       "the base mesh is the coarsest level whose boundary is within this fraction of the diagonal "
       "and whose volume is within twice this fraction; 0.01 without, and 30,000 tetrahedra or 64 "

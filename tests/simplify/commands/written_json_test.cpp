@@ -3,6 +3,7 @@
 #include "simplify/commands/command_line.h"
 
 #include <gmock/gmock.h>
+
 #include <algorithm>
 
 #include "simplify/read/read_mesh.h"
