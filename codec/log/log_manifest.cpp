@@ -102,11 +102,13 @@ constexpr unsigned kAllErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4,
 constexpr unsigned kKnownFlags = 2 * kSomeErrorsFollow - 1;
 constexpr std::uint8_t kNoCut = 3;
 
+unsigned flagsOf(const Manifest& manifest) {
+  return (manifest.levels.front().error ? kSomeErrorsFollow : 0) |
+         (manifest.focus ? kFocusFollows : 0) | (manifest.opening ? kOpeningFollows : 0);
+}
+
 void writeFirstView(ByteWriter& w, const Manifest& manifest) {
-  const bool hasErrors = manifest.levels.front().error.has_value();
-  w.write(static_cast<std::uint8_t>((hasErrors ? kSomeErrorsFollow : 0) |
-                                    (manifest.focus ? kFocusFollows : 0) |
-                                    (manifest.opening ? kOpeningFollows : 0)));
+  w.write(static_cast<std::uint8_t>(flagsOf(manifest)));
   if (manifest.focus)
     for (const std::uint16_t end : *manifest.focus) w.write(end);
   if (!manifest.opening) return;
@@ -280,10 +282,7 @@ Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
 
 }  // namespace
 
-std::uint16_t minorOf(const Manifest& manifest) {
-  if (manifest.levels.front().error) return LogIndex::kMinorOfSomeErrors;
-  return manifest.focus || manifest.opening ? LogIndex::kMinorOfFirstView : 0;
-}
+std::uint16_t minorOf(const Manifest& manifest) { return minorOfFlags(flagsOf(manifest)); }
 
 Result<Bytes> manifestBlock(const Manifest& manifest) {
   if (Status s = checkErrors(manifest); !s) return std::unexpected(s.error());
