@@ -41,7 +41,7 @@ TEST_F(WrittenJson, extractTellsTheLevelAndItsErrors) {
   const auto measured = std::find_if(levels.begin() + 1, levels.end(),
                                      [](const Json& one) { return one.contains("error"); });
   ASSERT_NE(measured, levels.end());
-  const Json level = *measured;
+  const Json& level = *measured;
   const Ran ran =
       run("extract box.qtet --level " + level["level"].dump() + " -o level.vtu --json --quiet");
   ASSERT_EQ(ran.code, 0) << ran.err;
