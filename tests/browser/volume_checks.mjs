@@ -154,6 +154,12 @@ async function editsTheTransferFunction({server, browser}) {
   const surface = await viewer.screenshot('volume-off');
   await page.getByRole('switch', {name: 'Volume'}).check();
   await viewer.restVolume();
+  for (const name of ['Cell edges', 'Surface']) {
+    const control = page.getByRole('switch', {name, exact: true});
+    assert.ok(await control.isDisabled(), `${name} does nothing but is enabled`);
+    assert.match(await control.getAttribute('title'), /^The volume takes the place/);
+  }
+  assert.ok(await page.getByRole('slider', {name: 'Opacity', exact: true}).isDisabled());
   const first = await viewer.screenshot('volume');
   assert.ok(
     differingShare(surface, first) > 0.02 && coloredShare(first) > 0.015,
@@ -173,19 +179,25 @@ async function editsTheTransferFunction({server, browser}) {
   }
   assert.deepEqual(first.at(860, 650), ground);
   await page.getByRole('button', {name: 'Denser'}).click();
+  const opacities = async () =>
+    (await page.evaluate(() => window.qtetViewer.getAttribute('volume'))).split(',').map(Number);
+  const denser = await opacities();
   await page.getByRole('slider', {name: 'Opacity at 13 % of the range'}).focus();
-  for (let i = 0; i < 20; ++i) await page.keyboard.press('ArrowUp');
+  for (let i = 0; i < 20; ++i) await page.keyboard.press('ArrowDown');
   await viewer.restVolume();
   assert.ok(
     differingShare(first, await viewer.screenshot('volume-denser')) > 0.02,
     'the sliders change nothing',
   );
-  assert.match(new URL(page.url()).searchParams.get('volume'), /^0\.0\d*,0\.2\d*,/);
+  const edited = await opacities();
+  assert.ok(Math.abs(edited[1] - (denser[1] - 0.2)) < 0.006, `${denser} became ${edited}`);
+  assert.equal(edited[0], denser[0]);
   await page.locator('qtet-viewer .scene').focus();
   for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowLeft');
   await viewer.restVolume();
   await viewer.screenshot('volume-turned');
   await page.getByRole('switch', {name: 'Volume'}).uncheck();
+  assert.ok(await page.getByRole('switch', {name: 'Surface', exact: true}).isEnabled());
   await viewer.settle();
   const phone = await browser.open(
     `${server.url}?mesh=fin&quality=cells:20000&volume=0,0.2,0.6`,
@@ -199,6 +211,51 @@ async function editsTheTransferFunction({server, browser}) {
   await phone.settle();
   await phone.screenshot('volume-phone');
   assert.deepEqual([...viewer.problems, ...phone.problems], []);
+}
+
+/** The luminance of sRGB, of 255. */
+const luminance = ([red, green, blue]) => 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+/** A volume's mean luminance differs at least so much from its ground's, of 255. */
+const kMinContrast = 30;
+
+/**
+ * Most of this box has low values, whose colours are dark. Its volume shows on both grounds, and
+ * stays so when the scheme changes.
+ */
+async function standsOffFromBothGrounds(context) {
+  const {server, browser} = context;
+  await serveMesh(context, 'skew', linearBox(4, {skew: (x, y, z) => (z / 3) ** 6}));
+  const viewer = await browser.open(`${server.url}?mesh=skew&field=skew&volume=auto`, {
+    viewport: {width: 480, height: 320},
+    colorScheme: 'light',
+  });
+  await viewer.page.addStyleTag({
+    content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }',
+  });
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const inside = [0.3, 0.5, 0.7].flatMap((y) => [0.2, 0.35, 0.5].map((z) => [0.5, y, z]));
+  const notes = [];
+  for (const [colorScheme, ground] of [
+    ['light', 255],
+    ['dark', 20],
+  ]) {
+    await viewer.page.emulateMedia({colorScheme});
+    await viewer.restVolume();
+    await viewer.settle();
+    await viewer.restVolume();
+    await viewer.screenshot(`volume-skew-${colorScheme}`);
+    const pixels = await pixelsAt(viewer, inside);
+    const seen = pixels.map(([r, g, b, a]) => {
+      const rest = ground * (1 - a / 255);
+      return (luminance([r, g, b]) * a) / 255 + rest;
+    });
+    const contrast = Math.abs(seen.reduce((sum, its) => sum + its, 0) / seen.length - ground);
+    notes.push(`${colorScheme} ${contrast.toFixed(0)}`);
+    assert.ok(contrast >= kMinContrast, `${notes.join(', ')} of 255 off the ground`);
+  }
+  assert.deepEqual(viewer.problems, []);
+  return `${notes.join(', ')} of 255 off the ground`;
 }
 
 /**
@@ -316,13 +373,25 @@ function compareWithEveryCell(view, level) {
     density
       .subarray(4 * Math.round(Math.min(1, Math.max(0, shareOf(v))) * (density.length / 4 - 1)))
       .subarray(0, 4);
-  /** The part of a line within the cell, and its values; null if there is none. */
+  /** A gradient across the line of sight takes up to 45 % of the light, if it is steep. */
+  const lightOf = (gradient, along, mean) => {
+    const most = Math.hypot(...gradient);
+    if (cellValues || most === 0) return 1;
+    const shift = 1e-4;
+    const steep =
+      (most * (shareOf(mean + shift) - shareOf(mean - shift))) /
+      (2 * shift * uniforms.perDiagonal.value);
+    const facing = Math.abs(dot(gradient, along)) / most / Math.hypot(...along);
+    return 1 - 0.45 * (steep ** 2 / (1 + steep ** 2)) * (1 - facing);
+  };
+  /** The part of a line within the cell, its values and light; null if there is none. */
   const stretch = (cell, from, along) => {
     const corners = [...cells.subarray(4 * cell, 4 * cell + 4)].map(at);
     let enter = -Infinity,
       leave = Infinity,
       value = 0,
-      slope = 0;
+      slope = 0,
+      gradient = [0, 0, 0];
     for (let i = 0; i < 4; ++i) {
       const [a, b, c] = [1, 2, 3].map((k) => corners[(i + k) & 3]);
       const normal = cross(minus(b, a), minus(c, a)),
@@ -331,11 +400,16 @@ function compareWithEveryCell(view, level) {
         change = dot(normal, along) / whole;
       value += share * (cellValues ? cellValues[cell] : corners[i][3]);
       slope += change * (cellValues ? cellValues[cell] : corners[i][3]);
+      const share4 = cellValues ? 0 : corners[i][3] / whole;
+      gradient = gradient.map((sum, axis) => sum + share4 * normal[axis]);
       if (change > 0) enter = Math.max(enter, -share / change);
       else if (change < 0) leave = Math.min(leave, -share / change);
       else if (share < 0) return null;
     }
-    return enter < leave ? {enter, leave, value, slope} : null;
+    const mean = corners.reduce((sum, corner) => sum + corner[3] / 4, 0);
+    return enter < leave
+      ? {enter, leave, value, slope, light: lightOf(gradient, along, mean)}
+      : null;
   };
   const pairs = [];
   for (let k = 0; k < 300; ++k) {
@@ -360,7 +434,7 @@ function compareWithEveryCell(view, level) {
     const found = Array.from(tags, (tag, cell) => (tag >>> 31 ? null : stretch(cell, from, along)))
       .filter((its) => its)
       .sort((a, b) => a.enter - b.enter);
-    for (const {enter, leave, value, slope} of found) {
+    for (const {enter, leave, value, slope, light} of found) {
       const kParts = 64;
       for (let i = 0; i < kParts && !end; ++i) {
         const t = enter + ((i + 0.5) / kParts) * (leave - enter);
@@ -375,7 +449,9 @@ function compareWithEveryCell(view, level) {
             : 1 -
               Math.exp((-its[3] * reach * (leave - enter) * uniforms.perDiagonal.value) / kParts);
         const rest = 1 - color[3];
-        if (its[3] > 0) for (let c = 0; c < 4; ++c) color[c] += (rest * opacity * its[c]) / its[3];
+        if (its[3] === 0) continue;
+        for (let c = 0; c < 4; ++c)
+          color[c] += ((c < 3 ? light : 1) * rest * opacity * its[c]) / its[3];
       }
     }
     pairs.push([[...drawn.subarray(4 * (y * width + x), 4 * (y * width + x) + 4)], color]);
@@ -455,5 +531,6 @@ export const volumeChecks = {
   castsRaysAsEveryCellSays,
   drawsAVolumeAsTheFormulaSays,
   editsTheTransferFunction,
+  standsOffFromBothGrounds,
   drawsFewCellsWhileSomethingMoves,
 };

@@ -8,7 +8,7 @@ import type {MeshArrays} from '../core/picture/display';
 import {FieldScale} from '../core/picture/field_scale';
 import {kMaxLabels, labelsOf} from '../core/picture/labels';
 import type {FieldInfo} from '../core/protocol/manifest';
-import {middleOf} from '../core/picture/spread';
+import {amountsOf, middleOf} from '../core/picture/spread';
 import {OrbitCamera} from '../three/camera';
 import {WorkerCanvas} from '../three/worker_canvas';
 import {outlineOf} from '../three/outline';
@@ -39,6 +39,26 @@ describe('the middle of the values', () => {
       cells,
     );
     expect(middle).toEqual([0.402, 0.498]);
+  });
+});
+
+describe('the amounts of the volume', () => {
+  test('countCellsByTheirSizeAndMeanValue', () => {
+    const corners = Int32Array.of(0, 0, 0, 6, 0, 0, 0, 6, 0, 0, 0, 6, 0, 0, -18);
+    const cells = Uint32Array.of(0, 1, 2, 3, 0, 1, 2, 4, 1, 1, 1, 1);
+    const mesh = {points: corners, tetrahedra: cells};
+    // the means are 100 and 400 of 1000
+    const scale = new FieldScale(Int32Array.of(0, 0, 0, 400, 1600), field);
+    const amounts = amountsOf(scale, mesh);
+    expect(amounts).toHaveLength(64);
+    expect(amounts[Math.floor(0.1 * 64)]).toBe(0.25);
+    expect(amounts[Math.floor(0.4 * 64)]).toBe(0.75);
+    const ofCells = new FieldScale(Int32Array.of(1000, -2147483648, 0), {
+      ...field,
+      association: 'cell',
+    });
+    expect(amountsOf(ofCells, mesh)[63]).toBe(1);
+    expect(amountsOf(ofCells, {...mesh, tetrahedra: cells.subarray(8)})[0]).toBe(0);
   });
 });
 

@@ -113,8 +113,22 @@ describe('settings', () => {
       const depths = firstOpacities(chord).map((opacity) => -Math.log(1 - opacity) / kOpacityPath);
       return (chord * depths.reduce((sum, depth) => sum + depth, 0)) / depths.length;
     };
-    for (const chord of [0.15, 0.3, 0.5]) expect(mean(chord)).toBeCloseTo(0.9, 1);
+    for (const chord of [0.15, 0.3, 0.5]) expect(mean(chord)).toBeCloseTo(1.7, 1);
     expect(Math.max(...firstOpacities(0.001))).toBe(0.99);
+  });
+  test('aVolumesFirstOpacitiesCountWhatFillsIt', () => {
+    // nine tenths of the volume have the lowest values, and one tenth the highest
+    const shares = [0.9, 0, 0, 0, 0, 0, 0, 0, 0.1];
+    const placeOf = (share: number): number => (9 * share - 0.5) / 8;
+    const opacities = firstOpacities(0.3, {shares, placeOf});
+    const depths = opacities.map((opacity) => -Math.log(1 - opacity) / kOpacityPath);
+    expect(0.3 * (0.9 * depths[0]! + 0.1 * depths[8]!)).toBeCloseTo(1.7, 1);
+    expect(depths[8]! / depths[0]!).toBeCloseTo(3, 1);
+    // Values beyond the ends of the shown range count for the ends.
+    expect(firstOpacities(0.3, {shares: [0.9, 0.1], placeOf: (share) => 9 * share - 4})).toEqual(
+      opacities,
+    );
+    expect(firstOpacities(0.3, {shares: [0, 0], placeOf})).toEqual(firstOpacities(0.3));
   });
   test('areReadFromTheirAttributes', () => {
     expect(

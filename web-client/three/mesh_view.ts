@@ -91,14 +91,14 @@ export class MeshView implements View {
   }
 
   setLook(next: Look): void {
-    const {map, reversed, edges, opacity, volume} = next;
-    const look = JSON.stringify([map, reversed, edges, opacity, volume]);
+    const {map, reversed, edges, opacity, volume, onDark} = next;
+    const look = JSON.stringify([map, reversed, edges, opacity, volume, onDark]);
     // it is called with every attribute change, and a picture costs more than a comparison
     if (look === this.last.look) return;
     this.parts.setLook(next);
-    const transfer = volume ? `${map} ${reversed} ${volume.join()}` : '';
+    const transfer = volume ? `${map} ${reversed} ${onDark} ${volume.join()}` : '';
     if (volume && transfer !== this.last.transfer)
-      this.volume.setTransfer(transferTables(volume, map, reversed));
+      this.volume.setTransfer(transferTables(volume, map, reversed, onDark));
     Object.assign(this.last, {look, transfer});
     this.invalidate();
   }

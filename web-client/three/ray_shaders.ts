@@ -28,6 +28,8 @@ const kMaxMargin = 4;
  * the canvas's near plane: an eye may be close to a face.
  */
 const kNearest = 1e-5;
+/** A gradient across the line of sight takes this share of the light away. */
+const kShading = 0.45;
 /** A ray begins at least this share inside of its face. */
 const kInside = 1e-4;
 /**
@@ -222,13 +224,32 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     ids = uvec4(ids[(found + 1) & 3], ids[(found + 2) & 3], ids[(found + 3) & 3], ids[found]);
   }
 
+  // The light of a cell: 1 if its gradient points along the ray. It is also near 1 where the value
+  // changes by less than the range over the mesh's diagonal.
+  float lightOf(vec4 a, vec4 b, vec4 c, vec4 d) {
+    vec3 p = b.xyz - a.xyz, q = c.xyz - a.xyz, r = d.xyz - a.xyz;
+    vec3 qr = cross(q, r);
+    vec3 gradient = (b.w - a.w) * qr + (c.w - a.w) * cross(r, p) + (d.w - a.w) * cross(p, q);
+    float slope = length(gradient);
+    if (slope == 0.0) return 1.0;
+    float share = 0.25 * (a.w + b.w + c.w + d.w);
+    float perValue = 1.0 / max(range.y - range.x, 1e-12);
+    if (logarithmic) {
+      float value = max(mix(scaleRange.x, scaleRange.y, share), range.x);
+      perValue = (scaleRange.y - scaleRange.x) / (value * log(range.y / range.x));
+    }
+    float steep = slope * perValue / max(abs(dot(p, qr)) * perDiagonal, 1e-30);
+    float steepness = steep * steep / (1.0 + steep * steep);
+    return 1.0 - ${kShading} * steepness * (1.0 - abs(gradient.z) / slope);
+  }
+
   // Adds a stretch of the ray, from front to back.
-  void add(float from, float to, float length) {
+  void add(float from, float to, float length, float light) {
     vec4 mean = abs(to - from) < ${kNarrow} ? densityAt(0.5 * (from + to))
       : (integralTo(to) - integralTo(from)) / (to - from);
     if (mean.a <= 0.0) return;
     float opacity = 1.0 - exp(-mean.a * length * perDiagonal);
-    color += (1.0 - color.a) * opacity * vec4(mean.rgb / mean.a, 1.0);
+    color += (1.0 - color.a) * opacity * vec4(light * mean.rgb / mean.a, 1.0);
   }
 
   void main() {
@@ -295,6 +316,8 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     for (int step = 0; step < ${kMaxSteps}; ++step) {
       // The fourth corner replaces the one that the next face lacks.
       vec4 point = seen(id);
+      bool isSeen = !ofCells && tag >> 31 == 0u;
+      float light = isSeen ? lightOf(a, b, c, point) : 1.0;
       vec3 sides = vec3(area(a, point), area(b, point), area(c, point));
       bool lacksC = sides.x <= 0.0 && sides.y >= 0.0;
       bool lacksA = !lacksC && sides.y <= 0.0 && sides.z >= 0.0;
@@ -321,11 +344,12 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
       if (to > from && tag >> 31 == 0u) {
         if (ofCells) {
           float share = shareOf(texelFetch(cellValues, texel(cell), 0).r);
-          add(share, share, to - from);
+          add(share, share, to - from, 1.0);
         } else {
           float slope = (leave.y - enter.y) / (leave.x - enter.x);
           float begin = shareOf(enter.y + (from - enter.x) * slope);
-          add(begin, shareOf(enter.y + (to - enter.x) * slope), to - from);
+          float end = shareOf(enter.y + (to - enter.x) * slope);
+          add(begin, end, to - from, light);
         }
       }
       if (leave.x >= last || color.a > ${kOpaque}) break;

@@ -44,6 +44,8 @@ export interface Look {
   opacity: number;
   /** Opacities of the volume at even shares of the range; null hides it. */
   volume?: number[] | null;
+  /** The canvas lies on a dark ground: the volume's colours stand off from it. */
+  onDark?: boolean;
 }
 
 /**

@@ -224,7 +224,9 @@ export const kTemplate = `
         </span>
         <input type="range" name="opacity" min="5" max="100" step="5" value="100"
           aria-labelledby="opacity-name">
-      </div>`,
+      </div>
+      <p class="hint hides-surface" id="hides-surface" hidden>The volume takes the place of the
+        surface and its cells' edges.</p>`,
     )}
     ${section(
       'inside',

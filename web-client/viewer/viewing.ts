@@ -2,7 +2,6 @@
 
 import type {Statistics} from '../core/decode/statistics';
 import type {BaseFigures} from '../core/picture/base_figures';
-import {labelsOf} from '../core/picture/labels';
 import type {Vector} from '../core/protocol/geometry';
 import type {Manifest} from '../core/protocol/manifest';
 import type {Client} from '../core/session/client';
@@ -13,19 +12,14 @@ import {Graphics, type ViewStart} from './graphics';
 import {Actions, type ActionsHost} from './page/actions';
 import {CameraWatch} from './page/camera_watch';
 import {find} from './page/find';
+import {isOnDark, watchGround} from './page/ground';
 import {bindKeys} from './page/keys';
 import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
-import {settingsFor, ShownMesh} from './page/shown_mesh';
+import {rangeOf, settingsFor, ShownMesh} from './page/shown_mesh';
 import {Panels, type PanelsHost} from './panels/panels';
 import {displayOf, planesOf, Requests} from './requests';
-import {
-  labelRange,
-  readSettings,
-  shownRange,
-  type Settings,
-  type ShownRange,
-} from './settings/settings';
+import {readSettings, type Settings, type ShownRange} from './settings/settings';
 import {unfittingParts, unknownNames, wrongParts} from './settings/wrong_parts';
 import type {Later} from './later';
 import {StreamControl} from './stream_control';
@@ -40,6 +34,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   private readonly graphics: Graphics;
   private readonly camera: CameraWatch;
   private readonly requests: Requests;
+  private readonly endGround: () => void;
   private readonly actions: Actions;
   /** They are built a task later than the rest. */
   private panels: Panels | null = null;
@@ -90,6 +85,7 @@ export class Viewing implements ActionsHost, PanelsHost {
       changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
       failed: (code, message) => this.failed(code, message),
     });
+    this.endGround = watchGround(() => this.apply());
     void this.graphics.open(() => this.takeStart());
     void this.stream.open();
   }
@@ -104,6 +100,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   }
 
   dispose(): void {
+    this.endGround();
     this.camera.dispose();
     this.stream.dispose();
     this.graphics.dispose();
@@ -124,7 +121,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     this.settings = settingsFor(mesh, (name) => page.read(name));
     this.tellWrongParts();
     panels.update(this.settings, mesh);
-    view?.setLook(this.settings);
+    view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     const {limit} = this.settings;
     if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
@@ -243,9 +240,10 @@ export class Viewing implements ActionsHost, PanelsHost {
   private draw(snapshot: Snapshot, view: View): void {
     const {mesh, page} = this;
     const isFirst = mesh.snapshot === null;
+    const amounts = mesh.snapshot?.amounts?.join();
     mesh.take(snapshot);
     // The range and the free area come first: no frame shows the picture without them.
-    if (isFirst) this.apply();
+    if (isFirst || amounts !== snapshot.amounts?.join()) this.apply();
     else this.showRange();
     view.show(snapshot, (drawingMs) => {
       if (mesh !== this.mesh) return; // it belongs to the previous mesh
@@ -352,19 +350,4 @@ export class Viewing implements ActionsHost, PanelsHost {
     this.completeTold = true;
     this.page.dispatch('complete', mesh.drawn);
   }
-}
-
-/** The range of the colours; null if nothing is coloured. */
-function rangeOf(
-  {color, scaleRange, extent, middle}: Snapshot,
-  {fields}: Manifest,
-  settings: Settings,
-): Omit<ShownRange, 'hasMissing'> | null {
-  if (!color) return null;
-  const labels = settings.map === 'labels' && labelsOf(fields[color.field]!);
-  if (labels) return labelRange(labels);
-  const [low, high] = scaleRange;
-  const valueAt = (share: number): number => low + share * (high - low);
-  const valuesAt = ([from, to]: [number, number]): [number, number] => [valueAt(from), valueAt(to)];
-  return shownRange(settings, valuesAt(extent), valuesAt(middle));
 }

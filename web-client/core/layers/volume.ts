@@ -14,11 +14,13 @@ export interface VolumeSetting {
   hasFirstOpacities: boolean;
 }
 
+/** The count of a volume's first opacities. */
+const kKnots = 9;
 /**
- * The shape of a volume's first opacities: low values are faint, so that its whole shape is
- * visible, and high ones dense.
+ * Values that fill less than this share of an even part of the volume are as dense as if they
+ * filled it. Otherwise single cells would shine.
  */
-const kFirstOpacities: readonly number[] = [0.03, 0.04, 0.06, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9];
+const kMinShare = 0.1;
 
 /** The most opacities of a volume: more cannot be told apart in the picture. */
 export const kMaxOpacities = 33;
@@ -26,16 +28,47 @@ export const kMaxOpacities = 33;
 /** The attribute's value if the mesh is to choose. */
 export const kAutoVolume = 'auto';
 /** The mean optical depth of a volume that is seen at first: its inside shows, and its shape. */
-const kFirstDepth = 0.9;
+const kFirstDepth = 1.7;
+/** The mean length of lines through a mesh that is not known yet. */
+const kUnknownChord = 0.25;
 
-/** `chord` is the mean length of lines through the mesh, as a share of the diagonal; 0: unknown. */
-export function firstOpacities(chord: number): number[] {
-  const depths = kFirstOpacities.map((opacity) => -Math.log(1 - opacity));
-  const mean = depths.reduce((sum, depth) => sum + depth, 0) / depths.length;
-  const factor = chord > 0 ? (kFirstDepth * kOpacityPath) / (mean * chord) : 1;
-  return depths.map((depth) =>
+export interface Amounts {
+  /** The shares of the volume in even parts of the values. */
+  shares: readonly number[];
+  /** The place on the shown range, of a share of the values. */
+  placeOf: (share: number) => number;
+}
+
+/**
+ * Opacities that make a mean line of sight kFirstDepth deep, whatever values the mesh has. Values
+ * that fill less of it are denser, by the root of the amount: they would not be seen otherwise.
+ *
+ * `chord` is the mean length of lines through the mesh, as a share of the diagonal; 0: unknown.
+ * `amounts` is null if the values are not known.
+ */
+export function firstOpacities(chord: number, amounts: Amounts | null = null): number[] {
+  const shares = amounts ? sharesAtKnots(amounts) : [];
+  const all = shares.reduce((sum, share) => sum + share, 0);
+  const filled = Array.from({length: kKnots}, (_, k) => (all > 0 ? shares[k]! / all : 1 / kKnots));
+  const shape = filled.map((share) => Math.max(share * kKnots, kMinShare) ** -0.5);
+  const mean = shape.reduce((sum, depth, k) => sum + filled[k]! * depth, 0);
+  const factor = (kFirstDepth * kOpacityPath) / (mean * (chord > 0 ? chord : kUnknownChord));
+  return shape.map((depth) =>
     Number(Math.min(kMaxOpacity, 1 - Math.exp(-factor * depth)).toFixed(3)),
   );
+}
+
+/** Each amount counts for the two knots beside its value. */
+function sharesAtKnots({shares: amounts, placeOf}: Amounts): number[] {
+  const shares = new Array<number>(kKnots).fill(0);
+  amounts.forEach((amount, i) => {
+    const place = placeOf((i + 0.5) / amounts.length);
+    const at = Math.min(1, Math.max(0, place)) * (kKnots - 1);
+    const below = Math.min(kKnots - 2, Math.floor(at));
+    shares[below]! += amount * (below + 1 - at);
+    shares[below + 1]! += amount * (at - below);
+  });
+  return shares;
 }
 
 export function readVolume(text: string | null): VolumeSetting {

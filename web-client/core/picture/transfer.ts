@@ -7,6 +7,13 @@ import {colorTable, kColorMapEntries, type ColorMapName} from './color_maps';
 export const kOpacityPath = 0.1;
 /** A higher opacity would need an almost infinite density. */
 export const kMaxOpacity = 0.99;
+/**
+ * On a dark ground a colour's largest channel is this far from black at least. All channels grow by
+ * one factor, so that the hue stays.
+ */
+const kDarkFloor = 0.4;
+/** Black then gets this share of white. Lighter colours get less, so that they stay saturated. */
+const kDarkWhite = 0.2;
 /** Fine enough to take the nearest step. */
 export const kTransferSteps = 1023;
 
@@ -22,13 +29,17 @@ export function extinctionOf(opacity: number): number {
   return -Math.log(1 - Math.min(kMaxOpacity, Math.max(0, opacity))) / kOpacityPath;
 }
 
-/** REQUIRES: at least two opacities. Between them extinction is linear. */
+/**
+ * `onDark`: colours are lifted off a dark ground. REQUIRES: at least two opacities. Between them
+ * extinction is linear.
+ */
 export function transferTables(
   opacities: readonly number[],
   map: ColorMapName,
   reversed: boolean,
+  onDark = false,
 ): TransferTables {
-  const colors = colorTable(map, reversed);
+  const colors = onDark ? lifted(colorTable(map, reversed)) : colorTable(map, reversed);
   const extinctions = opacities.map(extinctionOf);
   const density = new Float32Array(4 * (kTransferSteps + 1));
   const integral = new Float32Array(density.length);
@@ -54,4 +65,20 @@ export function transferTables(
     }
   }
   return {density, integral};
+}
+
+function lifted(colors: Uint8Array): Uint8Array {
+  const lighter = colors.slice();
+  for (let at = 0; at < colors.length; at += 4) {
+    const color = [...colors.subarray(at, at + 3)].map((channel) => channel / 255);
+    const most = Math.max(...color, 1 / 255);
+    const bright = color.map((channel) => channel * (1 - kDarkFloor + kDarkFloor / most));
+    const [red, green, blue] = bright as [number, number, number];
+    const white = kDarkWhite * (1 - (0.2126 * red + 0.7152 * green + 0.0722 * blue)) ** 2;
+    lighter.set(
+      bright.map((channel) => Math.round(255 * (white + (1 - white) * channel))),
+      at,
+    );
+  }
+  return lighter;
 }

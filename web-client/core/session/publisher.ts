@@ -12,7 +12,7 @@ import {
 } from '../picture/display';
 import {scalarRange, type FieldScale, type Scalar} from '../picture/field_scale';
 import {meshArrays} from '../picture/mesh_arrays';
-import {middleOf} from '../picture/spread';
+import {amountsOf, middleOf} from '../picture/spread';
 import {noSoup, pointBounds} from '../picture/triangle_soup';
 import {volumeCells, type VolumeCells} from '../picture/volume';
 import {PicturePace} from './picture_pace';
@@ -36,6 +36,8 @@ export class Publisher {
   private bounds: number[] = [];
   /** middleOf by colour, from the mesh with which it was first drawn. */
   private readonly middles = new Map<string, [number, number]>();
+  /** amountsOf by colour, from the mesh whose volume was first drawn. */
+  private readonly amounts = new Map<string, number[]>();
   private dueAt = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -89,6 +91,7 @@ export class Publisher {
     this.pace.reset();
     this.bounds = [];
     this.middles.clear();
+    this.amounts.clear();
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -154,14 +157,11 @@ export class Publisher {
   }
 
   private middleOf(color: Scalar, scale: FieldScale, {tetrahedra}: MeshArrays): [number, number] {
-    const key = `${color.field} ${color.component}`;
-    const middle = this.middles.get(key) ?? middleOf(scale, tetrahedra);
-    this.middles.set(key, middle);
-    return middle;
+    return keptOf(this.middles, color, () => middleOf(scale, tetrahedra));
   }
 
   private frame(mesh: MeshArrays): Omit<Snapshot, 'cuts' | 'planes'> {
-    const {color} = this.display;
+    const {color, volume} = this.display;
     const scale = color && mesh.scale(color);
     const info = color && this.assembler.manifest!.fields[color.field];
     if (this.meshChanged || this.bounds.length === 0)
@@ -177,7 +177,18 @@ export class Publisher {
           ? scale.extent(mesh.tetrahedra)
           : [0, 1],
       middle: scale ? this.middleOf(color, scale, mesh) : [0, 1],
+      ...(volume && scale
+        ? {amounts: keptOf(this.amounts, color, () => amountsOf(scale, mesh))}
+        : {}),
       scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
     };
   }
+}
+
+/** The value of a colour: as it was when it was first asked for. */
+function keptOf<T>(values: Map<string, T>, {field, component}: Scalar, first: () => T): T {
+  const key = `${field} ${component}`;
+  const value = values.get(key) ?? first();
+  values.set(key, value);
+  return value;
 }

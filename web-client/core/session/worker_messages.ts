@@ -80,6 +80,8 @@ export interface Snapshot extends LayerSoups {
    * mesh refines.
    */
   middle: [number, number];
+  /** The result of amountsOf at that time; absent without a volume. */
+  amounts?: number[];
   statistics: Statistics;
   /** How long the worker took to make it. */
   costMs: number;

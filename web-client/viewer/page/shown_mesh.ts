@@ -4,12 +4,21 @@ import type {LevelBytes} from '../../core/decode/plan';
 import {kNoStatistics, type Statistics} from '../../core/decode/statistics';
 import {axisNormal, clip} from '../../core/layers/clip';
 import {kLayers} from '../../core/layers/layers';
-import {firstOpacities} from '../../core/layers/volume';
+import {firstOpacities, type Amounts} from '../../core/layers/volume';
 import type {BaseFigures} from '../../core/picture/base_figures';
 import {labelsOf} from '../../core/picture/labels';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Snapshot} from '../../core/session/worker_messages';
-import {readSettings, shownScalar, type Settings, type ViewAttribute} from '../settings/settings';
+import {placeOn} from '../../core/picture/ticks';
+import {
+  labelRange,
+  readSettings,
+  shownRange,
+  shownScalar,
+  type Settings,
+  type ShownRange,
+  type ViewAttribute,
+} from '../settings/settings';
 
 export class ShownMesh {
   /** Null before the head of the log is here. */
@@ -58,18 +67,51 @@ export class ShownMesh {
 
 /** The settings of the attributes, with what the mesh decides where they say nothing. */
 export function settingsFor(
-  {manifest, firstField, chord}: ShownMesh,
+  {manifest, firstField, chord, snapshot}: ShownMesh,
   read: (name: ViewAttribute) => string | null,
 ): Settings {
   const settings = readSettings(read);
   const fields = manifest?.fields ?? [];
   const shown = shownScalar(read('field'), fields, firstField);
   if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
-  if (settings.hasFirstOpacities) settings.volume = firstOpacities(chord);
+  if (settings.hasFirstOpacities)
+    settings.volume = firstOpacities(chord, amountsIn(snapshot, manifest, settings));
   const firstCut = manifest?.opening?.cut ?? null;
   const saysWhat = kLayers.some(({name}) => name !== clip.name && read(name) !== null);
   settings.hasFirstCut = firstCut !== null && !saysWhat && read('surface') === null;
   if (settings.hasFirstCut && read('clip') === null)
     settings.planes = [{normal: axisNormal(firstCut!, false), share: 0.5}];
   return settings;
+}
+
+/** How much of the volume has which values; null if that is not known. */
+function amountsIn(
+  snapshot: Snapshot | null,
+  manifest: Manifest | null,
+  settings: Settings,
+): Amounts | null {
+  const range = snapshot && manifest && rangeOf(snapshot, manifest, settings);
+  if (!range || !snapshot.amounts) return null;
+  const [from, to] = snapshot.scaleRange;
+  const {low, high, logarithmic} = range;
+  const placeOf = (share: number): number => {
+    const value = from + share * (to - from);
+    return logarithmic && value <= 0 ? 0 : placeOn(low, high, logarithmic, value);
+  };
+  return {shares: snapshot.amounts, placeOf};
+}
+
+/** The range of the colours; null if nothing is coloured. */
+export function rangeOf(
+  {color, scaleRange, extent, middle}: Snapshot,
+  {fields}: Manifest,
+  settings: Settings,
+): Omit<ShownRange, 'hasMissing'> | null {
+  if (!color) return null;
+  const labels = settings.map === 'labels' && labelsOf(fields[color.field]!);
+  if (labels) return labelRange(labels);
+  const [low, high] = scaleRange;
+  const valueAt = (share: number): number => low + share * (high - low);
+  const valuesAt = ([from, to]: [number, number]): [number, number] => [valueAt(from), valueAt(to)];
+  return shownRange(settings, valuesAt(extent), valuesAt(middle));
 }

@@ -60,6 +60,7 @@ export class ColorPanel implements Panel {
     this.input('surface').checked = settings.surface;
     this.input('opacity').value = String(Math.round(100 * settings.opacity));
     this.find('.opacity-text').textContent = `${Math.round(100 * settings.opacity)}\u202f%`;
+    this.disableHidden(settings);
     const fixed = typeof settings.range !== 'string' || this.awaitsRange;
     this.find<HTMLSelectElement>('select[name=range]').value = fixed
       ? 'fixed'
@@ -87,6 +88,20 @@ export class ColorPanel implements Panel {
     if (!this.awaitsRange) return;
     this.awaitsRange = false;
     this.writeRange('fixed');
+  }
+
+  /** A volume hides the surface. A slice inside it has edges. */
+  private disableHidden({volume, mode, planes}: Settings): void {
+    const hint = this.find('.hides-surface');
+    hint.hidden = volume === null;
+    const hasEdges = mode === 'slice' && planes.length > 0;
+    for (const name of ['edges', 'surface', 'opacity']) {
+      const input = this.input(name);
+      input.disabled = volume !== null && !(name === 'edges' && hasEdges);
+      input.title = input.disabled ? hint.textContent.replace(/\s+/g, ' ') : '';
+      if (input.disabled) input.setAttribute('aria-describedby', hint.id);
+      else input.removeAttribute('aria-describedby');
+    }
   }
 
   /** Numbers mean nothing for another field: a fixed range stays behind, and comes back. */
