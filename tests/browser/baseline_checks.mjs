@@ -6,7 +6,7 @@ import assert from 'node:assert/strict';
 import {copyFileSync, existsSync, readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
-import {differingBlocks, readPng} from './png.mjs';
+import {differingBlocks, differingShare, largestDifference, readPng} from './png.mjs';
 
 const kFolder = fileURLToPath(new URL('baselines/', import.meta.url));
 /**
@@ -65,4 +65,25 @@ async function looksAsItDid({server, browser, out}) {
   return notes.join(', ');
 }
 
-export const baselineChecks = {looksAsItDid};
+/** Seen from afar no cell has an edge, and from close up all have. */
+async function edgesFadeTogether({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&field=Velocity&clip=none`, kScene);
+  await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const seen = async (edges, name) => {
+    await viewer.page.evaluate((on) => window.qtetViewer.setAttribute('edges', on), edges);
+    await viewer.settle();
+    return viewer.screenshot(name);
+  };
+  await viewer.page.evaluate(() => window.qtetViewer.meshView.zoom(3));
+  const far = [await seen('on', 'edges-far'), await seen('off', 'edges-far-off')];
+  assert.equal(largestDifference(...far), 0, 'some cells have edges and most have none');
+  await viewer.page.evaluate(() => window.qtetViewer.meshView.zoom(0.1));
+  const near = [await seen('off', 'edges-near-off'), await seen('on', 'edges-near')];
+  const share = differingShare(...near);
+  assert.ok(share > 0.03, `edges take ${share} of the picture`);
+  return `${(100 * share).toFixed(1)} % of a near picture are edges`;
+}
+
+export const baselineChecks = {looksAsItDid, edgesFadeTogether};

@@ -34,6 +34,9 @@ const kVertexShader = /* glsl */ `
     gl_Position = projectionMatrix * view;
   }`;
 
+/** Edges of cells less than 6 pixels high are fainter, as the cells are smaller. */
+const kPlainDensity = 1 / 6;
+
 const kFragmentShader = /* glsl */ `
   in float vValue;
   centroid in vec3 vLattice;
@@ -51,6 +54,7 @@ const kFragmentShader = /* glsl */ `
   uniform vec4 clipPlanes[3];
   uniform float opacity;
   uniform float edgeStrength;
+  uniform float edgeFade;
   uniform float pixelRatio;
 
   vec3 surfaceColor() {
@@ -67,14 +71,14 @@ const kFragmentShader = /* glsl */ `
     return texture(colorMap, vec2(at, 0.5)).rgb;
   }
 
-  // 1 on an edge, 0 inside. Edges fade from triangles of 25 pixels on and are gone at 4. Else a
-  // dense mesh would turn dark, and its colours would not be the legend's.
+  // 1 on an edge, 0 inside. All edges have one strength (edge_fade.ts), so that none stand alone.
+  // Only those of cells far smaller than the others are fainter: the lines would cover the colours.
   float edge() {
     vec3 perPixel = max(fwidth(vCorner), 1e-6);
     vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
     float coverage = 1.0 - min(min(distance.x, distance.y), distance.z);
     float density = max(max(perPixel.x, perPixel.y), perPixel.z) * pixelRatio;
-    return coverage * (1.0 - smoothstep(0.05, 0.3, density));
+    return coverage * min(1.0, ${kPlainDensity} / density);
   }
 
   void main() {
@@ -89,7 +93,7 @@ const kFragmentShader = /* glsl */ `
       color *= 0.80 + 0.20 * facing;
       if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
-    color = mix(color, color * 0.22, edgeStrength * edge());
+    color = mix(color, color * 0.22, edgeStrength * edgeFade * edge());
     gl_FragColor = vec4(min(color, 1.0), opacity);
   }`;
 
@@ -121,6 +125,7 @@ export class FieldMaterial extends ShaderMaterial {
         logarithmic: {value: false},
         opacity: {value: 1},
         edgeStrength: {value: 0.6},
+        edgeFade: {value: 1},
         pixelRatio: {value: 1},
       },
     });
@@ -160,6 +165,10 @@ export class FieldMaterial extends ShaderMaterial {
   /** 0 hides the edges, 1 draws them at full strength. */
   setEdges(strength: number): void {
     this.uniforms.edgeStrength!.value = strength;
+  }
+  /** A factor of the edges' strength, as edgeFade says. */
+  setEdgeFade(fade: number): void {
+    this.uniforms.edgeFade!.value = fade;
   }
   setPixelRatio(ratio: number): void {
     this.uniforms.pixelRatio!.value = Math.max(1, ratio);

@@ -4,6 +4,8 @@ import {kLayers} from '../core/layers/layers';
 import {soupOf} from '../core/layers/shown';
 import {kMaxPlanes} from '../core/picture/display';
 import type {Snapshot} from '../core/session/worker_messages';
+import {edgeFade} from './edge_fade';
+import type {Matrix, Size} from './pose';
 import {SoupMesh} from './soup_mesh';
 import type {Look} from './view';
 
@@ -60,6 +62,13 @@ export class MeshParts {
     for (const mesh of this.all) mesh.material.setRange(low, high, scaleRange, logarithmic);
     const {range, logarithmic: log} = this.surface.material.uniforms;
     return {range: range!.value as [number, number], logarithmic: log!.value as boolean};
+  }
+
+  /** Draws the edges as strong as the cells are large on a canvas of this size. */
+  fadeEdges(toCanvas: Matrix, canvas: Size): void {
+    const withEdges = [this.surface, ...this.cuts].map(({shown}) => shown);
+    const fade = edgeFade(withEdges, toCanvas, canvas);
+    for (const mesh of this.all) mesh.material.setEdgeFade(fade);
   }
 
   setPixelRatio(ratio: number): void {

@@ -273,6 +273,12 @@ export class MeshView implements View {
 
   private async drawTiles(frame: Frame): Promise<Tile[]> {
     const tiles: Tile[] = [];
+    const {width, height, pixelRatio} = frame;
+    const whole = this.camera.cameraFor(frame, {x: 0, y: 0, width, height});
+    this.parts.fadeEdges(this.camera.sightOf(whole).toCanvas, {
+      clientWidth: width / pixelRatio,
+      clientHeight: height / pixelRatio,
+    });
     for (const part of partsOf(frame)) {
       const camera = this.camera.cameraFor(frame, part);
       tiles.push(
@@ -323,6 +329,7 @@ export class MeshView implements View {
     const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
     try {
       this.orbit.setDepths();
+      this.parts.fadeEdges(this.camera.sightOf(this.orbit.camera).toCanvas, this.canvas);
       if (this.drawsVolume) this.volume.draw(this.pictureOf(), this.moved);
       else this.renderer.render(this.scene, this.orbit.camera);
       this.moved = false;

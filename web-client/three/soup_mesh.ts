@@ -34,6 +34,13 @@ export class SoupMesh extends Mesh<BufferGeometry, FieldMaterial> {
     this.material.setFirstHalf(soup.firstHalf);
   }
 
+  /** 9 lattice coordinates for each triangle that is shown; empty if none is. */
+  get shown(): Float32Array {
+    const {position} = this.geometry.attributes;
+    if (!this.visible || !position) return new Float32Array(0);
+    return (position.array as Float32Array).subarray(0, 3 * this.geometry.drawRange.count);
+  }
+
   override dispose(): void {
     this.geometry.dispose();
     this.material.dispose();
