@@ -86,4 +86,43 @@ async function edgesFadeTogether({server, browser}) {
   return `${(100 * share).toFixed(1)} % of a near picture are edges`;
 }
 
-export const baselineChecks = {looksAsItDid, edgesFadeTogether};
+/** The angle between two colours, in degrees: 0 if one is the other times a factor. */
+function angleBetween(a, b) {
+  const dot = (p, q) => p.reduce((sum, value, c) => sum + value * q[c], 0);
+  return (Math.acos(Math.min(1, dot(a, b) / Math.sqrt(dot(a, a) * dot(b, b)))) * 180) / Math.PI;
+}
+
+/** Three sides of a box, each in another light; a pixel's colour is that of the legend. */
+async function lightKeepsTheHue({server, browser}) {
+  const viewer = await browser.open(
+    `${server.url}?mesh=box&clip=none&edges=off&range=-9,-8`,
+    kScene,
+  );
+  await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  await viewer.page.evaluate(() => window.qtetViewer.resetView());
+  await viewer.settle();
+  await viewer.settle();
+  const seen = await viewer.screenshot('light');
+  const kLast = [253, 231, 37]; // of viridis: all values lie above the range
+  const sides = new Map();
+  for (let y = 95; y < seen.height; ++y) {
+    for (let x = 80; x < seen.width; ++x) {
+      const color = seen.at(x, y);
+      const key = color.join();
+      if (Math.max(...color) - Math.min(...color) > 100) sides.set(key, (sides.get(key) ?? 0) + 1);
+    }
+  }
+  const large = [...sides].filter(([, count]) => count > 500).map(([key]) => key.split(','));
+  const colors = large.map((channels) => channels.map(Number));
+  assert.ok(colors.length >= 3, `${colors.length} sides differ in light`);
+  const off = Math.max(...colors.map((color) => angleBetween(color, kLast)));
+  assert.ok(off < 3, `a side's colour is ${off.toFixed(1)} degrees off the legend's`);
+  const lights = colors.map((color) => Math.hypot(...color) / Math.hypot(...kLast));
+  const contrast = Math.max(...lights) - Math.min(...lights);
+  assert.ok(contrast > 0.12, `the sides' light differs by ${contrast.toFixed(2)} only`);
+  return `${off.toFixed(1)} degrees off, light ${lights.map((its) => its.toFixed(2)).join(', ')}`;
+}
+
+export const baselineChecks = {looksAsItDid, edgesFadeTogether, lightKeepsTheHue};

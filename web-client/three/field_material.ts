@@ -85,12 +85,14 @@ const kFragmentShader = /* glsl */ `
     for (int i = 0; i < 3; ++i) if (dot(clipPlanes[i].xyz, vLattice) > clipPlanes[i].w) discard;
     vec3 color = surfaceColor();
     if (lit) {
-      // Flat shading from screen derivatives makes cells look like cells. The light is a little
-      // above the eye.
+      // Flat shading from screen derivatives makes cells look like cells. A lamp is a little above
+      // the eye, and light falls from the sky. All channels get one factor: the hue stays.
       vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
       vec3 light = normalize(vec3(0.25, 0.45, 1.0));
-      float facing = abs(dot(normal, light));
-      color *= 0.80 + 0.20 * facing;
+      normal *= dot(normal, vView) > 0.0 ? -1.0 : 1.0;
+      float facing = max(dot(normal, light), 0.0);
+      float sky = 0.5 + 0.5 * normal.y;
+      color *= 0.68 + 0.18 * facing + 0.14 * sky;
       if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
     color = mix(color, color * 0.22, edgeStrength * edgeFade * edge());
