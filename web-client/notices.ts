@@ -5,7 +5,7 @@ import {readFileSync} from 'node:fs';
 import {fileURLToPath} from 'node:url';
 import type {Plugin} from 'vite';
 
-const kBundled = ['three', 'uplot'];
+const kBundled = ['uplot'];
 
 export const notices = (): Plugin => ({
   name: 'notices',

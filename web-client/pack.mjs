@@ -66,11 +66,12 @@ writeFileSync(
         '.': entry('viewer', 'viewer/index'),
         './element': entry('element', 'viewer/element'),
         './core': entry('core', 'core/index'),
+        './webgl': entry('webgl', 'webgl/index'),
         './three': entry('three', 'three/index'),
       },
       sideEffects: ['./element.js'],
       // Any release of three may rename what we use: the one that is tested, and its corrections.
-      peerDependencies: {three: `^${own.dependencies.three}`},
+      peerDependencies: {three: `^${own.devDependencies.three}`},
       peerDependenciesMeta: {three: {optional: true}},
       dependencies: {uplot: own.dependencies.uplot},
     },

@@ -8,12 +8,12 @@ import {smallShaders} from './small_shaders';
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
 
 export default defineConfig({
-  plugins: [...smallShaders(), notices()],
+  plugins: [smallShaders(), notices()],
   base: './',
   resolve: {
     alias: [{find: /^qtet-codec\.wasm/, replacement: wasm}],
   },
-  worker: {format: 'es', plugins: smallShaders},
+  worker: {format: 'es', plugins: () => [smallShaders()]},
   build: {
     target: 'es2022',
     outDir: process.env.QTET_VIEWER_OUT ?? 'dist',

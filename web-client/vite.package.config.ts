@@ -26,13 +26,13 @@ export default defineConfig({
   base: './',
   plugins: [plainDynamicImports, notices()],
   resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
-  // Bundlers copy workers' files unchanged. So these contain everything they need, including three,
-  // and are minified here.
+  // Bundlers copy workers' files unchanged. So these contain everything they need, and are minified
+  // here.
   worker: {
     format: 'es',
     rollupOptions: {output: {entryFileNames: '[name].js'}},
     plugins: () => [
-      ...smallShaders(),
+      smallShaders(),
       {
         name: 'minify',
         async renderChunk(code: string) {
@@ -53,11 +53,12 @@ export default defineConfig({
     rollupOptions: {
       input: {
         core: './core/index.ts',
+        webgl: './webgl/index.ts',
         three: './three/index.ts',
         viewer: './viewer/index.ts',
         element: './viewer/element.ts',
       },
-      external: (id) => id === 'three' || id.startsWith('three/addons/') || id === 'uplot',
+      external: (id) => id === 'three' || id === 'uplot',
       preserveEntrySignatures: 'strict',
       output: {
         entryFileNames: '[name].js',

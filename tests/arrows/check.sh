@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Keeps the arrows between the rooms: proto <- codec <- simplify, and proto, codec <- server. In the
-# page they are core <- three <- viewer, and the folders in them. Inside a room neither files nor
-# folders may stand in a circle.
+# page they are core <- webgl <- three, viewer, and the folders in them. Inside a room neither files
+# nor folders may stand in a circle.
 #   check.sh [ROOT]   0 = all hold
 #                     1 = every arrow that breaks is named as file:line, with what to do
 set -euo pipefail
@@ -160,12 +160,14 @@ declare -A below=(
   [core/layers]='core/(protocol|picture)'
   [core/session]='core/(protocol|transport|decode|picture|layers)'
   [core]='core/.*'
-  [three]='core(/.*)?'
-  [viewer/settings]='core(/.*)?|three'
-  [viewer/page]='core(/.*)?|three|viewer/settings'
-  [viewer/panels]='core(/.*)?|three|viewer/(settings|page)'
-  [viewer/picture]='core(/.*)?|three|viewer/(settings|page|panels)'
-  [viewer]='core(/.*)?|three|viewer/.*'
+  [webgl/gl]=''
+  [webgl]='core(/.*)?|webgl/gl'
+  [three]='core(/.*)?|webgl'
+  [viewer/settings]='core(/.*)?|webgl'
+  [viewer/page]='core(/.*)?|webgl|viewer/settings'
+  [viewer/panels]='core(/.*)?|webgl|viewer/(settings|page)'
+  [viewer/picture]='core(/.*)?|webgl|viewer/(settings|page|panels)'
+  [viewer]='core(/.*)?|webgl|viewer/.*'
 )
 while read -r from to; do
   from=${from#web-client/} to=${to#web-client/}

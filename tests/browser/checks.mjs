@@ -429,8 +429,8 @@ async function comesBackFromLostGraphics({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const before = await viewer.screenshot('graphics-before');
-  await viewer.inView(({renderer}) => {
-    globalThis.qtetLoss = renderer.getContext().getExtension('WEBGL_lose_context');
+  await viewer.inView(({graphics}) => {
+    globalThis.qtetLoss = graphics.gl.getExtension('WEBGL_lose_context');
     globalThis.qtetLoss.loseContext();
   });
   await viewer.page.getByText('The browser took the graphics away').waitFor();

@@ -18,25 +18,19 @@ function compareWithCubes(view, sizes, cubes) {
     volume: {
       drawer: {
         deep,
-        caster: {
-          ray: {
-            material: {uniforms},
-          },
-        },
+        caster: {look, ray},
       },
       fine: {
         of: {vertices},
       },
     },
-    renderer,
+    graphics: {gl},
     pose: {fromCanvas: m},
   } = view;
   const {width, height} = deep.volume;
-  const gl = renderer.getContext();
-  renderer.setRenderTarget(deep.volume);
+  deep.volume.begin();
   const drawn = new Float32Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, drawn);
-  renderer.setRenderTarget(null);
   const edges = [0, 1, 2].map((axis) => {
     const all = vertices.filter((_, i) => i % 4 === axis);
     const low = all.reduce((a, b) => Math.min(a, b)),
@@ -49,7 +43,7 @@ function compareWithCubes(view, sizes, cubes) {
         (m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]) /
         (m[3] * x + m[7] * y + m[11] * z + m[15]),
     );
-  const extinction = uniforms.density.value.image.data[3] * uniforms.perDiagonal.value;
+  const extinction = look.density.values[3] * ray.perDiagonal;
   const found = {shown: 0, less: 0, more: 0};
   for (let pixel = 0; pixel < width * height; ++pixel) {
     const [from, to] = [-1, 1].map((z) =>

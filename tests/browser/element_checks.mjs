@@ -280,10 +280,9 @@ async function drawsOnAfterAPictureThatFailed({server, browser}) {
         delete surface.show;
         throw new Error('broken on purpose');
       }),
-    ({renderer}) => {
-      const {render} = renderer;
-      renderer.render = () => {
-        renderer.render = render;
+    ({parts}) => {
+      parts.draw = () => {
+        delete parts.draw;
         throw new Error('broken on purpose');
       };
     },
@@ -390,12 +389,12 @@ async function drawsOnlyWhatChanges({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   await viewer.inView((view) => {
-    const {renderer} = view;
-    const render = renderer.render.bind(renderer);
+    const {parts} = view;
+    const draw = parts.draw.bind(parts);
     view.drawnByCheck = 0;
-    renderer.render = (...words) => {
+    parts.draw = (...words) => {
       ++view.drawnByCheck;
-      render(...words);
+      draw(...words);
     };
   });
   const drawnAfter = async (name, value) => {

@@ -119,9 +119,9 @@ async function staysSoundWhateverIsDone({server, browser, logs}) {
     lose: () =>
       viewer
         .inView(
-          async ({renderer}, ms) => {
-            const loss = renderer.getContext().getExtension('WEBGL_lose_context');
-            if (!loss || renderer.getContext().isContextLost()) return;
+          async ({graphics: {gl}}, ms) => {
+            const loss = gl.getExtension('WEBGL_lose_context');
+            if (!loss || gl.isContextLost()) return;
             loss.loseContext();
             await new Promise((resolve) => setTimeout(resolve, ms));
             loss.restoreContext();

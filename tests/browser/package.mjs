@@ -38,7 +38,8 @@ const kPage = `<!doctype html><html lang="en"><head><title>Two meshes</title><st
 const kScript = `import 'qtet/element';
 import {QtetViewer, kViewAttributes, type QtetViewerAttributes} from 'qtet';
 import {Client, colorTable, kFull, kPlainDisplay, type Display, type Snapshot} from 'qtet/core';
-import {MeshView, SoupMesh} from 'qtet/three';
+import {SoupMesh} from 'qtet/three';
+import {MeshView} from 'qtet/webgl';
 const viewers = [...document.querySelectorAll('qtet-viewer')];
 const first: QtetViewer = viewers[0]!;
 const display: Display = {...kPlainDisplay, color: {field: 0, component: -1}};

@@ -287,7 +287,7 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
       return drawAtOnce.call(drawer, picture, its, share);
     };
     caster.cast = (...words) => {
-      if (volume.fine.shown.links === caster.ray.material.uniforms.links.value) ++seen.strips;
+      if (volume.fine.shown.links === caster.ray.links) ++seen.strips;
       cast.apply(caster, words);
     };
   });
@@ -324,28 +324,22 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
 function compareWithEveryCell(view, level) {
   const {
     volume,
-    renderer,
+    graphics: {gl},
     pose: {fromCanvas: m},
   } = view;
   const {
     drawer: {
       deep,
-      caster: {
-        ray: {
-          material: {uniforms},
-        },
-      },
+      caster: {look, ray},
     },
     fine: {
       of: {vertices, cells, tags, cellValues},
     },
   } = volume;
   const {width, height} = deep.volume;
-  const gl = renderer.getContext();
-  renderer.setRenderTarget(deep.volume);
+  deep.volume.begin();
   const drawn = new Float32Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, drawn);
-  renderer.setRenderTarget(null);
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
   const cross = (a, b) => [
@@ -360,13 +354,9 @@ function compareWithEveryCell(view, level) {
         (m[3] * x + m[7] * y + m[11] * z + m[15]),
     );
   const at = (v) => [...vertices.subarray(4 * v, 4 * v + 4)];
-  const [density, range, scale] = [
-    uniforms.density.value.image.data,
-    uniforms.range.value,
-    uniforms.scaleRange.value,
-  ];
+  const [density, range, scale] = [look.density.values, look.range, look.scaleRange];
   const shareOf = (v) =>
-    uniforms.logarithmic.value
+    look.logarithmic
       ? Math.log((scale[0] + v * (scale[1] - scale[0])) / range[0]) / Math.log(range[1] / range[0])
       : (v - range[0]) / (range[1] - range[0]);
   const looks = (v) =>
@@ -379,8 +369,7 @@ function compareWithEveryCell(view, level) {
     if (cellValues || most === 0) return 1;
     const shift = 1e-4;
     const steep =
-      (most * (shareOf(mean + shift) - shareOf(mean - shift))) /
-      (2 * shift * uniforms.perDiagonal.value);
+      (most * (shareOf(mean + shift) - shareOf(mean - shift))) / (2 * shift * ray.perDiagonal);
     const facing = Math.abs(dot(gradient, along)) / most / Math.hypot(...along);
     return 1 - 0.45 * (steep ** 2 / (1 + steep ** 2)) * (1 - facing);
   };
@@ -422,9 +411,10 @@ function compareWithEveryCell(view, level) {
       reach = Math.hypot(...along);
     let first = 0,
       last = Infinity;
-    for (const {x: nx, y: ny, z: nz, w} of uniforms.clipPlanes.value) {
-      const room = w - dot([nx, ny, nz], from),
-        change = -dot([nx, ny, nz], along);
+    for (let plane = 0; plane < look.clipPlanes.length; plane += 4) {
+      const normal = look.clipPlanes.slice(plane, plane + 3);
+      const room = look.clipPlanes[plane + 3] - dot(normal, from),
+        change = -dot(normal, along);
       if (change > 0) first = Math.max(first, -room / change);
       else if (change < 0) last = Math.min(last, -room / change);
     }
@@ -446,8 +436,7 @@ function compareWithEveryCell(view, level) {
         const its = looks(now),
           opacity = end
             ? 0
-            : 1 -
-              Math.exp((-its[3] * reach * (leave - enter) * uniforms.perDiagonal.value) / kParts);
+            : 1 - Math.exp((-its[3] * reach * (leave - enter) * ray.perDiagonal) / kParts);
         const rest = 1 - color[3];
         if (its[3] === 0) continue;
         for (let c = 0; c < 4; ++c)

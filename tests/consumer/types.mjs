@@ -24,7 +24,8 @@ const project = join(out, 'project');
 const kScript = `import 'qtet/element';
 import {QtetViewer} from 'qtet';
 import {Client, kPlainDisplay, type Display, type Snapshot} from 'qtet/core';
-import {MeshView} from 'qtet/three';
+import {SoupMesh} from 'qtet/three';
+import {MeshView} from 'qtet/webgl';
 const display: Display = {...kPlainDisplay, color: {field: 0, component: -1}};
 const positions = (snapshot: Snapshot): Float32Array | undefined => snapshot.surface?.positions;
 const viewer: QtetViewer = document.querySelector('qtet-viewer')!;
@@ -58,8 +59,8 @@ execFileSync('tar', ['-xzf', join(built, filename), '--strip-components=1'], {
 });
 // The range of three is bounded, and the version that is tested lies in it.
 const {peerDependencies} = JSON.parse(readFileSync(join(built, 'package.json'), 'utf8'));
-const {dependencies} = JSON.parse(readFileSync(join(client, 'package.json'), 'utf8'));
-assert.equal(peerDependencies.three, `^${dependencies.three}`);
+const {devDependencies} = JSON.parse(readFileSync(join(client, 'package.json'), 'utf8'));
+assert.equal(peerDependencies.three, `^${devDependencies.three}`);
 
 for (const name of ['three', '@types'])
   symlinkSync(join(client, 'node_modules', name), join(project, 'node_modules', name));

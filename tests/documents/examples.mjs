@@ -190,6 +190,7 @@ function checkTypes({text}, {scratch}) {
     qtet: 'viewer/index.ts',
     'qtet/element': 'viewer/element.ts',
     'qtet/core': 'core/index.ts',
+    'qtet/webgl': 'webgl/index.ts',
     'qtet/three': 'three/index.ts',
   };
   const paths = Object.fromEntries(

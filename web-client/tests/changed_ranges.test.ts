@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {copyChanged, kBlockFloats} from '../three/changed_ranges';
+import {copyChanged, kBlockFloats} from '../webgl/changed_ranges';
 
 const ramp = (count: number): Float32Array => Float32Array.from({length: count}, (_, i) => i);
 

@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {edgeFade} from '../three/edge_fade';
+import {edgeFade} from '../webgl/edge_fade';
 
 /** Lattice coordinates from -1 to 1 are the canvas. */
 const plain = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];

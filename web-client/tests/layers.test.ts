@@ -81,7 +81,7 @@ test('notAskedForItIsNotInTheDisplay', () => {
 /** Nothing but a layer's own file names it, so that nothing but a file and a line adds one. */
 test('noOtherFileNamesALayer', () => {
   const root = new URL('../', import.meta.url);
-  const paths = ['core', 'three', 'viewer'].flatMap((room) =>
+  const paths = ['core', 'webgl', 'three', 'viewer'].flatMap((room) =>
     readdirSync(new URL(`${room}/`, root), {recursive: true}).map(
       (path) => `${room}/${String(path)}`,
     ),

@@ -1,6 +1,5 @@
 // The choices of the opening view: the range, the place and the camera.
 
-import {Vector3} from 'three';
 import {describe, expect, test} from 'vitest';
 import {baseFigures} from '../core/picture/base_figures';
 import {colorTable} from '../core/picture/color_maps';
@@ -9,9 +8,10 @@ import {FieldScale} from '../core/picture/field_scale';
 import {kMaxLabels, labelsOf} from '../core/picture/labels';
 import type {FieldInfo} from '../core/protocol/manifest';
 import {amountsOf, middleOf} from '../core/picture/spread';
-import {OrbitCamera} from '../three/camera';
-import {WorkerCanvas} from '../three/worker_canvas';
-import {outlineOf} from '../three/outline';
+import type {Vector} from '../core/protocol/geometry';
+import {OrbitCamera} from '../webgl/camera';
+import {product, transformed} from '../webgl/matrix';
+import {outlineOf} from '../webgl/outline';
 import {allVertices, cubes} from './cubes';
 
 const field: FieldInfo = {
@@ -97,28 +97,26 @@ describe('the figures of a base mesh', () => {
 });
 
 describe('a fitted camera', () => {
-  const canvas = new WorkerCanvas({} as OffscreenCanvas);
-  const places = (camera: OrbitCamera, at: Vector3[]): Vector3[] => {
-    camera.camera.updateMatrixWorld();
-    camera.camera.updateProjectionMatrix();
-    return at.map((point) => point.clone().project(camera.camera));
-  };
+  const places = ({lens: {toEye, toCube}}: OrbitCamera, at: Vector[]): Vector[] =>
+    at.map((point) => transformed(product(toCube, toEye), point));
   test.each([false, true])('fillsTheFreeAreaAndIsCentred (parallel %s)', (parallel) => {
-    const camera = new OrbitCamera(canvas as unknown as HTMLCanvasElement, () => undefined);
+    const camera = new OrbitCamera();
     camera.parallel = parallel;
-    camera.camera.aspect = 1.6;
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
-      (i) => new Vector3(i & 1 ? 0.7 : -0.2, i & 2 ? 0.3 : -0.6, i & 4 ? 0.5 : -0.1),
-    );
+    camera.lens.aspect = 1.6;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i): Vector => [
+      i & 1 ? 0.7 : -0.2,
+      i & 2 ? 0.3 : -0.6,
+      i & 4 ? 0.5 : -0.1,
+    ]);
     for (const direction of [null, '+x', '-z'] as const) {
       camera.look(direction, () => camera.framing(corners, 0.75, 1));
       const seen = places(camera, corners);
-      const range = (axis: 'x' | 'y'): [number, number] => [
+      const range = (axis: 0 | 1): [number, number] => [
         Math.min(...seen.map((place) => place[axis])),
         Math.max(...seen.map((place) => place[axis])),
       ];
-      const [left, right] = range('x');
-      const [bottom, top] = range('y');
+      const [left, right] = range(0);
+      const [bottom, top] = range(1);
       const filled = Math.max((right - left) / 2 / 0.75, (top - bottom) / 2);
       expect(filled).toBeGreaterThan(0.8);
       expect(filled).toBeLessThan(0.9);

@@ -1,9 +1,10 @@
 import {describe, expect, test} from 'vitest';
-import {Vector3} from 'three';
-import {MeshCamera} from '../three/mesh_camera';
-import {partsOf, straighten, type Part} from '../three/tiles';
-import type {Frame} from '../three/view';
-import {WorkerCanvas} from '../three/worker_canvas';
+import type {Vector} from '../core/protocol/geometry';
+import {MeshCamera} from '../webgl/mesh_camera';
+import {product, transformed} from '../webgl/matrix';
+import {partsOf, straighten, type Part} from '../webgl/tiles';
+import type {Frame} from '../webgl/view';
+import {WorkerCanvas} from '../webgl/worker_canvas';
 
 const kFrame: Frame = {width: 3000, height: 2100, margin: 0.1, pixelRatio: 2};
 const kWhole: Part = {x: 0, y: 0, width: 3000, height: 2100};
@@ -45,20 +46,17 @@ function meshCamera(): MeshCamera {
 }
 
 /** The places of the box's corners in a part, in pixels of the whole picture. */
-function corners(camera: MeshCamera, part: Part): Vector3[] {
-  const seen = camera.cameraFor(kFrame, part);
-  seen.updateMatrixWorld();
-  camera.lattice.updateMatrixWorld();
+function corners(camera: MeshCamera, part: Part): [number, number][] {
+  const {toCanvas} = camera.sightOf(camera.lensFor(kFrame, part));
   return Array.from({length: 8}, (_, i) => {
-    const at = new Vector3(i & 1 ? 200 : 0, i & 2 ? 100 : 0, i & 4 ? 50 : 0)
-      .applyMatrix4(camera.lattice.matrixWorld)
-      .project(seen);
+    const corner: Vector = [i & 1 ? 200 : 0, i & 2 ? 100 : 0, i & 4 ? 50 : 0];
+    const at = transformed(toCanvas, corner);
     const {x, y, width, height} = part;
-    return new Vector3(x + ((at.x + 1) / 2) * width, y + ((1 - at.y) / 2) * height, 0);
+    return [x + ((at[0] + 1) / 2) * width, y + ((1 - at[1]) / 2) * height];
   });
 }
 
-function boundsOf(places: Vector3[], side: 'x' | 'y'): [number, number] {
+function boundsOf(places: [number, number][], side: 0 | 1): [number, number] {
   const all = places.map((place) => place[side]);
   return [Math.min(...all), Math.max(...all)];
 }
@@ -70,7 +68,7 @@ describe('the camera of a picture', () => {
     const whole = corners(camera, kWhole);
     for (const part of partsOf(kFrame))
       corners(camera, part).forEach((place, i) =>
-        expect(place.distanceTo(whole[i]!)).toBeLessThan(1e-6),
+        expect(Math.hypot(place[0] - whole[i]![0], place[1] - whole[i]![1])).toBeLessThan(1e-6),
       );
   });
 
@@ -78,8 +76,8 @@ describe('the camera of a picture', () => {
     const camera = meshCamera();
     const state = camera.orbit.state;
     const places = corners(camera, kWhole);
-    const [left, right] = boundsOf(places, 'x');
-    const [top, bottom] = boundsOf(places, 'y');
+    const [left, right] = boundsOf(places, 0);
+    const [top, bottom] = boundsOf(places, 1);
     expect((left + right) / 2).toBeCloseTo(1500, 0);
     // It is fitted exactly in one direction, and nearly in the other.
     expect(Math.abs((top + bottom) / 2 - 1050)).toBeLessThan(10);
@@ -92,14 +90,14 @@ describe('the camera of a picture', () => {
   test('showsAMovedMeshAsLargeAsItsFreeAreaAllows', () => {
     const camera = meshCamera();
     camera.orbit.zoom(0.9);
-    const {view} = camera.orbit.camera;
-    expect(view!.offsetX).not.toBe(0);
+    const {lens, target} = camera.orbit;
+    expect(lens.part!.x).not.toBe(0);
     // 896 x 680 CSS pixels are free; the picture's height without its margins is 1680 pixels.
     const scale = Math.min(3000 / (1280 * 0.7), 1680 / (800 * 0.85));
-    const seen = camera.cameraFor(kFrame, kWhole);
-    expect(seen.view).toMatchObject({fullWidth: 1280 * scale, fullHeight: 800 * scale});
-    const target = camera.orbit.controls.target.clone().project(seen);
-    expect(target.x).toBeCloseTo(0);
-    expect(target.y).toBeCloseTo(0);
+    const seen = camera.lensFor(kFrame, kWhole);
+    expect(seen.part).toMatchObject({fullWidth: 1280 * scale, fullHeight: 800 * scale});
+    const [x, y] = transformed(product(seen.toCube, seen.toEye), target);
+    expect(x).toBeCloseTo(0);
+    expect(y).toBeCloseTo(0);
   });
 });

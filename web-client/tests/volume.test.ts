@@ -3,8 +3,8 @@ import type {Vector} from '../core/protocol/geometry';
 import {cellAround} from '../core/picture/cell_entry';
 import type {FieldScale} from '../core/picture/field_scale';
 import {kHiddenCell, volumeCells} from '../core/picture/volume';
-import {kRow, maxRows} from '../three/cell_textures';
-import {raysOf} from '../three/rays';
+import {kRow, maxRows} from '../webgl/cell_textures';
+import {raysOf} from '../webgl/rays';
 import {Matrix4, PerspectiveCamera, Vector3} from 'three';
 import {allVertices, cubes} from './cubes';
 

@@ -1,8 +1,8 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
-import {openView} from '../three/worker_view';
-import type {Pose} from '../three/pose';
-import type {View, ViewListeners} from '../three/view';
-import type {FromView, ToView} from '../three/view_messages';
+import {openView} from '../webgl/worker_view';
+import type {Pose} from '../webgl/pose';
+import type {View, ViewListeners} from '../webgl/view';
+import type {FromView, ToView} from '../webgl/view_messages';
 
 /** The worker that draws; the test speaks for it. */
 class FakeWorker {

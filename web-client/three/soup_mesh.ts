@@ -3,7 +3,7 @@
 
 import {BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, Sphere, Vector3} from 'three';
 import type {TriangleSoup} from '../core/picture/triangle_soup';
-import {copyChanged} from './changed_ranges';
+import {copyChanged} from '../webgl/changed_ranges';
 import {FieldMaterial} from './field_material';
 
 /** A buffer gets this many times the room that it needs, for later levels. */

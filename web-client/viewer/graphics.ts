@@ -2,10 +2,10 @@
 
 import type {CoarseCells} from '../core/picture/volume';
 import {errorText} from '../core/protocol/errors';
-import type {CameraState} from '../three/camera';
-import type {Direction} from '../three/directions';
-import type {View} from '../three/view';
-import {openView} from '../three/worker_view';
+import type {CameraState} from '../webgl/camera';
+import type {Direction} from '../webgl/directions';
+import type {View} from '../webgl/view';
+import {openView} from '../webgl/worker_view';
 import {find} from './page/find';
 import type {Notices} from './page/notices';
 

@@ -1,8 +1,8 @@
 // The parts of a viewer that the first picture does not need. They are loaded behind it.
 
 import type {Client} from '../core/session/client';
-import type {Direction} from '../three/directions';
-import type {View} from '../three/view';
+import type {Direction} from '../webgl/directions';
+import type {View} from '../webgl/view';
 import type {Settings, ShownRange} from './settings/settings';
 import {find} from './page/find';
 import type {Page} from './page/page';
@@ -116,7 +116,7 @@ export class Later {
     const seen = pose?.toCanvas.join() ?? '';
     if (!pose || seen === this.seen) return;
     this.seen = seen;
-    this.cube.turn(pose.rotation);
+    this.cube.turn(pose.axes);
     this.hover.hide();
   }
 }

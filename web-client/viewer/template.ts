@@ -3,7 +3,7 @@
 import type {FieldLayer} from '../core/layers/layer';
 import {fieldLayers} from '../core/layers/layers';
 import {kColorMapNames} from '../core/picture/color_maps';
-import {kDirections} from '../three/directions';
+import {kDirections} from '../webgl/directions';
 import {kKeyHelp} from './page/keys';
 
 const kMapTitles = {

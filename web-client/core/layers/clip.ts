@@ -1,9 +1,9 @@
 // Clip planes cut the mesh open: "x", "-y:0.3", "0.6,-0.8,0:0.4", several with spaces between them.
 
 import {keepBelow} from '../picture/cell_choice';
-import {dot, type Ray, type Stretch} from '../picture/cell_ray';
+import type {Ray, Stretch} from '../picture/cell_ray';
 import {kClipModes, kMaxPlanes, type Display, type MeshArrays} from '../picture/display';
-import type {Plane} from '../protocol/geometry';
+import {dot, type Plane} from '../protocol/geometry';
 import {parseNumbers} from './field_values';
 import type {Layer} from './layer';
 

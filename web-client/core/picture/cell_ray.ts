@@ -1,7 +1,7 @@
 // A straight line through the cells, for picking and for probing a field. It is exact: each cell
 // has its own stretch of the line, and nothing is sampled.
 
-import type {Plane, Vector} from '../protocol/geometry';
+import {cross, dot, type Plane, type Vector} from '../protocol/geometry';
 import type {FieldScale} from './field_scale';
 import type {Cells} from './section';
 
@@ -157,12 +157,6 @@ function pointOf(points: Int32Array, vertex: number): Vector {
 }
 function minus(a: Vector, b: Vector): Vector {
   return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-}
-export function dot(a: Vector, b: Vector): number {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-function cross(a: Vector, b: Vector): Vector {
-  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 function volume(a: Vector, b: Vector, c: Vector, d: Vector): number {
   return dot(minus(b, a), cross(minus(c, a), minus(d, a)));

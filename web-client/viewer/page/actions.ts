@@ -1,8 +1,8 @@
 // The actions of buttons and keys.
 
 import {clipText} from '../../core/layers/clip';
-import {kDirections, type Direction} from '../../three/directions';
-import type {View} from '../../three/view';
+import {kDirections, type Direction} from '../../webgl/directions';
+import type {View} from '../../webgl/view';
 import type {Settings} from '../settings/settings';
 import {find} from './find';
 import type {KeyActions} from './keys';

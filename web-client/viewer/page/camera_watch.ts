@@ -1,6 +1,6 @@
 // Reports the camera once it rests.
 
-import type {CameraState} from '../../three/camera';
+import type {CameraState} from '../../webgl/camera';
 
 const kRestMs = 250;
 

@@ -1,6 +1,6 @@
 // Keeps track of what the cards cover, and folds the panel.
 
-import type {Insets} from '../../three/view';
+import type {Insets} from '../../webgl/view';
 import {find, onClick} from './find';
 import {insetsOf} from './layout';
 

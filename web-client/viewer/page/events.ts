@@ -1,7 +1,7 @@
 // The events of <qtet-viewer> and its attributes, as types.
 
 import type {Statistics} from '../../core/decode/statistics';
-import type {CameraState} from '../../three/camera';
+import type {CameraState} from '../../webgl/camera';
 import type {ViewAttribute} from '../settings/settings';
 
 export interface QtetViewerEventMap {

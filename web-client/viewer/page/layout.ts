@@ -1,6 +1,6 @@
 // The shares of the viewer that the cards cover. The mesh is centred in the rest.
 
-import type {Insets} from '../../three/view';
+import type {Insets} from '../../webgl/view';
 
 /** A sheet that is pulled up covers the mesh; it does not squeeze it out of sight. */
 const kMaxCovered = 0.6;

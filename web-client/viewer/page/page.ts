@@ -1,7 +1,7 @@
 // How the element's parts see the element.
 
-import type {CameraState} from '../../three/camera';
-import type {Direction} from '../../three/directions';
+import type {CameraState} from '../../webgl/camera';
+import type {Direction} from '../../webgl/directions';
 import type {ViewAttribute} from '../settings/settings';
 
 export interface Attributes {

@@ -5,7 +5,7 @@ import {readSettings} from '../settings/settings';
 import {Steps, titleOf, type Change, type ViewState} from '../settings/steps';
 import {find} from './find';
 import type {Page} from './page';
-import type {CameraState} from '../../three/camera';
+import type {CameraState} from '../../webgl/camera';
 
 /** Changes of one setting that follow each other faster are one step. */
 const kRestMs = 300;

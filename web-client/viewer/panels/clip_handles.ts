@@ -2,7 +2,7 @@
 // the normal.
 
 import {axisOf, type ClipSetting} from '../../core/layers/clip';
-import type {View} from '../../three/view';
+import type {View} from '../../webgl/view';
 import {extentAlong, planeOf} from '../settings/clip_plane';
 
 const kArrowPixels = 34;

@@ -3,7 +3,7 @@
 import type {Pick} from '../../core/session/inspector';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {FieldInfo} from '../../core/protocol/manifest';
-import type {View} from '../../three/view';
+import type {View} from '../../webgl/view';
 import {find} from '../page/find';
 import {formatTo, resolutionOf} from '../page/format';
 import {scalarTitle} from './panel';

@@ -1,8 +1,9 @@
 // The cube in the corner, which turns with the camera. A face looks along its axis: by a click, or
 // by the keyboard, where arrows go from face to face.
 
-import type {Vector} from '../../core/protocol/geometry';
-import {kDirections, type Direction} from '../../three/directions';
+import {dot, type Vector} from '../../core/protocol/geometry';
+import {kDirections, type Direction} from '../../webgl/directions';
+import type {Axes} from '../../webgl/lens';
 
 /** Half of an edge: so far are faces from the middle. The corners stay inside the picture. */
 export const kHalf = 16;
@@ -40,13 +41,6 @@ const kSides: Record<Direction, [Vector, Vector]> = {
   ],
 };
 
-export interface Rotation {
-  x: number;
-  y: number;
-  z: number;
-  w: number;
-}
-
 export interface FacePlace {
   direction: Direction;
   /** For the SVG `transform`: the face as seen from its front becomes the face on the screen. */
@@ -55,14 +49,8 @@ export interface FacePlace {
   near: number;
 }
 
-/** The places of all faces; `rotation` is the camera's. */
-export function facePlaces({x, y, z, w}: Rotation): FacePlace[] {
-  // The rows of the inverse rotation: the directions of the world's axes on the screen, and towards
-  // the eye.
-  const right: Vector = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)];
-  const up: Vector = [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)];
-  const near: Vector = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)];
-  const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+/** The places of all faces. */
+export function facePlaces([right, up, near]: Axes): FacePlace[] {
   return kDirections.map((direction) => {
     const [side, above] = kSides[direction];
     const normal = [0, 0, 0] as Vector;
@@ -125,9 +113,9 @@ export class OrientationCube {
     svg.replaceChildren(...this.faces.values(), this.caption);
   }
 
-  turn(rotation: Rotation): void {
+  turn(axes: Axes): void {
     const focused = (this.svg.getRootNode() as ShadowRoot).activeElement;
-    const places = facePlaces(rotation);
+    const places = facePlaces(axes);
     this.places = places;
     for (const {direction, matrix, near} of places) {
       const face = this.faces.get(direction)!;

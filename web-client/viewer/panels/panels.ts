@@ -6,7 +6,7 @@ import {kMaxPlanes} from '../../core/picture/display';
 import type {Vector} from '../../core/protocol/geometry';
 import type {Client} from '../../core/session/client';
 import type {StreamState} from '../../core/session/worker_messages';
-import type {View} from '../../three/view';
+import type {View} from '../../webgl/view';
 import type {Actions} from '../page/actions';
 import {CardLayout} from '../page/card_layout';
 import {find} from '../page/find';

@@ -1,7 +1,7 @@
 // Standard views, projection, and the row of actions at the panel's top.
 
 import type {StreamState} from '../../core/session/worker_messages';
-import type {Direction} from '../../three/directions';
+import type {Direction} from '../../webgl/directions';
 import type {Actions} from '../page/actions';
 import {find, onClick} from '../page/find';
 import type {Page} from '../page/page';

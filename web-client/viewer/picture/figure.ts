@@ -1,8 +1,9 @@
 // A picture to publish: the mesh in tiles, and what stands round it. Its sizes are those of a
 // picture of kUnitPixels and grow with it.
 
-import type {Frame, Tile} from '../../three/view';
-import {facePlaces, kHalf, type Rotation} from '../panels/orientation_cube';
+import type {Axes} from '../../webgl/lens';
+import type {Frame, Tile} from '../../webgl/view';
+import {facePlaces, kHalf} from '../panels/orientation_cube';
 
 /** A text of 14 of these pixels is legible on a slide and, with two columns, on paper. */
 const kUnitPixels = 960 * 640;
@@ -57,7 +58,7 @@ export interface Looks {
   /** A CSS gradient over the ground, or another background. */
   back: string;
   font: string;
-  rotation: Rotation;
+  axes: Axes;
 }
 
 /** Reads the legend from the page, so that both say the same. */
@@ -242,7 +243,7 @@ function drawMark(context: OffscreenCanvasRenderingContext2D, x: number, y: numb
 /** The farthest axis comes first, so that the others lie over it. */
 function drawAxes(pen: Pen, x: number, y: number): void {
   const {context, looks} = pen;
-  const axes = facePlaces(looks.rotation)
+  const axes = facePlaces(looks.axes)
     .filter(({direction}) => direction[0] === '+')
     .sort((a, b) => a.near - b.near);
   const long = kAxis / kHalf;

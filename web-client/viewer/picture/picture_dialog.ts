@@ -2,7 +2,7 @@
 // The picture is saved or copied. It holds the view's address.
 
 import {errorText} from '../../core/protocol/errors';
-import type {View} from '../../three/view';
+import type {View} from '../../webgl/view';
 import {find, onClick} from '../page/find';
 import type {Page} from '../page/page';
 import {save} from '../page/save';
@@ -236,6 +236,6 @@ function looksOf({element}: Page, {pose}: View): Looks {
     ground: its('--ground'),
     back: style.backgroundImage,
     font: style.fontFamily,
-    rotation: pose.rotation,
+    axes: pose.axes,
   };
 }

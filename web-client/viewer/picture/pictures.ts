@@ -1,6 +1,6 @@
 // Pictures that are made, and those that open their view again. It is loaded at the first of them.
 
-import type {View} from '../../three/view';
+import type {View} from '../../webgl/view';
 import type {Page} from '../page/page';
 import {openView, type OpenHost} from './open_view';
 import {PictureDialog} from './picture_dialog';

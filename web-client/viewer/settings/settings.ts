@@ -12,7 +12,7 @@ import {tailsHide} from '../../core/picture/spread';
 import {kMaxLabels} from '../../core/picture/labels';
 import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
 import type {FieldInfo} from '../../core/protocol/manifest';
-import type {CameraState} from '../../three/camera';
+import type {CameraState} from '../../webgl/camera';
 
 const kBeforeLayers = [
   'mesh',

@@ -2,7 +2,8 @@
 // on the canvas. A strength for each cell would leave crumbs between cells without edges.
 
 import type {Vector} from '../core/protocol/geometry';
-import type {Matrix, Size} from './pose';
+import type {Matrix} from './matrix';
+import type {Size} from './pose';
 
 /** So many triangles tell the sizes of all. */
 const kSamples = 1500;

@@ -4,16 +4,15 @@
 import type {Vector, Plane} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
 import type {CameraState} from './camera';
-
-/** 16 numbers, column by column. */
-export type Matrix = readonly number[];
+import type {Axes} from './lens';
+import {transformed, type Matrix} from './matrix';
 
 export interface Pose {
   /** Maps lattice coordinates to the canvas's cube [-1, 1]^3, and back. */
   toCanvas: Matrix;
   fromCanvas: Matrix;
-  /** The camera's, as a quaternion. */
-  rotation: {x: number; y: number; z: number; w: number};
+  /** The camera's. */
+  axes: Axes;
   camera: CameraState;
   /** The user has not turned or zoomed: the whole mesh is in the picture. */
   fitted: boolean;
@@ -66,11 +65,4 @@ export function rayAt(
   const along = far.map((value, axis) => value - origin[axis]!);
   const length = Math.hypot(...along);
   return {origin, direction: along.map((value) => value / length) as Vector};
-}
-
-function transformed(matrix: Matrix, [x, y, z]: Vector): Vector {
-  const row = (i: number): number =>
-    matrix[i]! * x + matrix[i + 4]! * y + matrix[i + 8]! * z + matrix[i + 12]!;
-  const w = row(3);
-  return [row(0) / w, row(1) / w, row(2) / w];
 }

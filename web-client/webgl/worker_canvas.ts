@@ -27,7 +27,7 @@ export interface CanvasSize {
   pixelRatio: number;
 }
 
-/** The part of an element that OrbitControls needs. */
+/** The part of an element that OrbitControls needs (orbit_controls.ts). */
 export class WorkerCanvas extends EventTarget {
   clientWidth = 1;
   clientHeight = 1;
@@ -54,14 +54,8 @@ export class WorkerCanvas extends EventTarget {
   getBoundingClientRect(): {left: number; top: number; width: number; height: number} {
     return {left: 0, top: 0, width: this.clientWidth, height: this.clientHeight};
   }
-  getRootNode(): this {
-    return this;
-  }
   /** The page has captured the pointer already. */
   setPointerCapture(): void {
-    return;
-  }
-  releasePointerCapture(): void {
     return;
   }
 }

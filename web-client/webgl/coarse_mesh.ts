@@ -3,14 +3,18 @@
 
 import type {CoarseCells} from '../core/picture/volume';
 import {CellMesh} from './cell_mesh';
+import type {Graphics} from './gl/graphics';
 
 export class CoarseMesh extends CellMesh {
   private version = -1;
   private state: 'stale' | 'asked' | 'here' | 'none' = 'stale';
 
   /** `ask` is that of ViewListeners; without it there are never any cells. */
-  constructor(private readonly ask?: (have: number) => Promise<CoarseCells>) {
-    super();
+  constructor(
+    graphics: Graphics,
+    private readonly ask?: (have: number) => Promise<CoarseCells>,
+  ) {
+    super(graphics);
   }
 
   get isHere(): boolean {

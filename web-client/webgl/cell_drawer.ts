@@ -1,16 +1,14 @@
 // Draws cells: at once, or in strips of pixels with pauses in which the graphics are free.
 
-import {
-  Vector2,
-  type PerspectiveCamera,
-  type Scene,
-  type WebGLRenderer,
-  type WebGLRenderTarget,
-} from 'three';
 import type {CellMesh} from './cell_mesh';
 import {DeepTarget} from './deep_target';
 import {reachesPixels, whenDrawn} from './frame_budget';
-import {RayCaster, type Sight} from './ray_caster';
+import type {Graphics} from './gl/graphics';
+import type {Target} from './gl/target';
+import type {Eye} from './lens';
+import type {Sight} from './mesh_camera';
+import type {MeshParts} from './mesh_parts';
+import {RayCaster} from './ray_caster';
 
 /** The time of a strip, about. */
 const kStripMs = 120;
@@ -29,18 +27,22 @@ const kMaxLayers = 256;
 
 /** The parts of a picture. */
 export interface Picture extends Sight {
-  renderer: WebGLRenderer;
-  scene: Scene;
-  camera: PerspectiveCamera;
+  parts: MeshParts;
+  eyeOfParts: Eye;
   /** Null: the canvas. */
-  target: WebGLRenderTarget | null;
+  target: Target | null;
 }
 
 export class CellDrawer {
-  readonly caster = new RayCaster();
-  private readonly deep = new DeepTarget();
+  readonly caster: RayCaster;
+  private readonly deep: DeepTarget;
   /** The pixels a millisecond in the slowest strip of the last picture; 0: unknown. */
   private rate = 0;
+
+  constructor(private readonly graphics: Graphics) {
+    this.caster = new RayCaster(graphics);
+    this.deep = new DeepTarget(graphics);
+  }
 
   /**
    * Draws with a share of the canvas's pixels. `isCut`: some lines of sight need more layers.
@@ -52,16 +54,15 @@ export class CellDrawer {
     share: number,
   ): Promise<{ms: number; isCut: boolean}> {
     const {caster, deep} = this;
-    const {renderer} = picture;
-    const gl = renderer.getContext() as WebGL2RenderingContext;
+    const {gl} = this.graphics;
     const start = performance.now();
-    if (this.begin(picture, its, share, deep)) caster.cast(renderer, deep, 0, deep.height);
+    if (this.begin(picture, its, share, deep)) caster.cast(deep, 0, deep.height);
     const reached: Promise<boolean>[] = [];
     while (reached.length < its.layers) {
-      reached.push(reachesPixels(gl, () => caster.enter(renderer)));
-      caster.cast(renderer, deep, 0, deep.height);
+      reached.push(reachesPixels(gl, () => caster.enter()));
+      caster.cast(deep, 0, deep.height);
     }
-    deep.present(renderer, null);
+    deep.present(null);
     const ms = await whenDrawn(gl, start);
     const needed = (await Promise.all(reached)).filter(Boolean).length;
     const isCut = needed === its.layers && needed < kMaxLayers;
@@ -74,12 +75,12 @@ export class CellDrawer {
    * give up, and then returns null.
    */
   async drawStrips(picture: Picture, its: CellMesh, ends: () => boolean): Promise<number | null> {
-    const {renderer, target} = picture;
+    const {target} = picture;
     // what was drawn for the canvas may be presented again
-    const deep = target ? new DeepTarget() : this.deep;
+    const deep = target ? new DeepTarget(this.graphics) : this.deep;
     try {
       const ms = await this.drawRows(picture, its, deep, ends);
-      if (ms !== null) deep.present(renderer, target);
+      if (ms !== null) deep.present(target);
       return ms;
     } finally {
       if (deep !== this.deep) deep.dispose();
@@ -94,22 +95,21 @@ export class CellDrawer {
     ends: () => boolean,
   ): Promise<number | null> {
     const {caster} = this;
-    const {renderer} = picture;
-    const gl = renderer.getContext() as WebGL2RenderingContext;
+    const {gl} = this.graphics;
     const begun = performance.now();
     let last = this.rate > 0 ? Infinity : 0; // pixels of the previous strip
     let rate = this.rate;
     this.rate = 0;
     const isInside = this.begin(picture, its, 1, deep);
     for (let layer = isInside ? -1 : 0; layer < kMaxLayers; ++layer) {
-      const reaches = layer < 0 || reachesPixels(gl, () => caster.enter(renderer));
+      const reaches = layer < 0 || reachesPixels(gl, () => caster.enter());
       if (layer > 0 && !(await reaches)) break;
       for (let row = 0; row < deep.height;) {
         const maxPixels = rate > 0 ? Math.min(rate * kStripMs, kStripGrowth * last) : kFirstPixels;
         const rows = Math.min(deep.height - row, Math.ceil(maxPixels / deep.width));
         last = rows * deep.width;
         const start = performance.now();
-        caster.cast(renderer, deep, row, rows);
+        caster.cast(deep, row, rows);
         row += rows;
         rate = last / (await whenDrawn(gl, start));
         this.rate = this.rate > 0 ? Math.min(this.rate, rate) : rate;
@@ -120,8 +120,8 @@ export class CellDrawer {
   }
 
   /** Shows the last picture again on a canvas that has been cleared. */
-  present(renderer: WebGLRenderer): void {
-    this.deep.present(renderer, null);
+  present(): void {
+    this.deep.present(null);
   }
 
   dispose(): void {
@@ -131,14 +131,14 @@ export class CellDrawer {
 
   /** Returns true if the eye is inside a cell, as RayCaster.begin. */
   private begin(
-    {renderer, scene, camera, target, ...sight}: Picture,
+    {parts, eyeOfParts, target, ...sight}: Picture,
     its: CellMesh,
     share: number,
     deep: DeepTarget,
   ): boolean {
-    const {width, height} = target ?? renderer.getDrawingBufferSize(new Vector2());
-    deep.resize(renderer, Math.round(width * share), Math.round(height * share));
-    deep.begin(renderer, scene, camera);
+    const {width, height} = target ?? this.graphics.surface;
+    deep.resize(Math.round(width * share), Math.round(height * share));
+    deep.begin(parts, eyeOfParts);
     return this.caster.begin(its.shown!, sight, deep);
   }
 }

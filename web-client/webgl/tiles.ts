@@ -1,7 +1,8 @@
 // Pictures that are drawn in tiles, apart from the canvas, because they may be larger than it and
 // than the graphics allow.
 
-import {WebGLRenderTarget, type WebGLRenderer} from 'three';
+import type {Graphics} from './gl/graphics';
+import {Target} from './gl/target';
 import type {Frame, Tile} from './view';
 
 /** The side of a tile: every WebGL 2 draws it, and four samples a pixel and depths take 128 MB. */
@@ -33,15 +34,15 @@ export function partsOf({width, height}: Pick<Frame, 'width' | 'height'>): Part[
 
 /** Draws a part by `draw`, which must draw onto the target. */
 export async function tileOf(
-  renderer: WebGLRenderer,
+  graphics: Graphics,
   {x, y, width, height}: Part,
-  draw: (target: WebGLRenderTarget) => void | Promise<void>,
+  draw: (target: Target) => void | Promise<void>,
 ): Promise<Tile> {
-  const target = new WebGLRenderTarget(width, height, {samples: kSamples});
+  const target = new Target(graphics, {kind: 'rgba8', depths: 'buffer', samples: kSamples});
+  target.resize(width, height);
   try {
     await draw(target);
-    const pixels = new Uint8ClampedArray(4 * width * height);
-    renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+    const pixels = target.read();
     straighten(pixels);
     const image = new ImageData(pixels, width, height);
     return {x, y, bitmap: await createImageBitmap(image, {imageOrientation: 'flipY'})};

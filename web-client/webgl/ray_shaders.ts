@@ -130,10 +130,6 @@ export const kEntryFragmentShader = /* glsl */ `${kHead}${kSide}
     found = uvec4(vEntry + 1u, floatBitsToUint(depth), 0u, 0u);
   }`;
 
-export const kRayVertexShader = /* glsl */ `
-  in vec3 position;
-  void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }`;
-
 export const kRayFragmentShader = /* glsl */ `${kHead}
   uniform usampler2D links;
   uniform sampler2D cellValues;

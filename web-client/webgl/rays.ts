@@ -3,7 +3,7 @@
 // floats relative to it would be wrong.
 
 import type {Vector} from '../core/protocol/geometry';
-import type {Matrix} from './pose';
+import type {Matrix} from './matrix';
 
 export interface Rays {
   /** The middle of the near plane, and the ways from there to its right and its upper end. */

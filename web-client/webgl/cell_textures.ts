@@ -1,24 +1,11 @@
 // The cells of a volume as textures for a ray caster's shaders. They have one texel a vertex and a
 // cell, and the faces by which rays enter.
 
-import {
-  BufferGeometry,
-  DataTexture,
-  FloatType,
-  NearestFilter,
-  RGBAFormat,
-  RGBAIntegerFormat,
-  RGIntegerFormat,
-  RedFormat,
-  Sphere,
-  UnsignedIntType,
-  Vector3,
-  type PixelFormat,
-  type TextureDataType,
-} from 'three';
 import type {Vector} from '../core/protocol/geometry';
 import {cellAround} from '../core/picture/cell_entry';
 import type {VolumeCells} from '../core/picture/volume';
+import type {Graphics} from './gl/graphics';
+import {Texture, type TexelKind} from './gl/texture';
 
 /**
  * Texels in a row: a power of two. Nearly every GPU with WebGL 2 takes such rows, most of them four
@@ -28,28 +15,29 @@ export const kRowBits = 12;
 export const kRow = 1 << kRowBits;
 
 export class CellTextures {
-  readonly vertices: DataTexture;
-  readonly links: DataTexture;
-  readonly entries: DataTexture;
-  readonly cellValues: DataTexture;
+  readonly vertices: Texture;
+  readonly links: Texture;
+  readonly entries: Texture;
+  readonly cellValues: Texture;
   readonly ofCells: boolean;
   readonly count: number;
-  /** One triangle for each entry. The shader reads it from `entries`. */
-  readonly entryGeometry = new BufferGeometry();
+  /** The corners of one triangle for each entry. The shader reads it from `entries`. */
+  readonly entryCorners: number;
   /** The last question, and its answer. */
   private eye = '';
   private cellOfEye = -1;
 
-  constructor(private readonly from: VolumeCells) {
-    this.vertices = rows(from.vertices, 4, RGBAFormat, FloatType);
-    this.links = rows(from.links, 2, RGIntegerFormat, UnsignedIntType);
-    this.entries = rows(from.entries, 4, RGBAIntegerFormat, UnsignedIntType);
-    this.cellValues = rows(from.cellValues ?? new Float32Array(1), 1, RedFormat, FloatType);
+  constructor(
+    graphics: Graphics,
+    private readonly from: VolumeCells,
+  ) {
+    this.vertices = rows(graphics, from.vertices, 'rgba32f');
+    this.links = rows(graphics, from.links, 'rg32ui');
+    this.entries = rows(graphics, from.entries, 'rgba32ui');
+    this.cellValues = rows(graphics, from.cellValues ?? new Float32Array(1), 'r32f');
     this.ofCells = from.cellValues !== null;
     this.count = from.cells.length / 4;
-    this.entryGeometry.setDrawRange(0, (3 * from.entries.length) / 8);
-    // there are no positions to compute it from
-    this.entryGeometry.boundingSphere = new Sphere(new Vector3(), Infinity);
+    this.entryCorners = (3 * from.entries.length) / 8;
   }
 
   /** The cell that contains the eye, as its corners and its tag; null if none does. */
@@ -66,7 +54,6 @@ export class CellTextures {
   dispose(): void {
     for (const texture of [this.vertices, this.links, this.entries, this.cellValues])
       texture.dispose();
-    this.entryGeometry.dispose();
   }
 }
 
@@ -79,32 +66,16 @@ function heightOf(values: {length: number}, size: number): number {
   return Math.max(1, Math.ceil(values.length / (size * kRow)));
 }
 
+const kChannels = {r32f: 1, rg32ui: 2, rgba32f: 4, rgba32ui: 4};
+
 function rows(
+  graphics: Graphics,
   values: Float32Array | Uint32Array,
-  size: number,
-  format: PixelFormat,
-  type: TextureDataType,
-): DataTexture {
+  kind: keyof typeof kChannels & TexelKind,
+): Texture {
+  const size = kChannels[kind];
   const height = heightOf(values, size);
   const filled = new (values.constructor as Float32ArrayConstructor)(size * kRow * height);
   filled.set(values);
-  return dataTexture(filled, kRow, height, format, type);
-}
-
-/** RGBA in one row. */
-export function tableTexture(values: Float32Array): DataTexture {
-  return dataTexture(values, values.length / 4, 1, RGBAFormat, FloatType);
-}
-
-function dataTexture(
-  values: Float32Array,
-  width: number,
-  height: number,
-  format: PixelFormat,
-  type: TextureDataType,
-): DataTexture {
-  const texture = new DataTexture(values, width, height, format, type);
-  texture.minFilter = texture.magFilter = NearestFilter;
-  texture.needsUpdate = true;
-  return texture;
+  return new Texture(graphics, filled, kRow, height, kind);
 }

@@ -1,21 +1,33 @@
 // The camera of one mesh: where the mesh lies, and from where it is seen.
 
-import {Frustum, Group, Matrix4, Vector3, type PerspectiveCamera} from 'three';
 import type {TriangleSoup} from '../core/picture/triangle_soup';
-import type {Vector} from '../core/protocol/geometry';
+import type {Plane, Vector} from '../core/protocol/geometry';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
+import type {Eye, Lens} from './lens';
+import {difference, inverse, lengthOf, product, scaled, sum, type Matrix} from './matrix';
+import {OrbitControls} from './orbit_controls';
 import {cornersOf, outlineOf} from './outline';
 import {checkedCamera, type Pose} from './pose';
-import type {Sight} from './ray_caster';
 import type {Part} from './tiles';
 import type {Frame, Insets} from './view';
 import type {ViewCanvas} from './worker_canvas';
 
+/** A camera's lines of sight, in lattice coordinates. */
+export interface Sight {
+  toCanvas: Matrix;
+  fromCanvas: Matrix;
+  eye: Vector;
+  /** The mesh's diagonal. */
+  diagonal: number;
+}
+
 export class MeshCamera {
-  readonly orbit: OrbitCamera;
-  /** Maps lattice coordinates to a ball of radius 1 round the origin. */
-  readonly lattice = new Group();
+  readonly orbit = new OrbitCamera();
+  private readonly controls: OrbitControls;
+  /** Lattice coordinates, scaled and moved, lie in a ball of radius 1 round the origin. */
+  private scale = 1;
+  private offset: Vector = [0, 0, 0];
   /** Bounds of the largest mesh so far, in lattice coordinates; empty: there is no mesh. */
   bounds: number[] = [];
   focus: number[] | null = null;
@@ -29,7 +41,7 @@ export class MeshCamera {
     canvas: ViewCanvas,
     private readonly changed: () => void,
   ) {
-    this.orbit = new OrbitCamera(canvas as HTMLCanvasElement, changed);
+    this.controls = new OrbitControls(this.orbit, canvas, changed);
   }
 
   get hasMesh(): boolean {
@@ -74,11 +86,15 @@ export class MeshCamera {
 
   /** Shifts the picture's centre into the middle of the free area of a canvas of this size. */
   resize(width: number, height: number): void {
-    const {camera} = this.orbit;
-    camera.aspect = width / height;
-    const right = ((this.insets.right - this.insets.left) / 2) * width;
-    const down = ((this.insets.bottom - this.insets.top) / 2) * height;
-    camera.setViewOffset(width, height, right, down, width, height);
+    const {left, right, top, bottom} = this.insets;
+    this.orbit.lens.setPart({
+      fullWidth: width,
+      fullHeight: height,
+      x: ((right - left) / 2) * width,
+      y: ((bottom - top) / 2) * height,
+      width,
+      height,
+    });
     this.refit();
   }
 
@@ -111,81 +127,73 @@ export class MeshCamera {
   }
 
   /** A camera for a part of another picture, as View.render says. REQUIRES: hasMesh. */
-  cameraFor({width, height, margin}: Frame, part: Part): PerspectiveCamera {
-    const {camera: seen, direction, fitted} = this.orbit;
-    const camera = seen.clone();
+  lensFor({width, height, margin}: Frame, part: Part): Lens {
+    const {lens: seen, direction, fitted} = this.orbit;
+    const lens = seen.clone();
     let full = {width, height};
     if (fitted) {
       const insets = {left: 0, right: 0, top: margin, bottom: margin};
       const {distance, target} = this.framing(insets, width / height);
-      camera.position.copy(direction).multiplyScalar(distance).add(target);
+      lens.eye = sum(scaled(direction, distance), target);
     } else {
       const {left, right, top, bottom} = this.insets;
-      const {fullWidth, fullHeight} = seen.view!;
+      const {fullWidth, fullHeight} = seen.part!;
       const scale = Math.min(
         width / (fullWidth * (1 - left - right)),
         (height * (1 - 2 * margin)) / (fullHeight * (1 - top - bottom)),
       );
       full = {width: scale * fullWidth, height: scale * fullHeight};
     }
-    camera.setViewOffset(
-      full.width,
-      full.height,
-      (full.width - width) / 2 + part.x,
-      (full.height - height) / 2 + part.y,
-      part.width,
-      part.height,
-    );
-    this.orbit.setDepths(camera);
-    return camera;
+    lens.setPart({
+      fullWidth: full.width,
+      fullHeight: full.height,
+      x: (full.width - width) / 2 + part.x,
+      y: (full.height - height) / 2 + part.y,
+      width: part.width,
+      height: part.height,
+    });
+    this.orbit.setDepths(lens);
+    return lens;
+  }
+
+  /** From where a camera sees lattice coordinates. */
+  eyeOf({toEye, toCube}: Lens): Eye {
+    const {scale, offset} = this;
+    const placed = [scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0, ...offset, 1];
+    return {toEye: product(toEye, placed), toCube};
   }
 
   /** The lines of sight of a camera in this scene. */
-  sightOf(camera: PerspectiveCamera): Sight {
-    camera.updateMatrixWorld();
-    this.lattice.updateMatrixWorld();
-    const {position, scale, matrixWorld} = this.lattice;
-    const toCanvas = new Matrix4()
-      .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
-      .multiply(matrixWorld);
+  sightOf(lens: Lens): Sight {
+    const {toEye, toCube} = this.eyeOf(lens);
+    const toCanvas = product(toCube, toEye);
     return {
-      toCanvas: toCanvas.toArray(),
-      fromCanvas: toCanvas.clone().invert().toArray(),
-      eye: camera.position.clone().sub(position).divide(scale).toArray(),
+      toCanvas,
+      fromCanvas: inverse(toCanvas),
+      eye: scaled(difference(lens.eye, this.offset), 1 / this.scale),
       // the length of the bounds' diagonal, in lattice steps
-      diagonal: 2 / scale.x,
+      diagonal: 2 / this.scale,
     };
   }
 
   /** The pose of now, drawn or not. `frameMs` is the time of the last frame. */
   pose(frameMs: number): Pose {
-    const {camera, fitted} = this.orbit;
-    camera.updateMatrixWorld();
-    const toCube = new Matrix4().multiplyMatrices(
-      camera.projectionMatrix,
-      camera.matrixWorldInverse,
-    );
-    // A point is in sight if normal . (scale p + position) + constant >= 0.
-    const scale = this.lattice.scale.x;
-    const frustum =
-      fitted || !this.hasMesh
-        ? []
-        : new Frustum().setFromProjectionMatrix(toCube).planes.map(({normal, constant}) => ({
-            normal: normal.toArray(),
-            offset: -(constant + normal.dot(this.lattice.position)) / scale,
-          }));
-    const {x, y, z, w} = camera.quaternion;
-    const {toCanvas, fromCanvas} = this.sightOf(camera);
+    const {lens, fitted, state} = this.orbit;
+    const {toCanvas, fromCanvas} = this.sightOf(lens);
     return {
       toCanvas,
       fromCanvas,
-      rotation: {x, y, z, w},
-      camera: this.orbit.state,
+      axes: lens.axes,
+      camera: state,
       fitted,
-      direction: camera.getWorldDirection(new Vector3()).toArray(),
-      frustum,
+      direction: scaled(lens.axes[2], -1),
+      frustum: fitted || !this.hasMesh ? [] : frustumOf(toCanvas),
       frameMs,
     };
+  }
+
+  dispose(): void {
+    this.controls.dispose();
   }
 
   private refit(): void {
@@ -193,16 +201,15 @@ export class MeshCamera {
   }
 
   private placeLattice(): void {
-    const low = new Vector3(...(this.bounds.slice(0, 3) as Vector));
-    const high = new Vector3(...(this.bounds.slice(3, 6) as Vector));
-    const scale = 2 / Math.max(low.distanceTo(high), 1);
-    this.lattice.scale.setScalar(scale);
-    this.lattice.position.copy(low.add(high)).multiplyScalar(-0.5 * scale);
+    const low = this.bounds.slice(0, 3) as Vector;
+    const high = this.bounds.slice(3, 6) as Vector;
+    this.scale = 2 / Math.max(lengthOf(difference(high, low)), 1);
+    this.offset = scaled(sum(low, high), -this.scale / 2);
   }
 
   /** A lattice point's place in the scene. */
-  private placed([x, y, z]: Vector): Vector3 {
-    return new Vector3(x, y, z).multiply(this.lattice.scale).add(this.lattice.position);
+  private placed(point: Vector): Vector {
+    return sum(scaled(point, this.scale), this.offset);
   }
 
   /**
@@ -211,12 +218,12 @@ export class MeshCamera {
    */
   private framing(
     {left, right, top, bottom} = this.insets,
-    aspect = this.orbit.camera.aspect,
+    aspect = this.orbit.lens.aspect,
   ): Framing {
     const isWhole = !this.focus || this.orbit.isStandard;
     const seen = isWhole ? null : seenPart(this.focus!, this.bounds, this.orbit.direction);
     const points = (seen ? cornersOf(seen) : this.outline).map((corner) => this.placed(corner));
-    const wider = aspect / this.orbit.camera.aspect;
+    const wider = aspect / this.orbit.lens.aspect;
     return this.orbit.framing(points, (1 - left - right) * wider, 1 - top - bottom);
   }
 }
@@ -225,8 +232,8 @@ export class MeshCamera {
  * The part of the focus that is seen from outside: its side at a face of the bounds that faces the
  * eye. Null if no such face is near: walls would hide the focus.
  */
-function seenPart(focus: number[], bounds: number[], {x, y, z}: Vector3): number[] | null {
-  const sides = [x, y, z].map((towardsEye, axis) => (towardsEye > 0 ? axis + 3 : axis));
+function seenPart(focus: number[], bounds: number[], direction: Vector): number[] | null {
+  const sides = direction.map((towardsEye, axis) => (towardsEye > 0 ? axis + 3 : axis));
   const gaps = sides.map((side, axis) => {
     const extent = focus[axis + 3]! - focus[axis]!;
     return Math.abs(bounds[side]! - focus[side]!) / extent;
@@ -236,4 +243,25 @@ function seenPart(focus: number[], bounds: number[], {x, y, z}: Vector3): number
   const seen = [...focus];
   seen[axis] = seen[axis + 3] = bounds[sides[axis]!]!;
   return seen;
+}
+
+/** The planes of a canvas's cube, with the inside above. */
+function frustumOf(toCanvas: Matrix): Plane[] {
+  const row = (i: number): number[] => [0, 4, 8, 12].map((column) => toCanvas[column + i]!);
+  const w = row(3);
+  return [0, 1, 2].flatMap((i) =>
+    [1, -1].map((sign) => {
+      const [x, y, z, constant] = row(i).map((value, k) => w[k]! + sign * value) as [
+        number,
+        number,
+        number,
+        number,
+      ];
+      const length = Math.hypot(x, y, z);
+      return {
+        normal: [x / length, y / length, z / length] as Vector,
+        offset: -constant / length,
+      };
+    }),
+  );
 }

@@ -1,7 +1,6 @@
 // A canvas that shows a progressive mesh: surface, cuts and layers. It draws only after
 // changes.
 
-import {Scene, WebGLRenderer, type PerspectiveCamera, type WebGLRenderTarget} from 'three';
 import type {Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
 import {transferTables} from '../core/picture/transfer';
@@ -12,6 +11,9 @@ import {kRow, maxRows} from './cell_textures';
 import type {CameraState, OrbitCamera} from './camera';
 import type {Direction} from './directions';
 import {whenDrawn} from './frame_budget';
+import {Graphics} from './gl/graphics';
+import type {Target} from './gl/target';
+import type {Lens} from './lens';
 import {MeshCamera} from './mesh_camera';
 import {MeshParts} from './mesh_parts';
 import {project, rayAt, type Pose} from './pose';
@@ -24,9 +26,8 @@ import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './worker_canv
 const kMaxPixelRatio = 2;
 
 export class MeshView implements View {
-  private readonly renderer: WebGLRenderer;
-  private readonly scene = new Scene();
-  private readonly parts = new MeshParts();
+  private readonly graphics: Graphics;
+  private readonly parts: MeshParts;
   private readonly camera: MeshCamera;
   private readonly volume: VolumeView;
   private readonly surfaceCanvas: HTMLCanvasElement | OffscreenCanvas;
@@ -38,6 +39,7 @@ export class MeshView implements View {
   /** The requested frame; 0: none is. */
   private frame = 0;
   private frameMs = 0;
+  private pixelRatio = 1;
   private afterFrame: ((ms: number) => void)[] = [];
   /** Settled when the picture in tiles is drawn; null: there is none. */
   private inTiles: Promise<void> | null = null;
@@ -48,21 +50,15 @@ export class MeshView implements View {
     private readonly listeners: ViewListeners = {},
   ) {
     this.surfaceCanvas = surfaceOf(canvas);
-    this.renderer = new WebGLRenderer({
-      canvas: this.surfaceCanvas,
-      antialias: true,
-      alpha: true,
-      powerPreference: 'high-performance',
-    });
-    this.renderer.setClearColor(0, 0);
+    this.graphics = new Graphics(this.surfaceCanvas);
+    this.parts = new MeshParts(this.graphics);
     this.volume = new VolumeView(
+      this.graphics,
       (moved) => this.invalidate(moved),
       listeners.coarse?.bind(listeners),
       (working) => listeners.works?.(working),
     );
     this.camera = new MeshCamera(canvas, () => this.invalidate());
-    this.camera.lattice.add(...this.parts.all);
-    this.scene.add(this.camera.lattice);
     this.surfaceCanvas.addEventListener('webglcontextlost', this.onLost);
     this.surfaceCanvas.addEventListener('webglcontextrestored', this.onRestored);
     this.endWatch = watchSize(canvas, () => this.resize());
@@ -108,8 +104,8 @@ export class MeshView implements View {
     const text = [low, high, scaleRange, logarithmic].join();
     if (text === this.last.range) return; // it is called with every picture
     this.last.range = text;
-    const drawn = this.parts.setRange(low, high, scaleRange, logarithmic);
-    this.volume.setRange(drawn.range, scaleRange, drawn.logarithmic);
+    const range = this.parts.setRange(low, high, scaleRange, logarithmic);
+    this.volume.setRange(range, scaleRange, logarithmic);
     this.invalidate();
   }
 
@@ -187,7 +183,7 @@ export class MeshView implements View {
   async picture(background: string): Promise<Blob> {
     if (this.drawsVolume) await this.volume.drawWhole(this.pictureOf());
     // Drawing and copying share a task: a canvas that has been shown is empty.
-    if (this.volume.hasCells) this.volume.present(this.renderer);
+    if (this.volume.hasCells) this.volume.present();
     else this.draw();
     const copy = new OffscreenCanvas(this.surfaceCanvas.width, this.surfaceCanvas.height);
     const context = copy.getContext('2d')!;
@@ -217,10 +213,9 @@ export class MeshView implements View {
     this.endWatch();
     this.surfaceCanvas.removeEventListener('webglcontextlost', this.onLost);
     this.surfaceCanvas.removeEventListener('webglcontextrestored', this.onRestored);
-    this.orbit.dispose();
+    this.camera.dispose();
     this.parts.dispose();
     this.volume.dispose();
-    this.renderer.dispose();
   }
 
   // ---- helpers
@@ -230,6 +225,7 @@ export class MeshView implements View {
     this.listeners.lost?.(true);
   };
   private readonly onRestored = (): void => {
+    this.graphics.restored();
     this.listeners.lost?.(false);
     this.invalidate();
   };
@@ -238,13 +234,16 @@ export class MeshView implements View {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
     const ratio = Math.min(pixelRatioOf(this.canvas), kMaxPixelRatio);
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
+    Object.assign(this.surfaceCanvas, {
+      width: Math.floor(width * ratio),
+      height: Math.floor(height * ratio),
+    });
+    this.pixelRatio = ratio;
     this.parts.setPixelRatio(ratio);
     this.camera.resize(width, height);
     // Draws at once: a resized canvas is empty until it is drawn.
     if (!this.volume.hasCells) return this.draw();
-    this.volume.present(this.renderer);
+    this.volume.present();
     this.invalidate();
   }
 
@@ -262,51 +261,43 @@ export class MeshView implements View {
   }
 
   /** By default the canvas's. */
-  private pictureOf(
-    camera: PerspectiveCamera = this.orbit.camera,
-    target: WebGLRenderTarget | null = null,
-  ): Picture {
-    this.orbit.setDepths(camera);
-    const {renderer, scene} = this;
-    return {renderer, scene, camera, target, ...this.camera.sightOf(camera)};
+  private pictureOf(lens: Lens = this.orbit.lens, target: Target | null = null): Picture {
+    this.orbit.setDepths(lens);
+    const {parts, camera} = this;
+    return {parts, eyeOfParts: camera.eyeOf(lens), target, ...camera.sightOf(lens)};
   }
 
   private async drawTiles(frame: Frame): Promise<Tile[]> {
     const tiles: Tile[] = [];
     const {width, height, pixelRatio} = frame;
-    const whole = this.camera.cameraFor(frame, {x: 0, y: 0, width, height});
+    const whole = this.camera.lensFor(frame, {x: 0, y: 0, width, height});
     this.parts.fadeEdges(this.camera.sightOf(whole).toCanvas, {
       clientWidth: width / pixelRatio,
       clientHeight: height / pixelRatio,
     });
     for (const part of partsOf(frame)) {
-      const camera = this.camera.cameraFor(frame, part);
-      tiles.push(
-        await tileOf(this.renderer, part, (target) => this.drawTile(camera, target, frame)),
-      );
+      const lens = this.camera.lensFor(frame, part);
+      tiles.push(await tileOf(this.graphics, part, (target) => this.drawTile(lens, target, frame)));
     }
     return tiles;
   }
 
-  private async drawTile(
-    camera: PerspectiveCamera,
-    target: WebGLRenderTarget,
-    {pixelRatio}: Frame,
-  ): Promise<void> {
-    const {parts, renderer, scene} = this;
+  private async drawTile(lens: Lens, target: Target, {pixelRatio}: Frame): Promise<void> {
+    const {parts} = this;
     parts.setPixelRatio(pixelRatio);
-    if (this.drawsVolume) await this.volume.drawWhole(this.pictureOf(camera, target));
+    if (this.drawsVolume) await this.volume.drawWhole(this.pictureOf(lens, target));
     else {
-      renderer.setRenderTarget(target);
-      renderer.render(scene, camera);
-      renderer.setRenderTarget(null);
+      target.begin();
+      target.clear();
+      parts.draw(this.camera.eyeOf(lens));
     }
-    parts.setPixelRatio(renderer.getPixelRatio());
+    parts.setPixelRatio(this.pixelRatio);
   }
 
   /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
   private fitting(cells: VolumeCells | null): VolumeCells | null {
-    const maxSize = this.renderer.capabilities.maxTextureSize;
+    const {gl} = this.graphics;
+    const maxSize = Number(gl.getParameter(gl.MAX_TEXTURE_SIZE));
     if (!cells || maxRows(cells) <= maxSize) return cells;
     reportError(
       new Error(
@@ -329,15 +320,23 @@ export class MeshView implements View {
     const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
     try {
       this.orbit.setDepths();
-      this.parts.fadeEdges(this.camera.sightOf(this.orbit.camera).toCanvas, this.canvas);
+      this.parts.fadeEdges(this.camera.sightOf(this.orbit.lens).toCanvas, this.canvas);
       if (this.drawsVolume) this.volume.draw(this.pictureOf(), this.moved);
-      else this.renderer.render(this.scene, this.orbit.camera);
+      else this.drawCanvas();
       this.moved = false;
       this.frameMs = performance.now() - start;
       this.listeners.drawn?.(this.pose);
     } finally {
-      if (done.length > 0)
-        void whenDrawn(this.renderer.getContext() as WebGL2RenderingContext, start).then(tell);
+      if (done.length > 0) void whenDrawn(this.graphics.gl, start).then(tell);
     }
+  }
+
+  private drawCanvas(): void {
+    const {gl} = this.graphics;
+    this.graphics.beginCanvas();
+    this.graphics.use({depths: 'written'});
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.parts.draw(this.camera.eyeOf(this.orbit.lens));
   }
 }

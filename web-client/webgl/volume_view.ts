@@ -2,22 +2,22 @@
 // pixels while something moves, and all cells with all pixels once it rests. They draw in strips of
 // pixels, so that the next movement waits for a strip and not for the picture.
 
-import type {WebGLRenderer} from 'three';
 import type {TransferTables} from '../core/picture/transfer';
 import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/picture/volume';
 import {CellDrawer, type Picture} from './cell_drawer';
 import {CellMesh} from './cell_mesh';
 import {CoarseMesh} from './coarse_mesh';
 import {FrameBudget, kMovingMs} from './frame_budget';
+import type {Graphics} from './gl/graphics';
 import type {RayCaster} from './ray_caster';
 
 /** A picture rests so long after its last change. */
 const kRestMs = 150;
 
 export class VolumeView {
-  private readonly fine = new CellMesh();
+  private readonly fine: CellMesh;
   private readonly coarse: CoarseMesh;
-  private readonly drawer = new CellDrawer();
+  private readonly drawer: CellDrawer;
   private readonly budget = new FrameBudget();
   /** The last time for all cells and pixels; 0: unknown. */
   private wholeMs = 0;
@@ -30,11 +30,14 @@ export class VolumeView {
 
   /** `changed` asks for another picture. `askCoarse` and `works` are those of ViewListeners. */
   constructor(
+    graphics: Graphics,
     private readonly changed: (moved: boolean) => void,
     askCoarse?: (have: number) => Promise<CoarseCells>,
     private readonly works: (working: boolean) => void = () => undefined,
   ) {
-    this.coarse = new CoarseMesh(askCoarse);
+    this.fine = new CellMesh(graphics);
+    this.coarse = new CoarseMesh(graphics, askCoarse);
+    this.drawer = new CellDrawer(graphics);
   }
 
   get hasCells(): boolean {
@@ -110,8 +113,8 @@ export class VolumeView {
   }
 
   /** Shows the last picture again on a canvas that has been cleared. */
-  present(renderer: WebGLRenderer): void {
-    this.drawer.present(renderer);
+  present(): void {
+    this.drawer.present();
   }
 
   dispose(): void {

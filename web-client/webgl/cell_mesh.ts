@@ -2,6 +2,7 @@
 
 import type {VolumeCells} from '../core/picture/volume';
 import {CellTextures} from './cell_textures';
+import type {Graphics} from './gl/graphics';
 
 export class CellMesh {
   /** May differ from `of`: a picture that is being drawn keeps its cells. */
@@ -15,11 +16,13 @@ export class CellMesh {
    */
   layers = 1;
 
+  constructor(private readonly graphics: Graphics) {}
+
   /** Takes the requested cells. REQUIRES: no picture is being drawn. */
   update(): void {
     if (this.requested === this.of) return;
     this.shown?.dispose();
     this.of = this.requested;
-    this.shown = this.of && new CellTextures(this.of);
+    this.shown = this.of && new CellTextures(this.graphics, this.of);
   }
 }

@@ -1,0 +1,93 @@
+// The shaders of every surface and cut: a colour map over field values, cell edges, and up to three
+// clip planes by discarding. Colours are written as they stand in the table (sRGB, no tone
+// mapping), so that a flat cut shows exactly the legend's colours.
+//
+// three.js puts a head before them, and MeshParts puts a like one: position, both matrices,
+// gl_FragColor.
+
+import {kColorMapEntries} from '../core/picture/color_maps';
+
+export const kFieldVertexShader = /* glsl */ `
+  uniform int firstHalf;
+  in float value;
+  out float vValue;
+  // centroid: a place outside the triangle would leave pixels of slivers above a plane
+  centroid out vec3 vLattice;
+  out vec3 vView;
+  out vec3 vCorner;
+  void main() {
+    int corner = gl_VertexID % 3;
+    vCorner = vec3(corner == 0, corner == 1, corner == 2);
+    // In triangles from firstHalf on, the side opposite to the first corner is a quad's diagonal.
+    if (gl_VertexID / 3 >= firstHalf) vCorner.x = 1.0;
+    vValue = value;
+    vLattice = position;
+    vec4 view = modelViewMatrix * vec4(position, 1.0);
+    vView = view.xyz;
+    gl_Position = projectionMatrix * view;
+  }`;
+
+/** Edges of cells less than 6 pixels high are fainter, as the cells are smaller. */
+const kPlainDensity = 1 / 6;
+
+export const kFieldFragmentShader = /* glsl */ `
+  in float vValue;
+  centroid in vec3 vLattice;
+  in vec3 vView;
+  in vec3 vCorner;
+  uniform sampler2D colorMap;
+  // the ends of the map, in units of vValue; of the value itself if logarithmic
+  uniform vec2 range;
+  uniform vec2 scaleRange; // the values that vValue 0 and 1 stand for
+  uniform bool logarithmic;
+  uniform bool colored;
+  uniform vec3 plainColor;
+  uniform bool lit;
+  uniform bool twoSided;
+  uniform vec4 clipPlanes[3];
+  uniform float opacity;
+  uniform float edgeStrength;
+  uniform float edgeFade;
+  uniform float pixelRatio;
+
+  vec3 surfaceColor() {
+    // a missing value makes its triangle plain
+    if (!colored || isnan(vValue)) return plainColor;
+    float t = (vValue - range.x) / max(range.y - range.x, 1e-12);
+    if (logarithmic) {
+      float value = mix(scaleRange.x, scaleRange.y, vValue);
+      t = value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
+    }
+    t = clamp(t, 0.0, 1.0);
+    // Sample the centres of entries, so that both ends of the range show the table's own ends.
+    float at = (t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0;
+    return texture(colorMap, vec2(at, 0.5)).rgb;
+  }
+
+  // 1 on an edge, 0 inside. All edges have one strength (edge_fade.ts), so that none stand alone.
+  // Only those of cells far smaller than the others are fainter: the lines would cover the colours.
+  float edge() {
+    vec3 perPixel = max(fwidth(vCorner), 1e-6);
+    vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
+    float coverage = 1.0 - min(min(distance.x, distance.y), distance.z);
+    float density = max(max(perPixel.x, perPixel.y), perPixel.z) * pixelRatio;
+    return coverage * min(1.0, ${kPlainDensity} / density);
+  }
+
+  void main() {
+    for (int i = 0; i < 3; ++i) if (dot(clipPlanes[i].xyz, vLattice) > clipPlanes[i].w) discard;
+    vec3 color = surfaceColor();
+    if (lit) {
+      // Flat shading from screen derivatives makes cells look like cells. A lamp is a little above
+      // the eye, and light falls from the sky. All channels get one factor: the hue stays.
+      vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
+      vec3 light = normalize(vec3(0.25, 0.45, 1.0));
+      normal *= dot(normal, vView) > 0.0 ? -1.0 : 1.0;
+      float facing = max(dot(normal, light), 0.0);
+      float sky = 0.5 + 0.5 * normal.y;
+      color *= 0.68 + 0.18 * facing + 0.14 * sky;
+      if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
+    }
+    color = mix(color, color * 0.22, edgeStrength * edgeFade * edge());
+    gl_FragColor = vec4(min(color, 1.0), opacity);
+  }`;

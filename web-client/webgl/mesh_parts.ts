@@ -1,0 +1,148 @@
+// The triangles of a picture: surface, cuts and layers, with the look that they share.
+
+import {kLayers} from '../core/layers/layers';
+import {soupOf} from '../core/layers/shown';
+import {colorTable, kColorMapEntries} from '../core/picture/color_maps';
+import {kMaxPlanes} from '../core/picture/display';
+import type {Snapshot} from '../core/session/worker_messages';
+import {edgeFade} from './edge_fade';
+import {kFieldFragmentShader, kFieldVertexShader} from './field_shaders';
+import type {Graphics} from './gl/graphics';
+import {Program, type Uniform} from './gl/program';
+import {Texture} from './gl/texture';
+import type {Eye} from './lens';
+import type {Matrix} from './matrix';
+import type {Size} from './pose';
+import {kSoupAttributes, Soup} from './soup';
+import type {Look} from './view';
+
+/** The darkness of cell edges: enough to follow them, too little to change what a colour says. */
+const kEdgeStrength = 0.52;
+
+const kPrecisions = `precision highp float;
+  precision highp int;
+  precision highp sampler2D;`;
+const kVertexHead = `${kPrecisions}
+  uniform mat4 modelViewMatrix;
+  uniform mat4 projectionMatrix;
+  in vec3 position;`;
+const kFragmentHead = `${kPrecisions}
+  layout(location = 0) out vec4 fragColor;
+  #define gl_FragColor fragColor
+`;
+
+export class MeshParts {
+  private readonly surface: Soup;
+  private readonly layers;
+  private readonly cuts: readonly Soup[];
+  private readonly all: readonly Soup[];
+  private readonly program: Program;
+  private readonly table = new Uint8Array(4 * kColorMapEntries);
+  private readonly colorMap: Texture;
+  private tableName = '';
+  /** The uniforms of all. */
+  private readonly look: Record<string, Uniform>;
+
+  constructor(private readonly graphics: Graphics) {
+    this.surface = new Soup(graphics, true);
+    this.layers = kLayers.flatMap((layer) =>
+      layer.draw ? [{layer, draw: layer.draw, soup: new Soup(graphics, true, true)}] : [],
+    );
+    this.cuts = Array.from({length: kMaxPlanes}, () => new Soup(graphics, false));
+    this.all = [this.surface, ...this.layers.map(({soup}) => soup), ...this.cuts];
+    this.program = new Program(
+      graphics,
+      `${kVertexHead}${kFieldVertexShader}`,
+      `${kFragmentHead}${kFieldFragmentShader}`,
+      kSoupAttributes,
+    );
+    this.colorMap = new Texture(graphics, this.table, kColorMapEntries, 1, 'rgba8');
+    this.look = {
+      colorMap: this.colorMap,
+      plainColor: [0.72, 0.74, 0.78],
+      range: [0, 1],
+      scaleRange: [0, 1],
+      logarithmic: false,
+      edgeFade: 1,
+      pixelRatio: 1,
+    };
+  }
+
+  /** `capped`: the cuts are closed by their cells. */
+  show(snapshot: Snapshot, capped: boolean): void {
+    if (snapshot.surface) this.surface.show(snapshot.surface);
+    for (const {layer, soup} of this.layers) {
+      const its = soupOf(snapshot, layer);
+      if (its) soup.show(its);
+      soup.setClip(snapshot.planes);
+    }
+    this.surface.setClip(snapshot.planes);
+    this.cuts.forEach((soup, i) => {
+      soup.show(capped ? (snapshot.cuts[i] ?? null) : null);
+      soup.setClip(snapshot.planes.filter((_, k) => k !== i));
+    });
+  }
+
+  clear(): void {
+    for (const soup of this.all) soup.show(null);
+  }
+
+  setLook({map, reversed, edges, opacity}: Look): void {
+    const table = `${map} ${reversed}`;
+    if (table !== this.tableName) {
+      this.table.set(colorTable(map, reversed));
+      this.colorMap.update();
+    }
+    this.tableName = table;
+    for (const {look} of this.all) look.edgeStrength = edges ? kEdgeStrength : 0;
+    for (const {draw, soup} of this.layers) if (!draw.edges) soup.look.edgeStrength = 0;
+    this.surface.look.opacity = opacity;
+  }
+
+  /**
+   * The colours span `low` to `high`, values of the field. `scaleRange` holds the values of 0 and 1
+   * in the soups. Returns the range as shaders take it. REQUIRES: 0 < low < high if logarithmic.
+   */
+  setRange(
+    low: number,
+    high: number,
+    scaleRange: [number, number],
+    logarithmic: boolean,
+  ): [number, number] {
+    const span = scaleRange[1] - scaleRange[0] || 1;
+    const share = (value: number): number => (value - scaleRange[0]) / span;
+    const range: [number, number] = logarithmic ? [low, high] : [share(low), share(high)];
+    Object.assign(this.look, {range, scaleRange, logarithmic});
+    return range;
+  }
+
+  /** Draws the edges as strong as the cells are large on a canvas of this size. */
+  fadeEdges(toCanvas: Matrix, canvas: Size): void {
+    const withEdges = [this.surface, ...this.cuts].map(({shown}) => shown);
+    this.look.edgeFade = edgeFade(withEdges, toCanvas, canvas);
+  }
+
+  setPixelRatio(ratio: number): void {
+    this.look.pixelRatio = Math.max(1, ratio);
+  }
+
+  /** Draws all onto an empty target, or canvas. */
+  draw({toEye, toCube}: Eye): void {
+    const isClear = ({look}: Soup): boolean => Number(look.opacity) < 1;
+    const visible = this.all.filter((soup) => soup.visible);
+    const seen = {...this.look, modelViewMatrix: toEye, projectionMatrix: toCube};
+    // Soups that can be seen through come last, and hide nothing.
+    for (const soup of [...visible.filter((one) => !isClear(one)), ...visible.filter(isClear)]) {
+      const clear = isClear(soup);
+      this.graphics.use({depths: clear ? 'tested' : 'written', mix: clear ? 'over' : null});
+      this.program.use({...seen, ...soup.look});
+      soup.draw();
+    }
+  }
+
+  dispose(): void {
+    for (const soup of this.all) soup.dispose();
+    this.program.dispose();
+    this.colorMap.dispose();
+  }
+}
