@@ -3,12 +3,13 @@
 
 import {defineConfig} from 'vitest/config';
 import {notices} from './notices';
+import {plainDynamicImports} from './plain_imports';
 import {smallShaders} from './small_shaders';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
 
 export default defineConfig({
-  plugins: [smallShaders(), notices()],
+  plugins: [smallShaders(), plainDynamicImports(), notices()],
   base: './',
   resolve: {
     alias: [{find: /^qtet-codec\.wasm/, replacement: wasm}],
@@ -21,6 +22,7 @@ export default defineConfig({
     // a data: address would prevent compiling WebAssembly while it downloads
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 700,
+    modulePreload: {polyfill: false},
     reportCompressedSize: false,
   },
   test: {environment: 'node', include: ['tests/**/*.test.ts']},

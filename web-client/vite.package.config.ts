@@ -1,30 +1,14 @@
 // Builds the npm package's modules: QTET_WASM names the codec's WebAssembly, QTET_PACKAGE_OUT the
 // folder to write (pack.mjs sets both).
 
-import {defineConfig, type Plugin, transformWithEsbuild} from 'vite';
+import {defineConfig, transformWithEsbuild} from 'vite';
 import {notices} from './notices';
+import {plainDynamicImports} from './plain_imports';
 import {smallShaders} from './small_shaders';
-
-/**
- * Vite would wrap import() in its own preloading. The Vite of a page that uses the package then
- * takes it for its own and calls it without an address.
- */
-const plainDynamicImports: Plugin = {
-  name: 'plain-dynamic-imports',
-  configResolved({plugins}) {
-    const at = plugins.findIndex(({name}) => name === 'vite:build-import-analysis');
-    if (at < 0)
-      throw new Error(
-        'vite:build-import-analysis has another name: see that no chunk of the package holds ' +
-          '__vitePreload',
-      );
-    (plugins as Plugin[]).splice(at, 1);
-  },
-};
 
 export default defineConfig({
   base: './',
-  plugins: [plainDynamicImports, notices()],
+  plugins: [plainDynamicImports(), notices()],
   resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
   // Bundlers copy workers' files unchanged. So these contain everything they need, and are minified
   // here.

@@ -144,6 +144,14 @@ export class ViewerPage {
     const state = await this.page.evaluate(() => window.qtetViewer.state);
     if (state === 'failed' && wanted !== 'failed')
       throw new Error(`the viewer failed: ${await this.text('.notice p')}`);
+    if (['complete', 'failed', 'held'].includes(wanted)) await this.waitForControls();
+  }
+
+  /** They come behind the first picture, or an error. */
+  async waitForControls() {
+    await this.page.waitForFunction(() => window.qtetViewer.viewing?.later, null, {
+      timeout: kTimeoutMs,
+    });
   }
 
   /** Waits until the picture of the current figures has been drawn, and one more frame. */
@@ -151,6 +159,7 @@ export class ViewerPage {
     await this.page.waitForFunction(() => window.qtetSeen.pictures > 0, null, {
       timeout: kTimeoutMs,
     });
+    await this.waitForControls();
     await this.settle();
   }
 

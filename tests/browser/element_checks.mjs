@@ -220,7 +220,7 @@ async function keepsWhatIsAskedForBeforeThereIsAMesh({server, browser}) {
     window.qtetRange = new Promise((chosen) => {
       const choose = setInterval(() => {
         const select = late.shadowRoot.querySelector('select[name=range]');
-        if (!late.viewing?.panels) return;
+        if (!late.viewing?.shell) return;
         clearInterval(choose);
         select.value = 'fixed';
         select.dispatchEvent(new Event('change'));

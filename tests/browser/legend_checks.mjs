@@ -216,7 +216,7 @@ async function movesAndCentresByKeys({server, browser}) {
       const {meshView, viewing} = window.qtetViewer;
       const {bounds} = viewing.mesh;
       const {point} = viewing.requests;
-      const [x, y] = viewing.panels.cards.middle;
+      const [x, y] = viewing.shell.cards.middle;
       return {
         mesh: meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2)),
         point: point && meshView.project(point),

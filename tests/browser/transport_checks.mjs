@@ -257,7 +257,7 @@ async function worksUnderAStrictPolicy({browser, logs, viewer: files, out}) {
       assert.ok(Date.now() < end, `the mesh does not come: ${messages.join('; ')}`);
       await page.waitForTimeout(50);
     }
-    await page.evaluate(() => window.qtetViewer.viewing.actions.share());
+    await page.evaluate(() => window.qtetViewer.viewing.later.actions.share());
     const styled = await page.evaluate(() => {
       const {shadowRoot} = window.qtetViewer;
       const of = (selector) => getComputedStyle(shadowRoot.querySelector(selector));

@@ -1,41 +1,57 @@
 // The parts of a viewer that the first picture does not need. They are loaded behind it.
 
-import type {Client} from '../core/session/client';
-import type {Direction} from '../webgl/directions';
 import type {View} from '../webgl/view';
-import type {Settings, ShownRange} from './settings/settings';
+import type {StreamState} from '../core/session/worker_messages';
+import styles from './controls.css?inline';
+import {kCards, kControls, kCube, kDialogs} from './controls_template';
+import type {ShownRange} from './settings/settings';
+import {unfittingParts, unknownNames, wrongParts} from './settings/wrong_parts';
+import {Actions, type ActionsHost} from './page/actions';
 import {find} from './page/find';
+import {bindKeys} from './page/keys';
 import type {Page} from './page/page';
-import type {ShownMesh} from './page/shown_mesh';
+import {adopt, insertMarkup, setMarkup} from './page/trusted';
 import {Undo} from './page/undo';
+import {ErrorCurve} from './panels/error_curve';
 import {HistogramPanel} from './panels/histogram_panel';
 import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
+import {Panels, type PanelsHost} from './panels/panels';
+import type {Shell} from './panels/shell';
 import type {Pictures} from './picture/pictures';
 
-export interface LaterHost {
-  readonly client: Client;
-  readonly view: View | null;
-  readonly mesh: ShownMesh;
-  readonly settings: Settings;
+export interface LaterHost extends ActionsHost, PanelsHost {
   readonly range: ShownRange | null;
-  look(direction: Direction | null): void;
-  readonly stream: {choose(mesh: string): void};
+  readonly stream: {readonly state: StreamState; choose(mesh: string): void};
   readonly notices: {end(code: string): void};
-  failed(code: string, message: string): void;
 }
 
 export class Later {
+  readonly panels: Panels;
+  readonly actions: Actions;
   private readonly cube: OrientationCube;
   private readonly hover: Hover;
   private readonly ends = new AbortController();
   private seen = '';
+  /** The sentences about attributes that were shown last. */
+  private wrong = '';
   private pictures: Promise<Pictures> | null = null;
 
   constructor(
     private readonly page: Page,
     private readonly host: LaterHost,
+    shell: Shell,
   ) {
+    const {root} = page;
+    adopt(root, styles, 'before');
+    setMarkup(find(root, '.controls'), kControls);
+    insertMarkup(find(root, '.panel'), kCards);
+    insertMarkup(find(root, '.notice'), kCube);
+    insertMarkup(find(root, '.notice'), kDialogs);
+    find(root, '.actions').inert = false;
+    this.actions = new Actions(page, host);
+    this.panels = new Panels(page, host, this.actions, shell.cards);
+    shell.progress.attach(new ErrorCurve(find(root, '.curve')));
     this.cube = new OrientationCube(find(page.root, '.orientation-cube'), (direction) =>
       host.look(direction),
     );
@@ -61,11 +77,37 @@ export class Later {
     );
     new HistogramPanel(page, host, this.ends.signal);
     this.takeDrops();
-    this.follow();
+    this.panels.showState(host.stream.state);
+    if (host.view) this.attach(host.view);
   }
 
   dispose(): void {
     this.ends.abort();
+  }
+
+  /** Must be called with each new view. */
+  attach(view: View): void {
+    this.panels.attach(view);
+    bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
+    this.follow();
+  }
+
+  /** Says which attributes the picture does not follow, and why. */
+  tellWrongParts(): void {
+    const {host, page} = this;
+    const {manifest} = host.mesh;
+    const read = page.read.bind(page);
+    const sentences = [...unknownNames(page.unknown), ...wrongParts(read)];
+    if (manifest) sentences.push(...unfittingParts(read, manifest));
+    const text = sentences.join('\n');
+    if (text === this.wrong) return;
+    this.wrong = text;
+    if (text === '') host.notices.end('bad-attribute');
+    else host.failed('bad-attribute', text);
+  }
+
+  forgetWrongParts(): void {
+    this.wrong = '';
   }
 
   /** Opens the dialog that makes a picture. */
@@ -112,6 +154,7 @@ export class Later {
 
   /** Must be called after every frame. */
   follow(): void {
+    this.panels.follow();
     const {pose} = this.host.view ?? {};
     const seen = pose?.toCanvas.join() ?? '';
     if (!pose || seen === this.seen) return;

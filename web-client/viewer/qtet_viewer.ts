@@ -185,7 +185,7 @@ export class QtetViewer extends HTMLElement {
         setMarkup(this.root, kTemplate);
         this.viewing = new Viewing(this.page, client, this.kept);
       },
-      (): void => this.viewing?.buildPanels(),
+      (): void => this.viewing?.buildShell(),
     ];
     const step = (): void => {
       if (this.client !== client) return;

@@ -9,22 +9,24 @@ import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_mes
 import type {Direction} from '../webgl/directions';
 import type {View} from '../webgl/view';
 import {Graphics, type ViewStart} from './graphics';
-import {Actions, type ActionsHost} from './page/actions';
 import {CameraWatch} from './page/camera_watch';
-import {find} from './page/find';
 import {isOnDark, watchGround} from './page/ground';
-import {bindKeys} from './page/keys';
 import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
 import {rangeOf, settingsFor, ShownMesh} from './page/shown_mesh';
-import {Panels, type PanelsHost} from './panels/panels';
+import {Shell} from './panels/shell';
 import {displayOf, planesOf, Requests} from './requests';
 import {readSettings, type Settings, type ShownRange} from './settings/settings';
-import {unfittingParts, unknownNames, wrongParts} from './settings/wrong_parts';
-import type {Later} from './later';
+import type {Later, LaterHost} from './later';
 import {StreamControl} from './stream_control';
 
-export class Viewing implements ActionsHost, PanelsHost {
+/**
+ * The controls come behind the first picture, or after this time: who has no picture may want to
+ * change what is shown.
+ */
+const kLaterMs = 5000;
+
+export class Viewing implements LaterHost {
   mesh = new ShownMesh();
   settings: Settings;
   /** The values that the colours span; null if nothing is coloured. */
@@ -35,13 +37,11 @@ export class Viewing implements ActionsHost, PanelsHost {
   private readonly camera: CameraWatch;
   private readonly requests: Requests;
   private readonly endGround: () => void;
-  private readonly actions: Actions;
-  /** They are built a task later than the rest. */
-  private panels: Panels | null = null;
-  /** Loaded behind the first picture. */
+  /** It is built a task later than the rest. */
+  private shell: Shell | null = null;
+  /** The controls; null before they are loaded. */
   later: Later | null = null;
-  /** The sentences about attributes that were shown last. */
-  private wrong = '';
+  private readonly timer: ReturnType<typeof setTimeout>;
   /** The `complete` event has been dispatched. */
   private completeTold = false;
 
@@ -54,7 +54,6 @@ export class Viewing implements ActionsHost, PanelsHost {
     // The stream of a file begins at once and needs the limit.
     this.settings = readSettings((name) => page.read(name));
     this.requests = new Requests(client);
-    this.actions = new Actions(page, this);
     this.notices = new Notices(page.root, (source) =>
       source === 'graphics' ? this.restartGraphics() : void this.stream.open(),
     );
@@ -68,7 +67,6 @@ export class Viewing implements ActionsHost, PanelsHost {
     this.graphics = new Graphics(page.root, this.notices, {
       opened: (view) => this.begin(view),
       drawn: () => {
-        this.panels?.follow();
         this.later?.follow();
         this.camera.frame();
       },
@@ -80,33 +78,34 @@ export class Viewing implements ActionsHost, PanelsHost {
       opens: (isSame) => {
         this.forget(isSame);
         this.notices.endOf('stream', 'page');
-        this.wrong = ''; // it is said again once the mesh is known
+        this.later?.forgetWrongParts(); // they are told again once the mesh is known
       },
       changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
       failed: (code, message) => this.failed(code, message),
     });
+    this.timer = setTimeout(() => void this.loadLater(), kLaterMs);
     this.endGround = watchGround(() => this.apply());
     void this.graphics.open(() => this.takeStart());
     void this.stream.open();
   }
 
-  buildPanels(): void {
-    this.panels = new Panels(this.page, this, this.actions);
-    this.panels.progress.begin(this.mesh.manifest);
-    this.panels.progress.takePlan(this.mesh.plan);
+  buildShell(): void {
+    this.shell = new Shell(this.page, this, () => this.later?.panels.inspect.arrange());
+    this.shell.progress.begin(this.mesh.manifest);
+    this.shell.progress.takePlan(this.mesh.plan);
     this.showState(this.stream.state, 0, 0);
-    if (this.view) this.panels.attach(this.view);
     this.apply();
   }
 
   dispose(): void {
+    clearTimeout(this.timer);
     this.endGround();
     this.camera.dispose();
     this.stream.dispose();
     this.graphics.dispose();
-    this.panels?.dispose();
+    this.shell?.dispose();
     this.later?.dispose();
-    this.panels = this.later = null;
+    this.shell = this.later = null;
   }
 
   get view(): View | null {
@@ -115,12 +114,12 @@ export class Viewing implements ActionsHost, PanelsHost {
 
   /** Brings everything in line with the attributes. */
   apply(): void {
-    const {mesh, page, panels, view} = this;
-    if (!panels) return;
+    const {mesh, page, shell, view} = this;
+    if (!shell) return;
     const before = this.settings;
     this.settings = settingsFor(mesh, (name) => page.read(name));
-    this.tellWrongParts();
-    panels.update(this.settings, mesh);
+    this.later?.tellWrongParts();
+    this.later?.panels.update(this.settings, mesh);
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     const {limit} = this.settings;
@@ -142,7 +141,7 @@ export class Viewing implements ActionsHost, PanelsHost {
 
   moveClip(step: number): void {
     const [plane] = this.settings.planes;
-    if (plane) this.panels?.clip.move(0, plane.share + step);
+    if (plane) this.later?.panels.clip.move(0, plane.share + step);
   }
 
   centre(): void {
@@ -152,16 +151,16 @@ export class Viewing implements ActionsHost, PanelsHost {
   }
 
   look(direction: Direction | null): void {
-    this.panels?.cards.refit();
+    this.shell?.cards.refit();
     this.view?.look(direction);
   }
 
   inspect(): void {
-    this.panels?.inspect.pickMiddle();
+    this.later?.panels.inspect.pickMiddle();
   }
 
   endTool(): void {
-    this.panels?.inspect.use('none');
+    this.later?.panels.inspect.use('none');
   }
 
   pointAt(point: Vector | null): void {
@@ -172,6 +171,7 @@ export class Viewing implements ActionsHost, PanelsHost {
   failed(code: string, message: string): void {
     if (!this.page.element.isConnected) return;
     this.notices.add(code, message);
+    void this.loadLater(); // there may be no picture
     this.page.dispatch('error', {code, message});
   }
 
@@ -183,7 +183,7 @@ export class Viewing implements ActionsHost, PanelsHost {
         return this.takeManifest(message.manifest);
       case 'plan':
         this.mesh.plan = message.plan;
-        return this.panels?.progress.takePlan(message.plan);
+        return this.shell?.progress.takePlan(message.plan);
       case 'base':
         return this.takeBase(message.figures);
       case 'snapshot':
@@ -203,7 +203,7 @@ export class Viewing implements ActionsHost, PanelsHost {
     if (this.mesh.manifest) this.forget(true); // another log has taken its name
     this.mesh.manifest = manifest;
     this.view?.setFocus(manifest.focus ?? null);
-    this.panels?.progress.begin(manifest);
+    this.shell?.progress.begin(manifest);
     this.apply();
   }
 
@@ -214,7 +214,7 @@ export class Viewing implements ActionsHost, PanelsHost {
 
   private takeProgress(statistics: Statistics): void {
     this.mesh.statistics = statistics;
-    this.panels?.progress.show(statistics);
+    this.shell?.progress.show(statistics);
     this.page.dispatch('progress', statistics);
   }
 
@@ -227,11 +227,10 @@ export class Viewing implements ActionsHost, PanelsHost {
 
   /** The view is ready: show what has been waiting for it. */
   private begin(view: View): void {
-    this.panels?.attach(view);
+    this.later?.attach(view);
     view.setFocus(this.mesh.manifest?.focus ?? null);
-    bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
     this.apply();
-    this.panels?.cards.repeat();
+    this.shell?.cards.repeat();
     const {waiting} = this.mesh;
     this.mesh.waiting = null;
     if (waiting) this.draw(waiting, view);
@@ -254,14 +253,18 @@ export class Viewing implements ActionsHost, PanelsHost {
       void this.loadLater();
       this.tellComplete();
     });
-    this.panels?.showFigures(snapshot, view.pose.frameMs);
+    this.later?.panels.showFigures(snapshot, view.pose.frameMs);
   }
 
   /** The next picture tries again if the server is away. */
   private async loadLater(): Promise<void> {
     if (this.later) return;
     const {Later} = await import('./later').catch(() => ({Later: null}));
-    if (Later && this.panels) this.later ??= new Later(this.page, this);
+    if (!Later || !this.shell) return;
+    this.later ??= new Later(this.page, this, this.shell);
+    this.apply();
+    const {snapshot} = this.mesh;
+    if (snapshot && this.view) this.later.panels.showFigures(snapshot, this.view.pose.frameMs);
   }
 
   /** Keeps the camera. The mesh comes again from the worker that decodes. */
@@ -290,29 +293,17 @@ export class Viewing implements ActionsHost, PanelsHost {
       view.clear();
       if (isSame && !fitted) view.cameraState = cameraState;
     }
-    this.panels?.clear();
-  }
-
-  /** Says which attributes the picture does not follow, and why. */
-  private tellWrongParts(): void {
-    const {mesh, notices, page} = this;
-    const read = page.read.bind(page);
-    const sentences = [...unknownNames(page.unknown), ...wrongParts(read)];
-    if (mesh.manifest) sentences.push(...unfittingParts(read, mesh.manifest));
-    const text = sentences.join('\n');
-    if (text === this.wrong) return;
-    this.wrong = text;
-    if (text === '') notices.end('bad-attribute');
-    else this.failed('bad-attribute', text);
+    this.shell?.clear();
+    this.later?.panels.clear();
   }
 
   private showDisplay(): void {
-    const {mesh, page, panels, settings} = this;
+    const {mesh, page, shell, settings} = this;
     // A picture without its planes would show what the address hides.
     if (!mesh.manifest || mesh.bounds.length === 0) return;
     const display = displayOf(settings, mesh, (name) => page.read(name));
     if (!this.requests.show(display)) return;
-    panels?.progress.follow(display.color ? [display.color.field] : [], settings.limit);
+    shell?.progress.follow(display.color ? [display.color.field] : [], settings.limit);
     this.lookAt();
   }
 
@@ -322,15 +313,16 @@ export class Viewing implements ActionsHost, PanelsHost {
   }
 
   private showRange(): void {
-    const {mesh, panels, settings} = this;
-    if (!panels) return;
+    const {mesh, shell, settings} = this;
+    if (!shell) return;
     const range = mesh.manifest && mesh.snapshot && rangeOf(mesh.snapshot, mesh.manifest, settings);
     if (range && mesh.snapshot) {
       const {low, high, logarithmic} = range;
       this.view?.setRange(low, high, mesh.snapshot.scaleRange, logarithmic);
     }
     this.range = range && {...range, hasMissing: mesh.hasMissing};
-    panels.showRange(this.range, mesh, settings);
+    shell.showRange(this.range, mesh, settings);
+    if (this.range) this.later?.panels.showRange(this.range);
   }
 
   // ---- the state
@@ -338,8 +330,9 @@ export class Viewing implements ActionsHost, PanelsHost {
   private showState(state: StreamState, attempt: number, delayMs: number): void {
     this.completeTold &&= state === 'complete';
     this.tellComplete();
-    if (!this.panels) return;
-    this.panels.showState(state, attempt, delayMs);
+    if (!this.shell) return;
+    this.shell.progress.showState(state, attempt, delayMs);
+    this.later?.panels.showState(state);
     if (state === 'streaming' || state === 'complete') this.notices.endOf('stream');
   }
 

@@ -16,12 +16,26 @@ export function setMarkup(element: Element | ShadowRoot, text: string): void {
   element.innerHTML = policy?.createHTML(text) ?? text;
 }
 
-/** Adds the style sheet to the root, once. */
-export function adopt(root: ShadowRoot, styles: string): void {
+/** Puts it before a part of the root. REQUIRES: as setMarkup. */
+export function insertMarkup(place: Element, text: string): void {
+  const template = document.createElement('template');
+  setMarkup(template, text);
+  place.before(template.content);
+}
+
+/**
+ * Adds the style sheet to the root, once: behind the others, or before them, where their rules win.
+ */
+export function adopt(
+  root: ShadowRoot,
+  styles: string,
+  where: 'behind' | 'before' = 'behind',
+): void {
   if (adopted.get(root)?.has(styles)) return;
   const sheet = new CSSStyleSheet();
   sheet.replaceSync(styles);
-  root.adoptedStyleSheets.push(sheet);
+  const others = [...root.adoptedStyleSheets];
+  root.adoptedStyleSheets = where === 'behind' ? [...others, sheet] : [sheet, ...others];
   adopted.set(root, new Set([...(adopted.get(root) ?? []), styles]));
 }
 const adopted = new WeakMap<ShadowRoot, Set<string>>();

@@ -1,14 +1,14 @@
-// The cards over the picture. Each panel is a component of its own; this updates them together.
+// The controls, and what one points with. Each panel is a component of its own; this updates them
+// together.
 
 import {fieldLayers} from '../../core/layers/layers';
-import {markedValues} from '../../core/layers/shown';
 import {kMaxPlanes} from '../../core/picture/display';
 import type {Vector} from '../../core/protocol/geometry';
 import type {Client} from '../../core/session/client';
 import type {StreamState} from '../../core/session/worker_messages';
 import type {View} from '../../webgl/view';
 import type {Actions} from '../page/actions';
-import {CardLayout} from '../page/card_layout';
+import type {CardLayout} from '../page/card_layout';
 import {find} from '../page/find';
 import {bindFolds} from '../page/folds';
 import type {Page} from '../page/page';
@@ -18,10 +18,8 @@ import {ClipHandles} from './clip_handles';
 import {ClipPanel} from './clip_panel';
 import {ColorPanel} from './color_panel';
 import {Inspect} from './inspect';
-import {Legend} from './legend';
 import {LevelPanel} from './level_panel';
 import {scalarTitle, type Panel, type Scene} from './panel';
-import {ProgressPanel} from './progress_panel';
 import {StatisticsPanel} from './statistics_panel';
 import {ValuePanel} from './value_panel';
 import {ViewPanel} from './view_panel';
@@ -36,32 +34,21 @@ export interface PanelsHost {
 }
 
 export class Panels {
-  readonly progress: ProgressPanel;
-  readonly cards: CardLayout;
   readonly clip: ClipPanel;
   readonly inspect: Inspect;
   private readonly color: ColorPanel;
   /** Panels that need only the attributes and the mesh. */
   private readonly simple: readonly Panel[];
   private readonly handles: ClipHandles;
-  private readonly legend: Legend;
   private readonly statistics: StatisticsPanel;
   private readonly view: ViewPanel;
-  /** The mesh has its place beside the cards. */
-  private hasFit = false;
   /** The field and the level that a line's plot shows. */
   private plotted = '';
 
-  constructor(
-    private readonly page: Page,
-    host: PanelsHost,
-    actions: Actions,
-  ) {
+  constructor(page: Page, host: PanelsHost, actions: Actions, cards: CardLayout) {
     const {root} = page;
     const announce = (text: string): void => page.announce(text);
     bindFolds(root);
-    this.progress = new ProgressPanel(root, announce);
-    this.legend = new Legend(root);
     this.statistics = new StatisticsPanel(root);
     this.view = new ViewPanel(page, actions);
     this.color = new ColorPanel(root, page);
@@ -86,13 +73,6 @@ export class Panels {
       level,
       this.view,
     ];
-    const cards = new CardLayout(
-      page.element,
-      root,
-      (insets) => host.view?.setInsets(insets),
-      () => this.inspect.arrange(),
-    );
-    this.cards = cards;
     this.inspect = new Inspect(root, {
       get client() {
         return host.client;
@@ -135,8 +115,7 @@ export class Panels {
     this.inspect.place();
   }
 
-  showState(state: StreamState, attempt: number, delayMs: number): void {
-    this.progress.showState(state, attempt, delayMs);
+  showState(state: StreamState): void {
     this.view.showState(state);
   }
 
@@ -152,32 +131,16 @@ export class Panels {
     this.plotted = plotted;
   }
 
-  /** Shows the legend; null if nothing is coloured. */
-  showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
-    if (range && snapshot?.color && manifest) {
-      const marked = markedValues(snapshot.color, (name) => this.page.read(name), manifest.fields);
-      this.legend.show(snapshot.color, manifest.fields, range, settings, marked);
-      this.color.showRange(range.low, range.high);
-    } else {
-      this.legend.hide();
-    }
-    if (this.hasFit || !snapshot) return;
-    this.hasFit = true;
-    this.cards.refit();
+  /** Shows the range of the colours. */
+  showRange({low, high}: ShownRange): void {
+    this.color.showRange(low, high);
   }
 
   /** Must be called before another mesh. */
   clear(): void {
-    this.hasFit = false;
-    this.progress.begin(null);
     this.statistics.clear();
     this.inspect.clear();
-    this.legend.hide();
     this.handles.update([], []);
-  }
-
-  dispose(): void {
-    this.cards.dispose();
   }
 }
 

@@ -1,6 +1,5 @@
 // State, bar and figures: bytes, cells, the known error that is left, and the time that is left.
-// The bar shows bytes: the share of what the whole mesh with the shown fields needs. The curve
-// below shows the known error against bytes, and the point that is reached.
+// The bar shows bytes: the share of what the whole mesh with the shown fields needs.
 
 import type {LevelBytes} from '../../core/decode/plan';
 import type {Statistics} from '../../core/decode/statistics';
@@ -9,6 +8,7 @@ import type {Manifest} from '../../core/protocol/manifest';
 import type {StreamState} from '../../core/session/worker_messages';
 import {find, onClick} from '../page/find';
 import {formatBytes, formatCount, formatDuration, formatError, percentOf} from '../page/format';
+import type {ErrorCurve} from './error_curve';
 
 const kStateTexts: Record<StreamState, string> = {
   connecting: 'Connecting',
@@ -32,15 +32,8 @@ const kRateWindowMs = 4000;
 /** Figures of a finished mesh stay so long before they fold up. */
 const kFoldMs = 1500;
 
-/** The curve spans errors from the first one down to at most this fraction of it. */
-const kMinSpan = 10;
-
-/** Bytes, and the error that is left with them. */
-type Point = [number, number];
-
 export class ProgressPanel {
   private readonly root: HTMLElement;
-  private readonly curveFigure: HTMLElement;
   private foldTimer: ReturnType<typeof setTimeout> | undefined;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private drawnAt = -kFiguresMs;
@@ -50,6 +43,7 @@ export class ProgressPanel {
   private limit: Limit = {kind: 'full'};
   private state: StreamState = 'connecting';
   private announced = -1;
+  private curve: ErrorCurve | null = null;
   private arrivals: {at: number; bytes: number}[] = [];
   private plan: LevelBytes[] = [];
 
@@ -57,8 +51,7 @@ export class ProgressPanel {
     root: ParentNode,
     private readonly announce: (text: string) => void,
   ) {
-    this.root = root.querySelector('.progress')!;
-    this.curveFigure = root.querySelector('.curve')!;
+    this.root = find(root, '.progress');
     onClick(this.root, '.unfold', () => this.fold(!this.root.classList.contains('finished')));
   }
 
@@ -106,6 +99,12 @@ export class ProgressPanel {
     if (this.statistics) this.draw();
   }
 
+  /** The curve follows from now on. */
+  attach(curve: ErrorCurve): void {
+    this.curve = curve;
+    this.drawCurve();
+  }
+
   /** The known error of the mesh on the screen; null if the log does not tell. */
   errorLeft(): number | null {
     return this.manifest && this.statistics
@@ -149,6 +148,11 @@ export class ProgressPanel {
     this.announced = Math.max(this.announced, step);
   }
 
+  private drawCurve(): void {
+    const {curve, fields, manifest, plan, statistics} = this;
+    if (statistics && manifest) curve?.draw(plan, statistics, manifest.levels, fields);
+  }
+
   private secondsLeft(): number | null {
     const {bytes, bytesNeeded} = this.statistics!;
     const now = performance.now();
@@ -169,53 +173,6 @@ export class ProgressPanel {
     )
       return null;
     return (targetBytes - bytes) / rate;
-  }
-
-  /**
-   * Both axes are logarithmic, from the first level's error to the last one that is not 0. Behind
-   * it the line goes to the ground. The reached point has the bytes that are here. In a log of
-   * regions these may be more than the level needs, because what is looked at comes first.
-   */
-  private drawCurve(): void {
-    const figure = this.curveFigure;
-    const {bytes, level: now} = this.statistics!;
-    const points = this.plan.map(({bytes: needed, level}) => ({
-      level,
-      point: [needed, errorOfLevel(this.manifest?.levels, level, this.fields) ?? 0] as Point,
-    }));
-    const line = points.map(({point}) => point);
-    const [firstBytes, firstError] = line[0] ?? [0, 0];
-    figure.hidden = line.length < 2 || firstError === 0;
-    if (figure.hidden) return;
-    const [lastBytes] = line.at(-1)!;
-    const minError = Math.min(...line.map(([, error]) => error || Infinity), firstError / kMinSpan);
-    const place = ([at, error]: Point): string => {
-      const x = Math.log(at / firstBytes) / Math.log(Math.max(lastBytes / firstBytes, 1.01));
-      const y =
-        error > 0 ? (0.9 * Math.log(firstError / error)) / Math.log(firstError / minError) : 1;
-      return `${(100 * Math.min(1, Math.max(0, x))).toFixed(2)} ${(40 * y).toFixed(2)}`;
-    };
-    const reached = points
-      .filter(({level, point: [at]}) => at <= bytes && level <= now)
-      .map(({point}) => point);
-    const here: Point = [bytes, reached.at(-1)?.[1] ?? firstError];
-    if (reached.length > 0) reached.push(here);
-    for (const [name, drawn] of [
-      ['ahead', line],
-      ['reached', reached],
-    ] as const) {
-      figure
-        .querySelector(`.${name}`)!
-        .setAttribute('d', drawn.length > 0 ? `M${drawn.map(place).join('L')}` : '');
-    }
-    figure.querySelector('.here')!.setAttribute('d', `M${place(here)}h0`);
-    const ends = [
-      line[0]!,
-      ...(bytes > firstBytes && bytes < lastBytes ? [here] : []),
-      line.at(-1)!,
-    ];
-    const texts = ends.map(([at, error]) => `${formatError(error)} at ${formatBytes(at)}`);
-    figure.querySelector('figcaption')!.textContent = `Error against bytes: ${texts.join(', ')}`;
   }
 
   private part(selector: string): HTMLElement {

@@ -1,0 +1,55 @@
+// The cards that the first picture needs: progress and legend. They take room, so that it finds its
+// place beside them.
+
+import {markedValues} from '../../core/layers/shown';
+import type {View} from '../../webgl/view';
+import {CardLayout} from '../page/card_layout';
+import type {Page} from '../page/page';
+import type {ShownMesh} from '../page/shown_mesh';
+import type {Settings, ShownRange} from '../settings/settings';
+import {Legend} from './legend';
+import {ProgressPanel} from './progress_panel';
+
+export class Shell {
+  readonly progress: ProgressPanel;
+  readonly cards: CardLayout;
+  private readonly legend: Legend;
+  /** The mesh has its place beside the cards. */
+  private hasFit = false;
+
+  /** `resized` is called when the viewer has another size. */
+  constructor(
+    private readonly page: Page,
+    host: {readonly view: View | null},
+    resized: () => void,
+  ) {
+    const {element, root} = page;
+    this.progress = new ProgressPanel(root, (text) => page.announce(text));
+    this.legend = new Legend(root);
+    this.cards = new CardLayout(element, root, (insets) => host.view?.setInsets(insets), resized);
+  }
+
+  /** Shows the legend; null if nothing is coloured. */
+  showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
+    if (range && snapshot?.color && manifest) {
+      const marked = markedValues(snapshot.color, (name) => this.page.read(name), manifest.fields);
+      this.legend.show(snapshot.color, manifest.fields, range, settings, marked);
+    } else {
+      this.legend.hide();
+    }
+    if (this.hasFit || !snapshot) return;
+    this.hasFit = true;
+    this.cards.refit();
+  }
+
+  /** Must be called before another mesh. */
+  clear(): void {
+    this.hasFit = false;
+    this.progress.begin(null);
+    this.legend.hide();
+  }
+
+  dispose(): void {
+    this.cards.dispose();
+  }
+}
