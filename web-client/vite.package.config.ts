@@ -14,7 +14,7 @@ export default defineConfig({
   // here.
   worker: {
     format: 'es',
-    rollupOptions: {output: {entryFileNames: '[name].js'}},
+    rollupOptions: {output: {entryFileNames: '[name].js', inlineDynamicImports: true}},
     plugins: () => [
       smallShaders(),
       {

@@ -13,6 +13,13 @@ namespace {
 // Stars are prefetched so many vertices ahead. One vertex in twelve splits. 4 to 16 measured alike.
 constexpr std::uint32_t kVerticesAhead = 8;
 
+// A page decodes the base mesh by a module without the rest, which is half as large (web-client).
+#ifdef QTET_BASE_ONLY
+constexpr bool kBaseOnly = true;
+#else
+constexpr bool kBaseOnly = false;
+#endif
+
 constexpr const char* kEmptyLevel = "a level without a record";
 
 }  // namespace
@@ -174,8 +181,13 @@ Status MeshReader::base(ChunkInput& chunk) {
 }
 
 Result<Extent> MeshReader::read(ChunkInput& chunk) {
-  if (plan_.isPacket(chunk.number)) return packets_.read(chunk);
   const bool isBase = chunk.number == 0;
+  if constexpr (kBaseOnly) {
+    if (!isBase) return chunk.refuse(ErrorCode::kBadOrder, "this decoder reads the base mesh only");
+    if (Status s = base(chunk); !s) return std::unexpected(s.error());
+    return Extent::kWhole;  // whoever decodes the rest reads this chunk again, to its end
+  }
+  if (plan_.isPacket(chunk.number)) return packets_.read(chunk);
   if (isBase) {
     if (Status s = base(chunk); !s) return std::unexpected(s.error());
   } else {

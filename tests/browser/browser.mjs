@@ -256,7 +256,7 @@ export class ViewerPage {
     for (let i = 0; i < 2; ++i) {
       await this.settle();
       await this.waitInView(
-        ({volume, frame, moved}) => volume.hasCells && volume.atRest && frame === 0 && !moved,
+        ({volume, frame, moved}) => volume?.hasCells && volume.atRest && frame === 0 && !moved,
       );
     }
   }

@@ -242,6 +242,16 @@ describe('a stream', () => {
     expect(socket.closed).toBe(true);
   });
 
+  test('withADamagedBlockShowsAllThatCameBeforeIt', () => {
+    codec.corrupt = 2;
+    const socket = start({pictureFirst: true});
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect([errors(), codec.chunksApplied]).toEqual([['bad-checksum'], 1]);
+    vi.advanceTimersByTime(500);
+    expect([states().at(-1), codec.chunksApplied]).toEqual(['failed', 2]);
+  });
+
   test('withADamagedBaseDoesNotSayThatSomethingStays', () => {
     codec.corrupt = 0;
     const socket = start();

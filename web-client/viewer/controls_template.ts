@@ -131,10 +131,10 @@ export const kControls = `    ${section(
       ${toggle('surface', 'Surface', true)}
       <div class="field">
         <span class="row">
-          <span class="name" id="opacity-name">Opacity</span><output class="opacity-text"></output>
+          <span class="name">Opacity</span><output class="opacity-text"></output>
         </span>
         <input type="range" name="opacity" min="5" max="100" step="5" value="100"
-          aria-labelledby="opacity-name">
+          aria-label="Opacity">
       </div>
       <p class="hint hides-surface" id="hides-surface" hidden>The volume takes the place of the
         surface and its cells' edges.</p>`,

@@ -1,7 +1,5 @@
 // The triangles of a picture: surface, cuts and layers, with the look that they share.
 
-import {kLayers} from '../core/layers/layers';
-import {soupOf} from '../core/layers/shown';
 import {colorTable, kColorMapEntries} from '../core/picture/color_maps';
 import {kMaxPlanes} from '../core/picture/display';
 import type {Snapshot} from '../core/session/worker_messages';
@@ -33,23 +31,20 @@ const kFragmentHead = `${kPrecisions}
 
 export class MeshParts {
   private readonly surface: Soup;
-  private readonly layers;
+  /** By name. */
+  private readonly layers = new Map<string, Soup>();
   private readonly cuts: readonly Soup[];
-  private readonly all: readonly Soup[];
   private readonly program: Program;
   private readonly table = new Uint8Array(4 * kColorMapEntries);
   private readonly colorMap: Texture;
   private tableName = '';
+  private edgeStrength = 0;
   /** The uniforms of all. */
   private readonly look: Record<string, Uniform>;
 
   constructor(private readonly graphics: Graphics) {
     this.surface = new Soup(graphics, true);
-    this.layers = kLayers.flatMap((layer) =>
-      layer.draw ? [{layer, draw: layer.draw, soup: new Soup(graphics, true, true)}] : [],
-    );
     this.cuts = Array.from({length: kMaxPlanes}, () => new Soup(graphics, false));
-    this.all = [this.surface, ...this.layers.map(({soup}) => soup), ...this.cuts];
     this.program = new Program(
       graphics,
       `${kVertexHead}${kFieldVertexShader}`,
@@ -71,11 +66,10 @@ export class MeshParts {
   /** `capped`: the cuts are closed by their cells. */
   show(snapshot: Snapshot, capped: boolean): void {
     if (snapshot.surface) this.surface.show(snapshot.surface);
-    for (const {layer, soup} of this.layers) {
-      const its = soupOf(snapshot, layer);
-      if (its) soup.show(its);
-      soup.setClip(snapshot.planes);
-    }
+    const {isosurface, layers} = snapshot;
+    const changed = {...(isosurface && {isosurface}), ...layers};
+    for (const [name, soup] of Object.entries(changed)) this.layer(name).show(soup);
+    for (const soup of this.layers.values()) soup.setClip(snapshot.planes);
     this.surface.setClip(snapshot.planes);
     this.cuts.forEach((soup, i) => {
       soup.show(capped ? (snapshot.cuts[i] ?? null) : null);
@@ -94,8 +88,7 @@ export class MeshParts {
       this.colorMap.update();
     }
     this.tableName = table;
-    for (const {look} of this.all) look.edgeStrength = edges ? kEdgeStrength : 0;
-    for (const {draw, soup} of this.layers) if (!draw.edges) soup.look.edgeStrength = 0;
+    this.edgeStrength = edges ? kEdgeStrength : 0;
     this.surface.look.opacity = opacity;
   }
 
@@ -135,9 +128,23 @@ export class MeshParts {
     for (const soup of [...visible.filter((one) => !isClear(one)), ...visible.filter(isClear)]) {
       const clear = isClear(soup);
       this.graphics.use({depths: clear ? 'tested' : 'written', mix: clear ? 'over' : null});
-      this.program.use({...seen, ...soup.look});
+      this.program.use({
+        ...seen,
+        ...soup.look,
+        edgeStrength: soup.hasEdges ? this.edgeStrength : 0,
+      });
       soup.draw();
     }
+  }
+
+  private get all(): Soup[] {
+    return [this.surface, ...this.layers.values(), ...this.cuts];
+  }
+
+  private layer(name: string): Soup {
+    const soup = this.layers.get(name) ?? new Soup(this.graphics, true, true);
+    this.layers.set(name, soup);
+    return soup;
   }
 
   dispose(): void {

@@ -3,11 +3,8 @@
 
 import type {Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
-import {transferTables} from '../core/picture/transfer';
-import type {VolumeCells} from '../core/picture/volume';
 import type {Snapshot} from '../core/session/worker_messages';
 import type {Picture} from './cell_drawer';
-import {kRow, maxRows} from './cell_textures';
 import type {CameraState, OrbitCamera} from './camera';
 import type {Direction} from './directions';
 import {whenDrawn} from './frame_budget';
@@ -19,7 +16,7 @@ import {MeshParts} from './mesh_parts';
 import {project, rayAt, type Pose} from './pose';
 import {partsOf, tileOf} from './tiles';
 import type {Frame, Insets, Look, Tile, View, ViewListeners} from './view';
-import {VolumeView} from './volume_view';
+import type {VolumeLook, VolumeView} from './volume_view';
 import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './worker_canvas';
 
 /** More than two pixels a point cost more than they show. */
@@ -29,11 +26,13 @@ export class MeshView implements View {
   private readonly graphics: Graphics;
   private readonly parts: MeshParts;
   private readonly camera: MeshCamera;
-  private readonly volume: VolumeView;
+  /** It is loaded with the first cells. */
+  private volume: VolumeView | null = null;
+  private readonly volumeLook: VolumeLook = {transfer: null, range: null};
   private readonly surfaceCanvas: HTMLCanvasElement | OffscreenCanvas;
   private readonly endWatch: () => void;
   /** The last words of setLook and setRange, as texts. */
-  private readonly last = {look: '', transfer: '', range: ''};
+  private readonly last = {look: '', range: ''};
   /** The user has changed something since the last picture; new levels alone do not count. */
   private moved = false;
   /** The requested frame; 0: none is. */
@@ -52,12 +51,6 @@ export class MeshView implements View {
     this.surfaceCanvas = surfaceOf(canvas);
     this.graphics = new Graphics(this.surfaceCanvas);
     this.parts = new MeshParts(this.graphics);
-    this.volume = new VolumeView(
-      this.graphics,
-      (moved) => this.invalidate(moved),
-      listeners.coarse?.bind(listeners),
-      (working) => listeners.works?.(working),
-    );
     this.camera = new MeshCamera(canvas, () => this.invalidate());
     this.surfaceCanvas.addEventListener('webglcontextlost', this.onLost);
     this.surfaceCanvas.addEventListener('webglcontextrestored', this.onRestored);
@@ -69,12 +62,16 @@ export class MeshView implements View {
   show(snapshot: Snapshot, drawn: (ms: number) => void): void {
     // A picture in tiles shows one mesh.
     if (this.inTiles) return void this.inTiles.finally(() => this.show(snapshot, drawn));
+    if (snapshot.volume && !this.volume)
+      return void this.loadVolume().then((loaded) =>
+        this.show(loaded ? snapshot : {...snapshot, volume: null}, drawn),
+      );
     this.afterFrame.push(drawn);
     this.invalidate(snapshot.volume == null);
-    if (snapshot.volume !== undefined) this.volume.take(this.fitting(snapshot.volume));
-    this.volume.setClip(snapshot.planes);
+    if (snapshot.volume !== undefined) this.volume?.take(snapshot.volume);
+    this.volume?.setClip(snapshot.planes);
     // A cap would hide the volume behind it. A slice is drawn inside it.
-    this.parts.show(snapshot, !this.volume.hasCells || snapshot.planes.length === 0);
+    this.parts.show(snapshot, !this.hasVolume || snapshot.planes.length === 0);
     if (snapshot.bounds.length > 0) this.camera.growTo(snapshot.bounds, snapshot.surface);
   }
 
@@ -82,7 +79,7 @@ export class MeshView implements View {
   clear(): void {
     this.camera.clear();
     this.parts.clear();
-    this.volume.take(null);
+    this.volume?.take(null);
     this.invalidate();
   }
 
@@ -92,10 +89,9 @@ export class MeshView implements View {
     // it is called with every attribute change, and a picture costs more than a comparison
     if (look === this.last.look) return;
     this.parts.setLook(next);
-    const transfer = volume ? `${map} ${reversed} ${onDark} ${volume.join()}` : '';
-    if (volume && transfer !== this.last.transfer)
-      this.volume.setTransfer(transferTables(volume, map, reversed, onDark));
-    Object.assign(this.last, {look, transfer});
+    if (volume) this.volumeLook.transfer = [volume, map, reversed, onDark];
+    this.volume?.setLook(this.volumeLook);
+    this.last.look = look;
     this.invalidate();
   }
 
@@ -105,7 +101,8 @@ export class MeshView implements View {
     if (text === this.last.range) return; // it is called with every picture
     this.last.range = text;
     const range = this.parts.setRange(low, high, scaleRange, logarithmic);
-    this.volume.setRange(range, scaleRange, logarithmic);
+    this.volumeLook.range = [range, scaleRange, logarithmic];
+    this.volume?.setLook(this.volumeLook);
     this.invalidate();
   }
 
@@ -181,9 +178,9 @@ export class MeshView implements View {
 
   /** The current picture on `background` (a CSS colour). */
   async picture(background: string): Promise<Blob> {
-    if (this.drawsVolume) await this.volume.drawWhole(this.pictureOf());
+    if (this.drawsVolume) await this.volume!.drawWhole(this.pictureOf());
     // Drawing and copying share a task: a canvas that has been shown is empty.
-    if (this.volume.hasCells) this.volume.present();
+    if (this.hasVolume) this.volume!.present();
     else this.draw();
     const copy = new OffscreenCanvas(this.surfaceCanvas.width, this.surfaceCanvas.height);
     const context = copy.getContext('2d')!;
@@ -215,7 +212,7 @@ export class MeshView implements View {
     this.surfaceCanvas.removeEventListener('webglcontextrestored', this.onRestored);
     this.camera.dispose();
     this.parts.dispose();
-    this.volume.dispose();
+    this.volume?.dispose();
   }
 
   // ---- helpers
@@ -242,22 +239,25 @@ export class MeshView implements View {
     this.parts.setPixelRatio(ratio);
     this.camera.resize(width, height);
     // Draws at once: a resized canvas is empty until it is drawn.
-    if (!this.volume.hasCells) return this.draw();
-    this.volume.present();
+    if (!this.hasVolume) return this.draw();
+    this.volume!.present();
     this.invalidate();
   }
 
   /** `moved`: the user did it and should see something at once. */
   private invalidate(moved = true): void {
-    if (moved) this.volume.interrupt();
+    if (moved) this.volume?.interrupt();
     this.moved ||= moved;
     // The graphics draw one picture at a time. The next begins after it, from the state of then.
-    if (this.volume.busy) this.volume.waiting = true;
+    if (this.volume?.busy) this.volume.waiting = true;
     else if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
   }
 
+  private get hasVolume(): boolean {
+    return this.volume?.hasCells ?? false;
+  }
   private get drawsVolume(): boolean {
-    return this.volume.hasCells && this.camera.hasMesh;
+    return this.hasVolume && this.camera.hasMesh;
   }
 
   /** By default the canvas's. */
@@ -285,7 +285,7 @@ export class MeshView implements View {
   private async drawTile(lens: Lens, target: Target, {pixelRatio}: Frame): Promise<void> {
     const {parts} = this;
     parts.setPixelRatio(pixelRatio);
-    if (this.drawsVolume) await this.volume.drawWhole(this.pictureOf(lens, target));
+    if (this.drawsVolume) await this.volume!.drawWhole(this.pictureOf(lens, target));
     else {
       target.begin();
       target.clear();
@@ -294,24 +294,25 @@ export class MeshView implements View {
     parts.setPixelRatio(this.pixelRatio);
   }
 
-  /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
-  private fitting(cells: VolumeCells | null): VolumeCells | null {
-    const {gl} = this.graphics;
-    const maxSize = Number(gl.getParameter(gl.MAX_TEXTURE_SIZE));
-    if (!cells || maxRows(cells) <= maxSize) return cells;
-    reportError(
-      new Error(
-        `the graphics take no volume of more than ${((maxSize * kRow) / 4e6).toFixed(1)} million ` +
-          'cells; set Refine to fewer',
-      ),
+  /** Returns false and reports the error if the network fails. */
+  private async loadVolume(): Promise<boolean> {
+    const {graphics, listeners} = this;
+    const loaded = await import('./volume_view').catch(reportError);
+    if (!loaded) return false;
+    this.volume ??= new loaded.VolumeView(
+      graphics,
+      (moved) => this.invalidate(moved),
+      listeners.coarse?.bind(listeners),
+      (working) => listeners.works?.(working),
     );
-    return null;
+    this.volume.setLook(this.volumeLook);
+    return true;
   }
 
   private draw(): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
-    if (this.volume.busy) return void (this.volume.waiting = true);
+    if (this.volume?.busy) return void (this.volume.waiting = true);
     const start = performance.now();
     const done = this.afterFrame;
     this.afterFrame = [];
@@ -321,7 +322,7 @@ export class MeshView implements View {
     try {
       this.orbit.setDepths();
       this.parts.fadeEdges(this.camera.sightOf(this.orbit.lens).toCanvas, this.canvas);
-      if (this.drawsVolume) this.volume.draw(this.pictureOf(), this.moved);
+      if (this.drawsVolume) this.volume!.draw(this.pictureOf(), this.moved);
       else this.drawCanvas();
       this.moved = false;
       this.frameMs = performance.now() - start;

@@ -25,6 +25,8 @@ export class Soup {
   private readonly made: Made<Buffers>;
   private readonly data = {position: new Float32Array(0), value: new Float32Array(0)};
   private corners = 0;
+  /** The sides of its triangles are edges of cells. */
+  hasEdges = true;
 
   /**
    * `lit` shades it as a surface, without `lit` it is flat, as a cut. The inside of a surface is
@@ -41,7 +43,6 @@ export class Soup {
       colored: false,
       firstHalf: 0,
       opacity: 1,
-      edgeStrength: 0,
       clipPlanes: clipValues([]),
     };
     const {gl} = graphics;
@@ -67,6 +68,7 @@ export class Soup {
   show(soup: TriangleSoup | null): void {
     this.corners = (soup?.positions.length ?? 0) / 3;
     if (!soup || !this.visible) return;
+    this.hasEdges = soup.edges ?? true;
     const colored = soup.values.length > 0;
     Object.assign(this.look, {colored, firstHalf: soup.firstHalf});
     if (this.corners > this.data.value.length) this.grow();

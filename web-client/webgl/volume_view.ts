@@ -2,10 +2,11 @@
 // pixels while something moves, and all cells with all pixels once it rests. They draw in strips of
 // pixels, so that the next movement waits for a strip and not for the picture.
 
-import type {TransferTables} from '../core/picture/transfer';
+import {transferTables} from '../core/picture/transfer';
 import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/picture/volume';
 import {CellDrawer, type Picture} from './cell_drawer';
 import {CellMesh} from './cell_mesh';
+import {kRow, maxRows} from './cell_textures';
 import {CoarseMesh} from './coarse_mesh';
 import {FrameBudget, kMovingMs} from './frame_budget';
 import type {Graphics} from './gl/graphics';
@@ -14,7 +15,15 @@ import type {RayCaster} from './ray_caster';
 /** A picture rests so long after its last change. */
 const kRestMs = 150;
 
+/** The words of transferTables and of RayCaster.setRange; null before there are any. */
+export interface VolumeLook {
+  transfer: Parameters<typeof transferTables> | null;
+  range: Parameters<RayCaster['setRange']> | null;
+}
+
 export class VolumeView {
+  /** The last words of transferTables, as a text. */
+  private transfer = '';
   private readonly fine: CellMesh;
   private readonly coarse: CoarseMesh;
   private readonly drawer: CellDrawer;
@@ -30,7 +39,7 @@ export class VolumeView {
 
   /** `changed` asks for another picture. `askCoarse` and `works` are those of ViewListeners. */
   constructor(
-    graphics: Graphics,
+    private readonly graphics: Graphics,
     private readonly changed: (moved: boolean) => void,
     askCoarse?: (have: number) => Promise<CoarseCells>,
     private readonly works: (working: boolean) => void = () => undefined,
@@ -53,20 +62,21 @@ export class VolumeView {
   }
 
   take(cells: VolumeCells | null): void {
-    this.fine.requested = cells;
+    this.fine.requested = cells && this.fitting(cells);
     this.whole = false;
     this.coarse.expire();
-    if (cells) return;
+    if (this.hasCells) return;
     this.coarse.forget();
     this.interrupt();
     if (!this.busy) this.update();
   }
 
-  setTransfer(tables: TransferTables): void {
-    this.drawer.caster.setTransfer(tables);
-  }
-  setRange(...words: Parameters<RayCaster['setRange']>): void {
-    this.drawer.caster.setRange(...words);
+  setLook({transfer, range}: VolumeLook): void {
+    const {caster} = this.drawer;
+    if (range) caster.setRange(...range);
+    const text = JSON.stringify(transfer);
+    if (transfer && text !== this.transfer) caster.setTransfer(transferTables(...transfer));
+    this.transfer = text;
   }
   setClip(...words: Parameters<RayCaster['setClip']>): void {
     this.drawer.caster.setClip(...words);
@@ -122,6 +132,20 @@ export class VolumeView {
     this.fine.requested = this.coarse.requested = null;
     this.update();
     this.drawer.dispose();
+  }
+
+  /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
+  private fitting(cells: VolumeCells): VolumeCells | null {
+    const {gl} = this.graphics;
+    const maxSize = Number(gl.getParameter(gl.MAX_TEXTURE_SIZE));
+    if (maxRows(cells) <= maxSize) return cells;
+    reportError(
+      new Error(
+        `the graphics take no volume of more than ${((maxSize * kRow) / 4e6).toFixed(1)} million ` +
+          'cells; set Refine to fewer',
+      ),
+    );
+    return null;
   }
 
   /** Takes the new cells. REQUIRES: no picture is being drawn. */

@@ -62,8 +62,8 @@ export function layerSoups(
   const soups: LayerSoups = {};
   for (const layer of kLayers) {
     if (!layer.make || !layer.draw) continue;
-    const soup = layer.make(mesh, display, kept) ?? noSoup();
-    const {member} = layer.draw;
+    const {edges, member} = layer.draw;
+    const soup = {...(layer.make(mesh, display, kept) ?? noSoup()), edges};
     if (member) soups[member] = soup;
     else soups.layers = {...soups.layers, [layer.name]: soup};
   }

@@ -13,6 +13,8 @@ export interface TriangleSoup {
    * edge of the mesh.
    */
   firstHalf: number;
+  /** False: the sides of its triangles are no edges of cells. */
+  edges?: boolean;
 }
 
 /** The boundary as a soup. `points`: 3 a vertex, `triangles`: 3 a triangle. */

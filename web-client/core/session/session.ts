@@ -156,9 +156,13 @@ export class Session implements TransportHandlers {
   }
 
   frame(frame: Frame): void {
-    this.guarded(() => {
-      const isFirst = !this.assembler.manifest;
+    const isFirst = !this.assembler.manifest;
+    try {
       this.assembler.take(frame);
+    } catch (thrown) {
+      return this.endBy(thrown); // blocks before it are sound, and decoding goes on
+    }
+    this.guarded(() => {
       this.coarse?.note(frame);
       this.stream.received(frame.payload.length);
       if (isFirst && this.takeManifest()) return;
@@ -176,7 +180,6 @@ export class Session implements TransportHandlers {
   }
 
   failed(error: QtetError): void {
-    this.decoding.stop();
     this.stream.disconnect();
     this.send({type: 'error', code: error.code, message: error.message});
     this.enter({name: 'failed'});
@@ -274,6 +277,7 @@ export class Session implements TransportHandlers {
       this.tellOfBase();
       if (hasChanged) this.publisher.changed(this.requested.isComplete);
       this.progress.changed();
+      if (this.state.name === 'failed') return;
       if (this.requested.isComplete) this.complete();
       else if (this.requested.isReached) this.hold();
       else if (this.state.name !== 'paused') this.stream.giveCredit();
@@ -342,11 +346,16 @@ export class Session implements TransportHandlers {
     try {
       action();
     } catch (thrown) {
-      const code = errorCode(thrown);
-      if (code === 'out-of-memory' && this.stayAtWhatFits()) return;
-      const waysOut = this.requested.statistics.tetrahedra > 0 ? kWaysOut : kWaysOutOfNothing;
-      this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
+      if (errorCode(thrown) === 'out-of-memory' && this.stayAtWhatFits()) return;
+      this.decoding.stop();
+      this.endBy(thrown);
     }
+  }
+
+  private endBy(thrown: unknown): void {
+    const code = errorCode(thrown);
+    const waysOut = this.requested.statistics.tetrahedra > 0 ? kWaysOut : kWaysOutOfNothing;
+    this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
   }
 
   /**
