@@ -1,10 +1,11 @@
-// Builds the demo page. QTET_WASM names the codec's WebAssembly (CMake builds it), QTET_VIEWER_OUT
-// the folder to write.
+// Builds the demo page. QTET_WASM names the codec's WebAssembly (CMake builds it and qtet-base.wasm
+// beside it), QTET_VIEWER_OUT the folder to write.
 
 import {defineConfig} from 'vitest/config';
 import {notices} from './notices';
 import {plainDynamicImports} from './plain_imports';
 import {smallShaders} from './small_shaders';
+import {wasmModules} from './wasm_modules';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
 
@@ -12,7 +13,7 @@ export default defineConfig({
   plugins: [smallShaders(), plainDynamicImports(), notices()],
   base: './',
   resolve: {
-    alias: [{find: /^qtet-codec\.wasm/, replacement: wasm}],
+    alias: wasmModules(wasm),
   },
   worker: {format: 'es', plugins: () => [smallShaders()]},
   build: {

@@ -5,11 +5,12 @@ import {defineConfig, transformWithEsbuild} from 'vite';
 import {notices} from './notices';
 import {plainDynamicImports} from './plain_imports';
 import {smallShaders} from './small_shaders';
+import {wasmModules} from './wasm_modules';
 
 export default defineConfig({
   base: './',
   plugins: [plainDynamicImports(), notices()],
-  resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
+  resolve: {alias: wasmModules(process.env.QTET_WASM!)},
   // Bundlers copy workers' files unchanged. So these contain everything they need, and are minified
   // here.
   worker: {

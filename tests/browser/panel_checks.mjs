@@ -56,6 +56,8 @@ async function remembersItsFolds(context) {
   assert.deepEqual(await openFolds(viewer), ['colours', 'surface', 'inside', 'pointer']);
   for (const section of ['Surface', 'Pointer', 'View'])
     await viewer.page.locator('qtet-viewer summary', {hasText: section}).click();
+  // They are kept in an event's task after the click.
+  await viewer.page.waitForFunction(() => localStorage['qtet-viewer-folds'].includes('view'));
   await viewer.page.reload();
   await viewer.waitForState('complete');
   await viewer.waitForPicture();

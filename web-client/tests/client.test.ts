@@ -12,6 +12,7 @@ import {Requests} from '../viewer/requests';
 import {FakeCodec, FakeSocket, fieldFrame, headFrame, kFakeValues, meshFrame} from './fakes';
 
 vi.mock('qtet-codec.wasm?url', () => ({default: 'codec.wasm'}));
+vi.mock('qtet-base.wasm?url', () => ({default: 'base.wasm'}));
 
 class FakeWorker {
   static last: FakeWorker;

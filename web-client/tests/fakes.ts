@@ -127,6 +127,7 @@ export function fieldFrame(stream: number, chunk: number, field: number): ArrayB
 
 /** Counts what is applied, in order. Chunk n makes a mesh of n + 1 tetrahedra. */
 export class FakeCodec implements Codec {
+  isWhole = true;
   chunksApplied = 0;
   corrupt = -1;
   private fieldChunks: number[] = [];

@@ -4,6 +4,7 @@
 import {createHash} from 'node:crypto';
 import {readdirSync, readFileSync} from 'node:fs';
 import {describe, expect, test} from 'vitest';
+import {WasmCodec} from '../core/decode/codec';
 import {kDraco} from '../core/decode/draco';
 import {errorCode} from '../core/protocol/errors';
 import {kTestWasm, takeWholeLog} from './whole_log';
@@ -59,4 +60,30 @@ describe.skipIf(kTestWasm === '')('golden files', () => {
       expect(code).toBe(name.slice(0, name.indexOf('.')));
     },
   );
+});
+
+describe.skipIf(kTestWasm === '')('the module of the base mesh', () => {
+  const module = WebAssembly.compile(readFileSync(kTestWasm.replace(/codec(?=\.wasm$)/, 'base')));
+  const whole = WebAssembly.compile(readFileSync(kTestWasm));
+
+  test.each(filesIn('valid'))('decodes that of %s and gives way to the codec', async (name) => {
+    const log = read(`valid/${name}`);
+    const assembler = await takeWholeLog(log, kDraco, await module);
+    const {codec} = assembler;
+    expect([codec.isWhole, codec.chunksApplied]).toEqual([false, 1]);
+    const {fields} = assembler.manifest!;
+    const mesh = (): unknown => [
+      [codec.points(), codec.tetrahedra(), codec.boundary()].map((its) => its.slice()),
+      fields.map(({components}, field) => codec.field(field, components)?.slice()),
+    ];
+    const base = mesh();
+    expect(codec).toBeInstanceOf(WasmCodec);
+    if (codec instanceof WasmCodec) codec.become(await whole);
+    const all = fields.map((_, field) => field);
+    assembler.renew(all);
+    expect([codec.isWhole, codec.chunksApplied]).toEqual([true, 1]);
+    expect(mesh()).toEqual(base);
+    while (assembler.step(all, true)) continue;
+    expect(codec.digest()).toBe(digestsIn('digests.txt').get(name));
+  });
 });

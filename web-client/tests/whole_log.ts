@@ -12,9 +12,18 @@ import {kFirstFieldPart, kHeadPart} from '../core/protocol/parts';
 /** If empty, tests that need it are skipped. */
 export const kTestWasm = process.env.QTET_WASM ?? '';
 
-/** Throws `truncated`, and the errors of the assembler and the codec. */
-export async function takeWholeLog(log: Uint8Array, values: ValueDecoder): Promise<Assembler> {
-  const codec = await WasmCodec.create(await WebAssembly.compile(readFileSync(kTestWasm)));
+/**
+ * `module` is the whole codec's by default. Throws `truncated`, and the errors of the assembler and
+ * the codec.
+ */
+export async function takeWholeLog(
+  log: Uint8Array,
+  values: ValueDecoder,
+  module?: WebAssembly.Module,
+): Promise<Assembler> {
+  const codec = await WasmCodec.create(
+    module ?? (await WebAssembly.compile(readFileSync(kTestWasm))),
+  );
   const assembler = new Assembler(codec, values);
   const headBytes = headBytesOf(log);
   assembler.take({

@@ -86,7 +86,10 @@ export class Graphics {
           `Something went wrong while drawing: ${why}. If the picture is not right, try again.`,
         ),
       silent: (silent) => this.tellOfSilence(silent),
-      works: (working) => void (find(this.root, '.working').hidden = !working),
+      works: (working) => {
+        const hint = this.root.querySelector<HTMLElement>('.working');
+        if (hint) hint.hidden = !working; // the controls may not be here yet
+      },
       coarse: (have) => this.listeners.coarse(have),
     });
   }

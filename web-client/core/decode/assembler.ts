@@ -127,6 +127,13 @@ export class Assembler implements LogTable {
     return true;
   }
 
+  /** The codec has become a whole one, without a log: decodes what it had, the base mesh. */
+  renew(fields: readonly number[]): void {
+    if (!this.head) return;
+    this.rewind();
+    if (this.step(fields, true)) while (this.step(fields, false)) continue;
+  }
+
   /** Back to the empty mesh; the blocks stay. */
   rewind(): void {
     if (!this.head) return;
@@ -175,6 +182,7 @@ export class Assembler implements LogTable {
 
   /** The most urgent chunk that is here and whose parent is applied; -1 if there is none. */
   private nextChunk(): number {
+    if (!this.codec.isWhole && this.codec.chunksApplied > 0) return -1;
     if (!this.isStream) return this.ready.first;
     const next = this.codec.chunksApplied;
     return this.isHere(next) ? next : -1;

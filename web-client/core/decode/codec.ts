@@ -9,6 +9,8 @@ import type {PacketBox} from '../protocol/packet';
 /** The codec as the session needs it. Tests bring their own. */
 export interface Codec {
   open(head: Uint8Array): void;
+  /** False: it decodes only the base mesh, chunk 0, and gives no digest. */
+  readonly isWhole: boolean;
   /** Starts again with an empty codec after `out-of-memory`; the browser gets the memory back. */
   restart(): void;
   readonly chunkCount: number;
@@ -139,7 +141,7 @@ interface Exports {
 
 export class WasmCodec implements Codec {
   private constructor(
-    private readonly module: WebAssembly.Module,
+    private module: WebAssembly.Module,
     private wasm: Exports,
   ) {}
 
@@ -150,6 +152,14 @@ export class WasmCodec implements Codec {
     );
   }
 
+  get isWhole(): boolean {
+    return 'qtet_digest' in this.wasm;
+  }
+  /** Goes on with another module, and without a log. */
+  become(module: WebAssembly.Module): void {
+    this.module = module;
+    this.restart();
+  }
   restart(): void {
     this.wasm = begin(new WebAssembly.Instance(this.module, stubbedImports(this.module)));
   }

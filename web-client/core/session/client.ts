@@ -1,5 +1,6 @@
 // The page's side of the worker: commands out, messages in. Holds no mesh.
 
+import baseUrl from 'qtet-base.wasm?url';
 import codecUrl from 'qtet-codec.wasm?url';
 import type {Ray} from '../picture/cell_ray';
 import type {Display} from '../picture/display';
@@ -34,7 +35,8 @@ export class Client {
   constructor(listen: Listener) {
     // The page knows where its build put the codec. The worker's own file may have moved without
     // the files that it refers to.
-    this.post({type: 'load', codecUrl: new URL(codecUrl, import.meta.url).href});
+    const [base, codec] = [baseUrl, codecUrl].map((url) => new URL(url, import.meta.url).href);
+    this.post({type: 'load', baseUrl: base!, codecUrl: codec!});
     this.worker.onmessage = (event: MessageEvent<Posted>) => {
       const message = event.data;
       if (message.type !== 'answer') {

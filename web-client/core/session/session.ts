@@ -58,6 +58,8 @@ const kNoSource: Source = {
 export class Session implements TransportHandlers {
   /** Receives every frame of the log. */
   coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
+  /** Called once a log's base mesh is decoded. */
+  onBase: () => void = () => undefined;
   private state: SessionState = {name: 'connecting'};
   private source = kNoSource;
   /** The page has received this log's base mesh. */
@@ -121,6 +123,13 @@ export class Session implements TransportHandlers {
   look(view: ViewRequest): void {
     this.requested.look(view, surfaceRequestOf(this.requested.view));
     this.follow();
+  }
+
+  /** The codec has become a whole one: decoding goes on from the base mesh. */
+  renewed(): void {
+    if (!this.assembler.manifest) return;
+    this.guarded(() => this.assembler.renew(this.requested.fields));
+    this.advance();
   }
 
   pause(): void {
@@ -403,6 +412,7 @@ export class Session implements TransportHandlers {
     if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
     this.baseReported = true;
     this.send({type: 'base', figures: baseFigures(mesh)});
+    this.onBase();
   }
 
   private sendPlan(): void {

@@ -18,7 +18,8 @@ interface Parts {
   session: Session;
   publisher: Publisher;
   coarse: CoarseVolume;
-  codec: WasmCodec;
+  /** Of the mesh; empty while there is none. */
+  digest(): Promise<string>;
   inspector: Inspector;
 }
 
@@ -32,15 +33,8 @@ let run: number | undefined;
 
 self.onmessage = (event: MessageEvent<ToWorker>) => {
   if (event.data.type === 'load') {
-    parts = start(event.data.codecUrl);
-    parts.catch((thrown: unknown) => {
-      post({
-        type: 'error',
-        code: 'internal',
-        message: `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`,
-      });
-      post({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
-    });
+    parts = start(event.data.baseUrl, event.data.codecUrl);
+    parts.catch(fail);
     return;
   }
   // Commands keep their order: each waits for the same promise.
@@ -48,17 +42,45 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
   parts.then((ready) => obey(ready, message)).catch(() => undefined);
 };
 
-async function start(codecUrl: string): Promise<Parts> {
-  const module = await retry(() => compile(codecUrl));
-  const codec = await WasmCodec.create(module);
+/** The base mesh is decoded by a module of its own, which is here sooner. */
+async function start(baseUrl: string, codecUrl: string): Promise<Parts> {
+  const codec = await WasmCodec.create(await retry(() => compile(baseUrl)));
   const assembler = new Assembler(codec, kDraco);
   const publisher = (globalThis.qtetPublisher = new Publisher(assembler, postSnapshot));
+  let whole: Promise<WebAssembly.Module> | null = null;
+  const becomeWhole = async (): Promise<WebAssembly.Module> => {
+    const module = await retry(() => compile(codecUrl));
+    codec.become(module);
+    session.renewed();
+    return module;
+  };
+  const makeWhole = (): Promise<WebAssembly.Module> => (whole ??= becomeWhole());
   const coarse = new CoarseVolume(
-    async () => new Assembler(await WasmCodec.create(module), kDraco),
+    async () => new Assembler(await WasmCodec.create(await makeWhole()), kDraco),
   );
   const session = new Session(assembler, publisher, post);
   session.coarse = coarse;
-  return {codec, publisher, coarse, inspector: new Inspector(assembler), session};
+  session.onBase = () => void makeWhole().catch(fail);
+  return {
+    publisher,
+    coarse,
+    session,
+    inspector: new Inspector(assembler),
+    digest: async () => {
+      if (codec.chunkCount === 0) return '';
+      await makeWhole();
+      return codec.digest();
+    },
+  };
+}
+
+function fail(thrown: unknown): void {
+  post({
+    type: 'error',
+    code: 'internal',
+    message: `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`,
+  });
+  post({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
 }
 
 /** Compiles while downloading. A host that serves .wasm under another type loses only that. */
@@ -71,7 +93,7 @@ async function compile(url: string): Promise<WebAssembly.Module> {
 }
 
 function obey(
-  {session, publisher, coarse, codec, inspector}: Parts,
+  {session, publisher, coarse, inspector, ...its}: Parts,
   message: Exclude<ToWorker, {type: 'load'}>,
 ): void {
   switch (message.type) {
@@ -94,11 +116,9 @@ function obey(
     case 'repeat':
       return publisher.repeat();
     case 'digest':
-      return post({
-        type: 'answer',
-        id: message.id,
-        answer: codec.chunkCount > 0 ? codec.digest() : '',
-      });
+      return void its
+        .digest()
+        .then((answer) => post({type: 'answer', id: message.id, answer}), fail);
     case 'pick':
       return post({
         type: 'answer',

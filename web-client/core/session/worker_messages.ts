@@ -34,8 +34,8 @@ export interface Source extends LogAddress {
 }
 
 export type ToWorker =
-  /** The first message: where the codec's WebAssembly lies. */
-  | {type: 'load'; codecUrl: string}
+  /** The first message: where the codec's WebAssembly lies, and its part for the base mesh. */
+  | {type: 'load'; baseUrl: string; codecUrl: string}
   /** `run` counts the starts. Messages of an earlier run concern another mesh. */
   | {type: 'start'; source: Source; run: number}
   | {type: 'display'; display: Display}
