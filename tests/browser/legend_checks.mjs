@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {kPhone} from './browser.mjs';
 import {serveMesh} from './programs.mjs';
-import {linearBox} from './volume_checks.mjs';
+import {linearBox, pixelsAt} from './volume_checks.mjs';
 
 const kLong = 'Turbulent kinetic energy dissipation rate per unit mass, averaged in time';
 
@@ -173,7 +173,7 @@ async function saysWhatIsHidden({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const {page} = viewer;
-  assert.match(await viewer.text('.legend-note'), /^Values below .* first colour$/);
+  assert.match(await viewer.text('.legend-note'), /^Linear from −?[\d.]+ to [\d.]+$/);
   const hint = page.locator('qtet-viewer .iso-hidden');
   assert.ok(await hint.isHidden(), 'a cut shows what is inside');
   const select = page.locator('qtet-viewer .plane:first-child select');
@@ -278,7 +278,42 @@ async function givesItsNumbersAway({server, browser}) {
   assert.match(copied[0], /^Distance\t[\d.]+\nDifference\t/);
 }
 
+/** A logarithm of both signs: linear to a thousandth of the larger end, then decades. */
+async function coloursBothSidesOfZero(context) {
+  const {server, browser} = context;
+  const nodes = [-1000, -10, 0, 10, 1000];
+  const signed = (x) => {
+    const cell = Math.min(3, Math.floor(4 * x));
+    return nodes[cell] + (4 * x - cell) * (nodes[cell + 1] - nodes[cell]);
+  };
+  await serveMesh(context, 'signed', linearBox(4, {Signed: signed}), ['--field-bits', '20']);
+  const viewer = await browser.open(
+    `${server.url}?mesh=signed&field=Signed&scale=log&colormap=grey&clip=y:0.5&clip-mode=slice` +
+      '&edges=off&projection=parallel',
+  );
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  assert.equal(await viewer.text('.legend-note'), 'Linear from -1 to 1'.replace('-', '−'));
+  await viewer.page.evaluate(() => window.qtetViewer.look('-y'));
+  await viewer.settle();
+  const bent = (value) => (value < 0 ? -1 : 1) * (1 + Math.log(Math.abs(value)));
+  const shares = [0.05, 0.2, 0.3, 0.45, 0.55, 0.7, 0.8, 0.97];
+  const pixels = await pixelsAt(
+    viewer,
+    shares.map((x) => [x, 0.5, 0.37]),
+  );
+  const greys = shares.map((x) => {
+    const place = (bent(signed(x)) - bent(-1000)) / (bent(1000) - bent(-1000));
+    return 26 + place * 210; // from one end of the map to the other
+  });
+  pixels.forEach(([grey], i) =>
+    assert.ok(Math.abs(grey - greys[i]) < 3, `${grey} instead of ${greys[i]} at ${shares[i]}`),
+  );
+  await viewer.screenshot('legend-signed');
+}
+
 export const legendChecks = {
+  coloursBothSidesOfZero,
   movesAndCentresByKeys,
   givesItsNumbersAway,
   showsAwkwardFieldsLegibly,

@@ -57,7 +57,7 @@ ${array('Int64', 'offsets', offsets)}${array('UInt8', 'types', types)}</Cells>
 /**
  * RGBA in 0..255 at lattice points, given as shares of the box, in a picture with all its pixels.
  */
-function pixelsAt(viewer, places) {
+export function pixelsAt(viewer, places) {
   return viewer.page.evaluate(async (shares) => {
     const {meshView, viewing} = window.qtetViewer;
     const {bounds} = viewing.mesh;

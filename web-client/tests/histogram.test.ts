@@ -1,6 +1,7 @@
 import {expect, test} from 'vitest';
 import {FieldScale, kMagnitude} from '../core/picture/field_scale';
 import {countsOf, histogramOf, kBars, type Axis, type Histogram} from '../core/picture/histogram';
+import {valueAt} from '../core/picture/log_scale';
 import type {FieldInfo} from '../core/protocol/manifest';
 import {
   axisOf,
@@ -11,12 +12,12 @@ import {
   nearestEnd,
   needsLogarithm,
   shareOf,
-  valueAt,
 } from '../viewer/panels/histogram_axis';
 import type {ShownRange} from '../viewer/settings/settings';
 
 const kLinear: Axis = {low: 0, high: 10, logarithmic: false};
 const kDecades: Axis = {low: 1, high: 1e4, logarithmic: true};
+const kSigned: Axis = {low: -10, high: 1000, logarithmic: true};
 const filled = (counts: number[]): [number, number][] =>
   [...counts.entries()].filter(([, count]) => count > 0);
 const range = (low: number, high: number, logarithmic = false): ShownRange => ({
@@ -94,7 +95,7 @@ test('theAxisHoldsTheValuesAndTheRange', () => {
 });
 
 test('placesAndValuesAreInverse', () => {
-  for (const axis of [kLinear, kDecades])
+  for (const axis of [kLinear, kDecades, kSigned])
     for (const share of [0, 0.25, 0.5, 1])
       expect(shareOf(axis, valueAt(axis, share))).toBeCloseTo(share);
   expect(shareOf(kLinear, -5)).toBe(0);

@@ -184,12 +184,14 @@ describe('the range of the colours', () => {
     expect(range({range: 'symmetric'}, [-1, 4])).toEqual({low: -4, high: 4, ...linear});
     expect(range({range: [2, 3]}, [-1, 4])).toEqual({low: 2, high: 3, ...linear});
   });
-  test('isLogarithmicOnlyAboveZeroAndTellsWhatItHides', () => {
+  test('isLogarithmicOnBothSidesOfZeroAndTellsWhatItHides', () => {
     const of = (low: number, high: number): ReturnType<typeof shownRange> =>
       range({logarithmic: true}, [low, high]);
     expect(of(1, 100)).toEqual({low: 1, high: 100, logarithmic: true, hides: 'none'});
-    expect(of(-1, 100)).toEqual({low: 0.01, high: 100, logarithmic: true, hides: 'low'});
-    expect(of(-5, -1)).toEqual({low: -5, high: -1, logarithmic: false, hides: 'all'});
+    expect(of(0, 100)).toEqual({low: 0.01, high: 100, logarithmic: true, hides: 'low'});
+    expect(of(-1, 100)).toEqual({low: -1, high: 100, logarithmic: true, hides: 'none'});
+    expect(of(-5, -1)).toEqual({low: -5, high: -1, logarithmic: true, hides: 'none'});
+    expect(of(0, 0)).toEqual({low: 0, high: 0, logarithmic: false, hides: 'all'});
   });
 });
 
@@ -224,6 +226,8 @@ describe('logarithmic ticks', () => {
     [1, 100, ['1', '2', '5', '10', '20', '50', '100']],
     [1e-6, 1e6, ['10⁻⁶', '10⁻⁴', '0.01', '1', '100', '10000', '10⁶']],
     [3, 4, ['3.0', '3.2', '3.4', '3.6', '3.8', '4.0']],
+    [-10, 1000, ['−10', '−1', '0', '1', '10', '100', '1000']],
+    [-1000, -10, ['−1000', '−100', '−10']],
   ])('from %d to %d', (low, high, labels) => {
     const {ticks} = logTicks(low, high, 7);
     expect(ticks.map(({label}) => label)).toEqual(labels);

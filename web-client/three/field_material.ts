@@ -12,6 +12,7 @@ import {
   Color,
 } from 'three';
 import {colorTable, kColorMapEntries, type ColorMapName} from '../core/picture/color_maps';
+import {linearPart} from '../core/picture/log_scale';
 import {kFieldFragmentShader, kFieldVertexShader} from '../webgl/field_shaders';
 
 /** No point lies above this plane. */
@@ -40,6 +41,7 @@ export class FieldMaterial extends ShaderMaterial {
         clipPlanes: {value: [kNoPlane.clone(), kNoPlane.clone(), kNoPlane.clone()]},
         scaleRange: {value: [0, 1]},
         logarithmic: {value: false},
+        linear: {value: 0},
         opacity: {value: 1},
         edgeStrength: {value: 0.6},
         edgeFade: {value: 1},
@@ -58,7 +60,7 @@ export class FieldMaterial extends ShaderMaterial {
 
   /**
    * The map spans `low` to `high`, values of the field. `scaleRange` holds the values of 0 and 1 in
-   * the soups. REQUIRES: 0 < low < high if logarithmic.
+   * the soups. REQUIRES: low < high if logarithmic, and low is not 0.
    */
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     const span = scaleRange[1] - scaleRange[0] || 1;
@@ -66,6 +68,7 @@ export class FieldMaterial extends ShaderMaterial {
     this.uniforms.range!.value = logarithmic ? [low, high] : [share(low), share(high)];
     this.uniforms.scaleRange!.value = scaleRange;
     this.uniforms.logarithmic!.value = logarithmic;
+    this.uniforms.linear!.value = linearPart({low, high, logarithmic});
   }
   /** Below 1 the back shows through the front. */
   setOpacity(opacity: number): void {

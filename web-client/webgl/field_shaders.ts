@@ -6,6 +6,7 @@
 // gl_FragColor.
 
 import {kColorMapEntries} from '../core/picture/color_maps';
+import {kBendShader} from '../core/picture/log_scale';
 
 export const kFieldVertexShader = /* glsl */ `
   uniform int firstHalf;
@@ -40,6 +41,7 @@ export const kFieldFragmentShader = /* glsl */ `
   uniform vec2 range;
   uniform vec2 scaleRange; // the values that vValue 0 and 1 stand for
   uniform bool logarithmic;
+  uniform float linear; // linearPart of the range
   uniform bool colored;
   uniform vec3 plainColor;
   uniform bool lit;
@@ -50,13 +52,16 @@ export const kFieldFragmentShader = /* glsl */ `
   uniform float edgeFade;
   uniform float pixelRatio;
 
+${kBendShader}
+
   vec3 surfaceColor() {
     // a missing value makes its triangle plain
     if (!colored || isnan(vValue)) return plainColor;
     float t = (vValue - range.x) / max(range.y - range.x, 1e-12);
     if (logarithmic) {
       float value = mix(scaleRange.x, scaleRange.y, vValue);
-      t = value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
+      float low = bend(range.x, linear, range.x);
+      t = (bend(value, linear, range.x) - low) / (bend(range.y, linear, range.x) - low);
     }
     t = clamp(t, 0.0, 1.0);
     // Sample the centres of entries, so that both ends of the range show the table's own ends.

@@ -1,6 +1,7 @@
 // The triangles of a picture: surface, cuts and layers, with the look that they share.
 
 import {colorTable, kColorMapEntries} from '../core/picture/color_maps';
+import {linearPart} from '../core/picture/log_scale';
 import {kMaxPlanes} from '../core/picture/display';
 import type {Snapshot} from '../core/session/worker_messages';
 import {edgeFade} from './edge_fade';
@@ -58,6 +59,7 @@ export class MeshParts {
       range: [0, 1],
       scaleRange: [0, 1],
       logarithmic: false,
+      linear: 0,
       edgeFade: 1,
       pixelRatio: 1,
     };
@@ -94,7 +96,8 @@ export class MeshParts {
 
   /**
    * The colours span `low` to `high`, values of the field. `scaleRange` holds the values of 0 and 1
-   * in the soups. Returns the range as shaders take it. REQUIRES: 0 < low < high if logarithmic.
+   * in the soups. Returns the range as shaders take it. REQUIRES: low < high if logarithmic, and
+   * low is not 0.
    */
   setRange(
     low: number,
@@ -105,7 +108,8 @@ export class MeshParts {
     const span = scaleRange[1] - scaleRange[0] || 1;
     const share = (value: number): number => (value - scaleRange[0]) / span;
     const range: [number, number] = logarithmic ? [low, high] : [share(low), share(high)];
-    Object.assign(this.look, {range, scaleRange, logarithmic});
+    const linear = linearPart({low, high, logarithmic});
+    Object.assign(this.look, {range, scaleRange, logarithmic, linear});
     return range;
   }
 

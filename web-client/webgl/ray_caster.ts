@@ -2,6 +2,7 @@
 // mesh through a hole or a concavity may enter it again. So it works in layers: it draws the next
 // boundary faces and casts rays from there, until no pixel has such a face.
 
+import {linearPart} from '../core/picture/log_scale';
 import type {TransferTables} from '../core/picture/transfer';
 import type {Plane} from '../core/protocol/geometry';
 import {kMinNear} from './camera';
@@ -31,6 +32,7 @@ export class RayCaster {
     range: [0, 1],
     scaleRange: [0, 1],
     logarithmic: false,
+    linear: 0,
     clipPlanes: clipValues([]),
   };
   private tables: Texture[] = [];
@@ -56,7 +58,8 @@ export class RayCaster {
 
   /** The range as MeshParts.setRange returns it. */
   setRange(range: [number, number], scaleRange: [number, number], logarithmic: boolean): void {
-    Object.assign(this.look, {range, scaleRange, logarithmic});
+    const linear = linearPart({low: range[0], high: range[1], logarithmic});
+    Object.assign(this.look, {range, scaleRange, logarithmic, linear});
   }
   setClip(planes: readonly Plane[]): void {
     this.look.clipPlanes = clipValues(planes);

@@ -7,6 +7,7 @@
 // After R. Marmitt and P. Slusallek, "Fast ray traversal of tetrahedral and hexahedral meshes for
 // direct volume rendering", EuroVis 2006.
 
+import {kBendShader} from '../core/picture/log_scale';
 import {kTransferSteps} from '../core/picture/transfer';
 import {kRow, kRowBits} from './cell_textures';
 
@@ -151,15 +152,19 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
   uniform vec2 range;
   uniform vec2 scaleRange;
   uniform bool logarithmic;
+  uniform float linear;       // linearPart of the range
   uniform float perDiagonal;  // diagonals a lattice unit
   layout(location = 0) out vec4 color;
 
   vec3 origin, along, across, up;
 
+${kBendShader}
+
   float shareOf(float value) {
     if (!logarithmic) return (value - range.x) / max(range.y - range.x, 1e-12);
     float v = mix(scaleRange.x, scaleRange.y, value);
-    return v > 0.0 ? log(v / range.x) / log(range.y / range.x) : 0.0;
+    float low = bend(range.x, linear, range.x);
+    return (bend(v, linear, range.x) - low) / (bend(range.y, linear, range.x) - low);
   }
 
   vec4 densityAt(float share) {
@@ -231,8 +236,10 @@ export const kRayFragmentShader = /* glsl */ `${kHead}
     float share = 0.25 * (a.w + b.w + c.w + d.w);
     float perValue = 1.0 / max(range.y - range.x, 1e-12);
     if (logarithmic) {
-      float value = max(mix(scaleRange.x, scaleRange.y, share), range.x);
-      perValue = (scaleRange.y - scaleRange.x) / (value * log(range.y / range.x));
+      float value = mix(scaleRange.x, scaleRange.y, share);
+      float perBend = linear == 0.0 ? max(value, range.x) : max(abs(value), linear);
+      float bends = bend(range.y, linear, range.x) - bend(range.x, linear, range.x);
+      perValue = (scaleRange.y - scaleRange.x) / (perBend * bends);
     }
     float steep = slope * perValue / max(abs(dot(p, qr)) * perDiagonal, 1e-30);
     float steepness = steep * steep / (1.0 + steep * steep);

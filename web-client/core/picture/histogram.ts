@@ -1,7 +1,7 @@
 // Counts a field's values for the colour panel.
 
 import {scalarRange, type FieldScale, type Scalar} from './field_scale';
-import {placeOn} from './ticks';
+import {placeOn} from './log_scale';
 import type {FieldInfo} from '../protocol/manifest';
 
 /** As many as the panel has room for: each is 4 to 5 pixels wide. */
@@ -51,11 +51,12 @@ export function histogramOf(
 }
 
 /** The last part holds its end. An axis without width has all its values in the middle part. */
-export function countsOf(values: Float64Array, {low, high, logarithmic}: Axis): number[] {
+export function countsOf(values: Float64Array, axis: Axis): number[] {
+  const {low, high, logarithmic} = axis;
   const counts = new Array<number>(kBars).fill(0);
   for (const value of values) {
-    if (logarithmic && value <= 0) continue;
-    const place = low < high ? placeOn(low, high, logarithmic, value) : value === low ? 0.5 : -1;
+    if (logarithmic && low > 0 && value <= 0) continue;
+    const place = low < high ? placeOn(axis, value) : value === low ? 0.5 : -1;
     if (place >= 0 && place <= 1) ++counts[Math.min(kBars - 1, Math.floor(kBars * place))]!;
   }
   return counts;

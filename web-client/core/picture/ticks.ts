@@ -1,6 +1,8 @@
 // The numbers beside a colour bar: round steps of 1, 2 or 5, written short, with one power of ten
 // taken out where it helps.
 
+import {linearPart, placeOn} from './log_scale';
+
 export interface Tick {
   /** In [0, 1] along the bar. */
   at: number;
@@ -54,19 +56,15 @@ export function niceTicks(low: number, high: number, max: number): Ticks {
   return {ticks, factor};
 }
 
-/** The value's place along the bar, in [0, 1] if it lies inside [low, high]. */
-export function placeOn(low: number, high: number, logarithmic: boolean, value: number): number {
-  return logarithmic ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
-}
-
 /**
- * The same for a logarithmic bar: powers of ten, and 2 and 5 times them if these are few. REQUIRES:
- * 0 < low < high.
+ * The same for a logarithmic bar: powers of ten, and 2 and 5 times them if these are few. A bar of
+ * both signs has 0, too. REQUIRES: low < high, low is not 0.
  */
 export function logTicks(low: number, high: number, max: number): Ticks {
+  if (low < 0) return signedTicks(low, high, max);
   const from = Math.floor(Math.log10(low) - 1e-9);
   const to = Math.ceil(Math.log10(high) + 1e-9);
-  const at = (value: number): number => placeOn(low, high, true, value);
+  const at = (value: number): number => placeOn({low, high, logarithmic: true}, value);
   if (high < 10 * low) {
     // hardly curved: the numbers of a linear bar, at their logarithmic places
     const {ticks, factor} = niceTicks(low, high, max);
@@ -90,6 +88,28 @@ export function logTicks(low: number, high: number, max: number): Ticks {
     const ticks = choose([1], every);
     if (ticks.length <= max)
       return {ticks: ticks.length > 0 ? ticks : choose([1], 1).slice(0, max), factor: ''};
+  }
+}
+
+/** Powers of ten of both signs that are not in the linear part, every n-th of many, and 0. */
+function signedTicks(low: number, high: number, max: number): Ticks {
+  const scale = {low, high, logarithmic: true};
+  const linear = linearPart(scale);
+  const from = Math.ceil(Math.log10(linear) - 1e-9);
+  const to = Math.floor(Math.log10(Math.max(-low, high)) + 1e-9);
+  for (let every = 1; ; ++every) {
+    const powers = Array.from(
+      {length: Math.ceil((to - from + 1) / every)},
+      (_, i) => to - every * i,
+    );
+    const ticks = [
+      ...powers.map((power): [number, string] => [-(10 ** power), kMinus + powerLabel(1, power)]),
+      [0, '0'] as const,
+      ...powers.reverse().map((power): [number, string] => [10 ** power, powerLabel(1, power)]),
+    ]
+      .map(([value, text]) => ({at: placeOn(scale, value), label: text}))
+      .filter(({at}) => at >= -1e-9 && at <= 1 + 1e-9);
+    if (ticks.length <= max || every > to - from) return {ticks, factor: ''};
   }
 }
 

@@ -9,7 +9,7 @@ import type {BaseFigures} from '../../core/picture/base_figures';
 import {labelsOf} from '../../core/picture/labels';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Snapshot} from '../../core/session/worker_messages';
-import {placeOn} from '../../core/picture/ticks';
+import {placeOn} from '../../core/picture/log_scale';
 import {
   labelRange,
   readSettings,
@@ -93,10 +93,10 @@ function amountsIn(
   const range = snapshot && manifest && rangeOf(snapshot, manifest, settings);
   if (!range || !snapshot.amounts) return null;
   const [from, to] = snapshot.scaleRange;
-  const {low, high, logarithmic} = range;
   const placeOf = (share: number): number => {
     const value = from + share * (to - from);
-    return logarithmic && value <= 0 ? 0 : placeOn(low, high, logarithmic, value);
+    const isBelow = range.logarithmic && range.low > 0 && value <= 0;
+    return isBelow ? 0 : placeOn(range, value);
   };
   return {shares: snapshot.amounts, placeOf};
 }

@@ -1,7 +1,7 @@
 // The axis of the histogram, and its two handles, as numbers.
 
 import {kBars, type Axis} from '../../core/picture/histogram';
-import {placeOn} from '../../core/picture/ticks';
+import {placeOn, valueAt} from '../../core/picture/log_scale';
 import {roundTo} from '../page/format';
 import type {ShownRange} from '../settings/settings';
 
@@ -17,21 +17,16 @@ export type End = 0 | 1;
 /** All values that occur and both ends of the range, as far as a logarithm has them. */
 export function axisOf(range: ShownRange, extent: readonly [number, number]): Axis {
   const {logarithmic} = range;
-  const from = logarithmic && extent[0] <= 0 ? range.low : extent[0];
+  const from = logarithmic && range.low > 0 && extent[0] <= 0 ? range.low : extent[0];
   return {low: Math.min(from, range.low), high: Math.max(extent[1], range.high), logarithmic};
 }
 
 /** The value's place on the axis, in [0, 1]. */
-export function shareOf({low, high, logarithmic}: Axis, value: number): number {
+export function shareOf(axis: Axis, value: number): number {
+  const {low, high, logarithmic} = axis;
   if (!(low < high)) return 0.5;
-  if (logarithmic && value <= 0) return 0;
-  return Math.min(1, Math.max(0, placeOn(low, high, logarithmic, value)));
-}
-
-export function valueAt({low, high, logarithmic}: Axis, share: number): number {
-  if (share <= 0) return low;
-  if (share >= 1) return high;
-  return logarithmic ? low * (high / low) ** share : low + share * (high - low);
+  if (logarithmic && low > 0 && value <= 0) return 0;
+  return Math.min(1, Math.max(0, placeOn(axis, value)));
 }
 
 /** The range with one end moved to `share`, below or above the other end. */
@@ -45,7 +40,7 @@ export function movedRange(
   const place = end === 0 ? Math.min(share, other - kMinApart) : Math.max(share, other + kMinApart);
   const value = valueAt(axis, Math.min(1, Math.max(0, place)));
   // Decades below the axis' end have digits of their own.
-  const fine = kFine * (axis.logarithmic ? value : axis.high - axis.low);
+  const fine = kFine * (axis.logarithmic ? Math.abs(value) : axis.high - axis.low);
   const moved = roundTo(value, fine);
   const next: [number, number] = end === 0 ? [moved, range[1]] : [range[0], moved];
   return next[0] < next[1] ? next : [range[0], range[1]];

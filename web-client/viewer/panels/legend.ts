@@ -2,7 +2,8 @@
 
 import {colorGradient, labelGradient} from '../../core/picture/color_maps';
 import type {Scalar} from '../../core/picture/field_scale';
-import {labelTicks, logTicks, niceTicks, placeOn, type Ticks} from '../../core/picture/ticks';
+import {linearPart, placeOn} from '../../core/picture/log_scale';
+import {labelTicks, logTicks, niceTicks, type Ticks} from '../../core/picture/ticks';
 import type {FieldInfo} from '../../core/protocol/manifest';
 import {formatValue} from '../page/format';
 import type {Settings, ShownRange} from '../settings/settings';
@@ -49,7 +50,7 @@ export class Legend {
       : colorGradient(map, reversed, 33);
     this.part('.legend-bar').replaceChildren(
       ...marked
-        .map((value) => placeOn(range.low, range.high, range.logarithmic, value))
+        .map((value) => placeOn(range, value))
         .filter((at) => at >= 0 && at <= 1)
         .map((at) => placed('i', at)),
     );
@@ -77,8 +78,11 @@ function ticksOf({labels, logarithmic, low, high}: ShownRange): Ticks {
 }
 
 /** A note on values that the colours do not tell apart. */
-function noteOf({hides, isMiddle, low}: ShownRange): string {
+function noteOf(range: ShownRange): string {
+  const {hides, isMiddle, low} = range;
+  const linear = linearPart(range);
   if (isMiddle) return '2nd to 98th percentile; a few values lie outside';
   if (hides === 'all') return 'No values above 0: the scale is linear';
+  if (linear > 0) return `Linear from ${formatValue(-linear)} to ${formatValue(linear)}`;
   return hides === 'low' ? `Values below ${formatValue(low)} have the first colour` : '';
 }

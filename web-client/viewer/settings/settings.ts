@@ -129,8 +129,8 @@ export interface ShownRange {
 /**
  * `extent` is the range of the values that occur, `middle` that of most of them. An automatic range
  * is `middle` (`isMiddle`) if the few others would take most of the colours. A logarithmic range
- * starts above 0, if necessary at a ten-thousandth of its end; `hides` then says what this hides,
- * or why there is none.
+ * from 0 starts at a ten-thousandth of its end. `hides` then says what this hides, or why there is
+ * none. One from below 0 is linear about 0 (log_scale.ts).
  */
 export function shownRange(
   {range, logarithmic}: Settings,
@@ -143,6 +143,7 @@ export function shownRange(
   const isWhole = range === 'auto' || range === 'full';
   const [low, high] = isWhole ? extent : range === 'symmetric' ? [-max, max] : range;
   if (!logarithmic) return {low, high, logarithmic: false, hides: 'none'};
+  if (low < 0 && low < high) return {low, high, logarithmic: true, hides: 'none'};
   if (high <= 0) return {low, high, logarithmic: false, hides: 'all'};
   const kDecades = 1e-4;
   const from = low > 0 ? low : high * kDecades;
