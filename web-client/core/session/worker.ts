@@ -18,7 +18,7 @@ interface Parts {
   session: Session;
   publisher: Publisher;
   coarse: CoarseVolume;
-  /** Of the mesh; empty while there is none. */
+  /** The mesh's; empty while there is none. */
   digest(): Promise<string>;
   inspector: Inspector;
 }
