@@ -4,6 +4,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "codec/log/log_index.h"
+#include "codec/picture/poster.h"
 #include "proto/field_key.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"
@@ -115,7 +117,23 @@ Status writeViewer(Site& site, const fs::path& viewer) {
   return {};
 }
 
-/// Copies the log and says what the list says of it.
+Result<Bytes> posterOf(const OpenedLog& log) {
+  const Result<LatticeMesh> mesh =
+      meshAtLevel(log.file, posterLevel(log.manifest), posterFields(log.manifest));
+  if (!mesh) return std::unexpected(mesh.error());
+  return posterWebp(*mesh, log.manifest);
+}
+
+/// The length of the file's prefix that holds the viewer's first picture: the head, and the first
+/// chunk up to the field that colours it.
+std::uint64_t firstBytes(const OpenedLog& log) {
+  std::uint32_t last = kPositionsPart;
+  for (const std::uint32_t field : posterFields(log.manifest)) last = kFirstFieldPart + field;
+  const BlockEntry& block = log.file.index().block(0, last);
+  return block.offset + block.size;
+}
+
+/// Copies the log, makes its poster, and says what the list says of it.
 Result<Json> writeLog(Site& site, const fs::path& path) {
   const auto named = [&](Error error) {  // of several logs it is this one
     if (error.message.find(path.string()) == std::string::npos)
@@ -131,18 +149,25 @@ Result<Json> writeLog(Site& site, const fs::path& path) {
                                           ".qtet, and a folder holds one; rename " + path.string());
   if (Status written = site.write(name + ".qtet", log->file.bytes()); !written)
     return std::unexpected(written.error());
+  const Result<Bytes> poster = posterOf(*log);
+  if (!poster) return named(poster.error());
+  if (Status written = site.write(name + ".webp", *poster); !written)
+    return std::unexpected(written.error());
   Json fields = Json::array();
   for (std::size_t f = 0; f < log->manifest.fields.size(); ++f)
     fields.push_back(fieldKey(log->manifest, f));
   const ManifestLevel& whole = log->manifest.levels.back();
-  return Json{{"id", name},
-              {"bytes", log->file.bytes().size()},
-              {"digest", log->file.digest()},
-              {"tetrahedra", whole.tetrahedra},
-              {"vertices", whole.vertices},
-              {"fields", fields},
-              {"firstField", firstField(log->manifest)},
-              {"links", {{"log", percentEncoded(name) + ".qtet"}}}};
+  return Json{
+      {"id", name},
+      {"bytes", log->file.bytes().size()},
+      {"firstBytes", firstBytes(*log)},
+      {"digest", log->file.digest()},
+      {"tetrahedra", whole.tetrahedra},
+      {"vertices", whole.vertices},
+      {"fields", fields},
+      {"firstField", firstField(log->manifest)},
+      {"links",
+       {{"log", percentEncoded(name) + ".qtet"}, {"poster", percentEncoded(name) + ".webp"}}}};
 }
 
 Status writeList(Site& site, const Json& meshes) {

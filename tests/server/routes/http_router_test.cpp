@@ -262,6 +262,7 @@ TEST_F(RouterTest, whatIsSavedIsCalledByTheMeshAndTheLevel) {
   EXPECT_EQ(savedAs("levels/11.vtu"), "attachment; filename=\"noise-level-11.vtu\"");
   EXPECT_EQ(savedAs("levels/fit.glb?tets=1"), "attachment; filename=\"noise-level-0.glb\"");
   EXPECT_EQ(savedAs("preview.png"), "inline; filename=\"noise-preview.png\"");
+  EXPECT_EQ(savedAs("poster.webp"), "inline; filename=\"noise-poster.webp\"");
 }
 
 TEST_F(RouterTest, whatDoesNotExistIsNotFound) {

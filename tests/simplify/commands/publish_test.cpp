@@ -90,6 +90,13 @@ TEST_F(Publish, theFolderHoldsTheViewerTheLogsAndTheirList) {
   EXPECT_EQ(box["tetrahedra"], 3072);
   EXPECT_EQ(box["fields"], Json::array({"Scalar"}));
   EXPECT_EQ(list["meshes"][1]["links"]["log"], "two%20words.qtet");
+  EXPECT_EQ(list["meshes"][1]["links"]["poster"], "two%20words.webp");
+  EXPECT_GT(box["firstBytes"], 0);
+  EXPECT_LE(box["firstBytes"], info["levels"][0]["cumulativeBytes"]) << "the first picture's";
+  for (const char* poster : {"box.webp", "two words.webp"}) {
+    EXPECT_EQ(site.at(poster).substr(0, 4) + site.at(poster).substr(8, 4), "RIFFWEBP");
+    EXPECT_LE(site.at(poster).size(), 6000u);
+  }
   for (const auto& [name, content] : site)
     EXPECT_NE(std::ranges::find(list["files"], Json(name)), list["files"].end()) << name;
   EXPECT_NE(site.at("index.html").find("<meta name=\"qtet-src\" content=\"index.json\">"),
