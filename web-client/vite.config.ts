@@ -3,12 +3,13 @@
 
 import {defineConfig} from 'vitest/config';
 import {notices} from './notices';
+import {preloads} from './preloads';
 import {smallShaders} from './small_shaders';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
 
 export default defineConfig({
-  plugins: [...smallShaders(), notices()],
+  plugins: [...smallShaders(), notices(), preloads()],
   base: './',
   resolve: {
     alias: [{find: /^qtet-codec\.wasm/, replacement: wasm}],

@@ -24,6 +24,7 @@ const plainDynamicImports: Plugin = {
 
 export default defineConfig({
   base: './',
+  publicDir: false, // it is the page's
   plugins: [plainDynamicImports, notices()],
   resolve: {alias: [{find: /^qtet-codec\.wasm/, replacement: process.env.QTET_WASM!}]},
   // Bundlers copy workers' files unchanged. So these contain everything they need, including three,

@@ -6,6 +6,7 @@
 
 #include "codec/log/log_index.h"
 #include "codec/picture/poster.h"
+#include "codec/picture/poster_page.h"
 #include "proto/field_key.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"
@@ -95,22 +96,28 @@ Result<std::vector<std::string>> viewerFiles(const fs::path& viewer) {
                   " holds no viewer (index.html); give the one of qtet-server with --viewer");
 }
 
-Result<Bytes> pageWithList(const Bytes& page) {
+/// Corrects the poster where the address names another mesh (web-client/public/first.js).
+constexpr const char* kFirstScript = "<script src=\"first.js\"></script>\n  ";
+
+/// `first` is the mesh that the page shows if its address names none.
+Result<Bytes> pageWithList(const Bytes& page, const std::string& first) {
   std::string text(page.begin(), page.end());
   const std::size_t end = text.find("</head>");
   if (end == text.npos)
     return fail(ErrorCode::kBadInput,
                 "the viewer's index.html has no </head>; give the viewer of this version");
   text.insert(end, kListElement);
-  return bytesOf(text);
+  if (const std::size_t body = text.find("</body>"); body != text.npos)
+    text.insert(body, kFirstScript);
+  return bytesOf(first.empty() ? text : pageOfMesh(text, first, percentEncoded(first) + ".webp"));
 }
 
-Status writeViewer(Site& site, const fs::path& viewer) {
+Status writeViewer(Site& site, const fs::path& viewer, const std::string& first) {
   const Result<std::vector<std::string>> names = viewerFiles(viewer);
   if (!names) return std::unexpected(names.error());
   for (const std::string& name : *names) {
     Result<Bytes> content = readWhole(viewer / name);
-    if (content && name == kPage) content = pageWithList(*content);
+    if (content && name == kPage) content = pageWithList(*content, first);
     if (!content) return std::unexpected(content.error());
     if (Status written = site.writeWithCodings(name, *content); !written) return written;
   }
@@ -194,7 +201,7 @@ Result<PublishedSite> publishSite(const fs::path& folder, const fs::path& viewer
     meshes.push_back(*mesh);
     out.meshes.push_back({(*mesh)["id"], (*mesh)["bytes"], (*mesh)["tetrahedra"]});
   }
-  Status status = writeViewer(site, viewer);
+  Status status = writeViewer(site, viewer, out.meshes.empty() ? "" : out.meshes.front().name);
   if (status) status = site.write("README.txt", bytesOf(hostingNotes()));
   if (status) status = site.write(".nojekyll", {});
   if (status) status = writeList(site, meshes);

@@ -275,6 +275,16 @@ TEST_F(GuardedTest, whatIsUnderADigestIsThereForThoseAloneWhoMayReadItUnderSomeN
   EXPECT_TRUE(get(open).header("cache-control").starts_with("public"));
 }
 
+TEST_F(GuardedTest, thePageOfAGuardedMeshIsThatOfNone) {
+  const HttpResponse guarded = get("/?mesh=noise"), none = get("/?mesh=nothing");
+  EXPECT_EQ(guarded.body, none.body);
+  EXPECT_EQ(guarded.header("etag"), none.header("etag"));
+  EXPECT_EQ(guarded.header("link"), none.header("link"));
+  EXPECT_EQ(get("/?mesh=noise", bearer(kReader)).body, none.body) << "pages come without a token";
+  EXPECT_NE(get("/?mesh=a%20b").body, none.body);
+  EXPECT_EQ(get("/").body, get("/?mesh=a%20b").body) << "the first that everybody may read";
+}
+
 TEST_F(GuardedTest, aSavedFileIsCalledByANameThatTheAskerMayKnow) {
   const auto savedAs = [&](const std::string& headers) {
     RawClient client(server_.port());

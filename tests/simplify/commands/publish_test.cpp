@@ -43,7 +43,9 @@ class Publish : public Tool {
     makeBoxLog();
     fs::copy(folder_ / "box.qtet", folder_ / "two words.qtet");
     fs::create_directories(folder_ / "viewer/assets");
-    put("viewer/index.html", "<!doctype html><head><title>v</title></head><body></body>");
+    put("viewer/index.html",
+        "<!doctype "
+        "html><head><title>v</title></head><body><!--mesh-poster--><!--mesh-name--></body>");
     put("viewer/assets/app-1a2b.js", std::string(2000, 'a') + "()");
     put("viewer/assets/app-1a2b.js.gz", "old");
     put("viewer/assets/tiny-3c.css", "a{}");
@@ -100,6 +102,8 @@ TEST_F(Publish, theFolderHoldsTheViewerTheLogsAndTheirList) {
   for (const auto& [name, content] : site)
     EXPECT_NE(std::ranges::find(list["files"], Json(name)), list["files"].end()) << name;
   EXPECT_NE(site.at("index.html").find("<meta name=\"qtet-src\" content=\"index.json\">"),
+            std::string::npos);
+  EXPECT_NE(site.at("index.html").find("data-mesh=\"box\" src=\"box.webp\">box"),
             std::string::npos);
   EXPECT_EQ(leftovers(), 0u);
   EXPECT_EQ(fs::status(folder_ / "site").permissions(),
