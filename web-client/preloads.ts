@@ -1,9 +1,10 @@
-// Puts the addresses of the codec and of the workers' scripts into the page. The browser fetches
+// Puts the addresses of the codec and of the worker that decodes into the page. The browser fetches
 // them while the page's script still comes.
 //
-// Why not `preload` for all? Chromium takes a worker's script from `modulepreload` and the codec
-// from `prefetch`, each fetched once and without a warning. A worker's use of a `preload` does not
-// count, and `as=worker` is unknown to it.
+// Why not `preload`? Chromium takes a worker's script from `modulepreload` and the codec from
+// `prefetch`, each fetched once and without a warning. A worker's use of a `preload` does not count,
+// and `as=worker` is unknown to it. Why not the worker that draws? It weighs as much as all the
+// rest, and a slow line would bring the poster a second later.
 
 import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
@@ -13,7 +14,6 @@ import type {Plugin} from 'vite';
 const kNeeded = [
   ['worker', 'modulepreload'],
   ['qtet-codec', 'prefetch'],
-  ['view_worker', 'modulepreload'],
 ] as const;
 
 export const preloads = (): Plugin => ({
@@ -30,6 +30,14 @@ export const preloads = (): Plugin => ({
       return `<link rel="${rel}" crossorigin fetchpriority="low" href="./${file}">`;
     });
     const page = readFileSync(path, 'utf8');
-    writeFileSync(path, page.replace('</head>', `  ${links.join('\n    ')}\n  </head>`));
+    // The first request takes the connection that is open, and nothing is shown without styles.
+    const [style] = /<link rel="stylesheet"[^>]*>\s*/.exec(page)!;
+    writeFileSync(
+      path,
+      page
+        .replace(style, '')
+        .replace('<script', `${style}<script`)
+        .replace('</head>', `${links.join('\n    ')}\n  </head>`),
+    );
   },
 });

@@ -95,9 +95,9 @@ Reply pageReply(const RequestView& request, const ViewerFile& page, const MeshEn
     const std::string text = pageOfMesh(plain, mesh.id, posterAddress(mesh));
     resource.validators = {'"' + tagOf(text) + '"',
                            std::max(page.modified, mesh.file.modified.tv_sec)};
-    std::string all = "<" + posterAddress(mesh) + ">; rel=preload; as=image; fetchpriority=high";
-    if (!links.empty()) all += ", " + links;
-    resource.headers.add("Link", all);
+    const std::string poster =
+        "<" + posterAddress(mesh) + ">; rel=preload; as=image; fetchpriority=high";
+    resource.headers.add("Link", links.empty() ? poster : links + ", " + poster);
     made = std::make_shared<const KeptPage>(
         KeptPage{formOf(std::move(resource), encoded({text.begin(), text.end()}, coding), coding)});
     kept.keep(key, made);

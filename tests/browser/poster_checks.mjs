@@ -178,14 +178,14 @@ async function seesWhole(browser, host, log) {
   await page.context().close();
 }
 
-async function scriptsOfWorkersComeWithThePages({server, browser}) {
+async function theDecoderComesWithThePagesScript({server, browser}) {
   const page = await browser.blank();
   const seen = [];
   await page.route('**/assets/index-*.js', (route) => route.abort());
   page.on('request', (request) => seen.push(new URL(request.url()).pathname));
   await page.goto(`${server.url}?mesh=fin`);
   await page.waitForTimeout(1000);
-  for (const part of [/\/worker-.*\.js$/, /qtet-codec.*\.wasm$/, /view_worker-.*\.js$/])
+  for (const part of [/\/worker-.*\.js$/, /qtet-codec.*\.wasm$/])
     assert.ok(
       seen.some((path) => part.test(path)),
       `${part} waits for the page's script; fetched: ${seen.join(' ')}`,
@@ -201,5 +201,5 @@ export const posterChecks = {
   thePosterStandsWhereTheMeshWillStand,
   aGuardedMeshHasNoPoster,
   aPublishedFolderShowsThePosterOfItsAddress,
-  scriptsOfWorkersComeWithThePages,
+  theDecoderComesWithThePagesScript,
 };

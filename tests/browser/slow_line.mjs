@@ -23,7 +23,7 @@ export class SlowLine {
     const oneWayMs = roundTripMs / 2;
     line.#relay = createServer((browser) => {
       const server = connect(targetPort, '127.0.0.1');
-      const connection = {browser, server, queue: []};
+      const connection = {browser, server, queue: [], ended: false};
       line.#connections.add(connection);
       const end = () => {
         browser.destroy();
@@ -41,7 +41,10 @@ export class SlowLine {
         connection.queue.push(bytes);
         server.pause(); // the server feels the line
       });
-      server.on('close', () => setTimeout(() => connection.queue.length === 0 && end(), 2000));
+      server.on('close', () => {
+        connection.ended = true;
+        if (connection.queue.length === 0) setTimeout(end, oneWayMs);
+      });
     });
     let before = performance.now();
     line.#timer = setInterval(() => {
@@ -61,7 +64,7 @@ export class SlowLine {
     const kPacket = 1400;
     for (let waiting = true; waiting && this.#room > 0;) {
       waiting = false;
-      for (const {browser, server, queue} of this.#connections) {
+      for (const {browser, server, queue, ended} of this.#connections) {
         const [first] = queue;
         if (!first || this.#room <= 0) continue;
         waiting = true;
@@ -69,6 +72,7 @@ export class SlowLine {
         if (part.length < first.length) queue[0] = first.subarray(kPacket);
         else queue.shift();
         if (queue.length === 0) server.resume();
+        if (queue.length === 0 && ended) setTimeout(() => browser.end(), oneWayMs + kMostMs);
         this.#room -= part.length;
         this.bytes += part.length;
         setTimeout(() => browser.writable && browser.write(part), oneWayMs);
