@@ -4,13 +4,14 @@
 import {defineConfig} from 'vitest/config';
 import {notices} from './notices';
 import {plainDynamicImports} from './plain_imports';
+import {preloads} from './preloads';
 import {smallShaders} from './small_shaders';
 import {wasmModules} from './wasm_modules';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
 
 export default defineConfig({
-  plugins: [smallShaders(), plainDynamicImports(), notices()],
+  plugins: [smallShaders(), plainDynamicImports(), notices(), preloads()],
   base: './',
   resolve: {
     alias: wasmModules(wasm),

@@ -9,6 +9,7 @@ import {wasmModules} from './wasm_modules';
 
 export default defineConfig({
   base: './',
+  publicDir: false, // it is the page's
   plugins: [plainDynamicImports(), notices()],
   resolve: {alias: wasmModules(process.env.QTET_WASM!)},
   // Bundlers copy workers' files unchanged. So these contain everything they need, and are minified

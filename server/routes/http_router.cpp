@@ -6,6 +6,7 @@
 
 #include "server/http/http_resource.h"
 #include "server/routes/access_routes.h"
+#include "server/routes/first_page.h"
 #include "server/routes/log_routes.h"
 #include "server/routes/mesh_list.h"
 #include "server/routes/openapi.h"
@@ -137,7 +138,10 @@ Router::Router(const MeshStore& store, const ViewerFiles& viewer, const AdminRou
       admin_(admin),
       writing_(std::move(writing)),
       openApi_(openApiJson(), {{"", std::time(nullptr)}, "application/json", kRevalidate}),
-      pagePolicy_(std::string(kPagePolicy) + "; frame-ancestors " + frameAncestors) {}
+      pagePolicy_(std::string(kPagePolicy) + "; frame-ancestors " + frameAncestors) {
+  if (const ViewerFile* page = viewer.find(""))
+    pageLinks_ = linksOf({reinterpret_cast<const char*>(page->bytes.data()), page->bytes.size()});
+}
 
 /// Routes that only a server with tokens answers: changes, and tickets.
 std::optional<Answer> Router::routeWithTokens(const RequestView& request,
@@ -253,6 +257,13 @@ Reply Router::viewerReply(const RequestView& request, const RequestTarget& targe
   if (file->type.starts_with("text/html")) {
     resource.headers.add("Content-Security-Policy", pagePolicy_);
     resource.headers.add("Referrer-Policy", kReferrerPolicy);
+  }
+  if (file == viewer_.find("")) {
+    const CataloguePointer catalogue = store_.catalogue();
+    const MayRead mayRead = writing_ ? writing_->access.readerOf(std::nullopt) : MayRead();
+    if (const EntryPointer mesh = meshOfPage(target, *catalogue, mayRead))
+      return pageReply(request, *file, *mesh, pageLinks_, std::move(resource), *pages_);
+    if (!pageLinks_.empty()) resource.headers.add("Link", pageLinks_);
   }
   return variantReply(request, std::move(resource), {file->bytes, file->gzip, file->zstd}, nullptr);
 }

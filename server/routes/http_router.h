@@ -33,7 +33,7 @@ class Router {
 
   [[nodiscard]] Answer route(const RequestView& request) const;
   /// Bytes of the pages that are kept.
-  [[nodiscard]] std::size_t pageBytes() const { return lists_->bytes(); }
+  [[nodiscard]] std::size_t pageBytes() const { return lists_->bytes() + pages_->bytes(); }
 
  private:
   [[nodiscard]] Answer find(const RequestView& request, const RequestTarget& target) const;
@@ -50,7 +50,8 @@ class Router {
   std::optional<Writing> writing_;
   Document openApi_;
   std::unique_ptr<KeptPages> lists_ = std::make_unique<KeptPages>();
-  std::string pagePolicy_;
+  std::unique_ptr<KeptPages> pages_ = std::make_unique<KeptPages>(limits::kMaxMeshPageBytes);
+  std::string pagePolicy_, pageLinks_;
 };
 
 /// The operators' paths and nothing else, for an address of their own.

@@ -15,6 +15,8 @@ namespace qtet {
 namespace limits {
 /// Bytes of all kept pages: a page of the list has up to 1 MB, and a tenth of it compressed.
 inline constexpr std::size_t kMaxKeptPageBytes = 16u << 20;
+/// Bytes of all kept pages of meshes: about 500 of 2 kB.
+inline constexpr std::size_t kMaxMeshPageBytes = 1u << 20;
 }  // namespace limits
 
 /// A page in one coding, with the head of its answer.

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "codec/log/level_choice.h"
+#include "codec/picture/poster.h"
 #include "server/http/content_disposition.h"
 #include "server/http/http_resource.h"
 #include "server/store/preview.h"
@@ -42,14 +43,16 @@ std::string_view mediaType(LevelForm form) {
     case LevelForm::kObj: return "model/obj";
     case LevelForm::kUsda: return "model/vnd.usda";
     case LevelForm::kPng: return "image/png";
+    case LevelForm::kWebp: return "image/webp";
     default: return "application/octet-stream";
   }
 }
 
+/// Whether it is looked at, not saved.
+bool isPicture(LevelForm form) { return form == LevelForm::kPng || form == LevelForm::kWebp; }
+
 /// Whether the form is compressed already and is sent as it is.
-bool isCompressed(LevelForm form) {
-  return form == LevelForm::kGlb || form == LevelForm::kDrc || form == LevelForm::kPng;
-}
+bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == LevelForm::kDrc; }
 
 /// "NAME:E" as the coarsest level at which the field's rms error (or that of "boundary", its
 /// distance) is at most E.
@@ -125,13 +128,13 @@ std::string canonicalPath(const LevelRequest& level) {
 /// The digest's own bytes decide, so the answer may be kept for ever; the version of this program
 /// is part of the tag.
 Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
-  const bool picture = wanted.form == LevelForm::kPng;  // looked at, not saved
   Resource out{{'"' + wanted.key() + '"', wanted.mesh->modified},
                std::string(mediaType(wanted.form)),
                kForEver};
-  out.headers.add("Content-Disposition",
-                  contentDisposition(picture ? Disposition::kInline : Disposition::kAttachment,
-                                     name + "." + std::string(formName(wanted.form))));
+  out.headers.add(
+      "Content-Disposition",
+      contentDisposition(isPicture(wanted.form) ? Disposition::kInline : Disposition::kAttachment,
+                         name + "." + std::string(formName(wanted.form))));
   becomeEmbeddable(out);
   return out;
 }
@@ -151,7 +154,7 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   const MeshPointer& mesh = log.mesh;
   const std::size_t dot = std::min(name.find('.'), name.size());
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
-  if (!form || form == LevelForm::kPng || form == LevelForm::kIntervals)
+  if (!form || isPicture(*form) || form == LevelForm::kIntervals)
     return problem(404, "not-found",
                    "a level is to be had as {k}.vtu, .vtk, .msh, .usda, .npz, and its boundary as "
                    "{k}.glb, .drc, .stl, .ply, .obj");
@@ -189,6 +192,13 @@ Answer routePreview(const RequestView& request, const RequestTarget& target, con
       wanted.fields = {static_cast<std::uint32_t>(first - manifest.fields.begin())};
   }
   const Resource resource = resourceOf(wanted, log.name + "-preview");
+  return toBeMade(request, resource, std::move(wanted));
+}
+
+Answer routePoster(const RequestView& request, const NamedLog& log) {
+  const Manifest& manifest = log.mesh->manifest;
+  LevelRequest wanted{log.mesh, posterLevel(manifest), LevelForm::kWebp, posterFields(manifest)};
+  const Resource resource = resourceOf(wanted, log.name + "-poster");
   return toBeMade(request, resource, std::move(wanted));
 }
 

@@ -23,4 +23,7 @@ struct NamedLog {
 [[nodiscard]] Answer routePreview(const RequestView& request, const RequestTarget& target,
                                   const NamedLog& log);
 
+/// The same for `/v1/logs/{sha256}/poster.webp` (codec/picture/poster.h).
+[[nodiscard]] Answer routePoster(const RequestView& request, const NamedLog& log);
+
 }  // namespace qtet

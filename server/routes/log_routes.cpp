@@ -76,12 +76,13 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   if (path.size() == 1 && what == "manifest")
     return documentReply(request, mesh->manifestText(), mesh);
   if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
+  if (path.size() == 1 && what == "poster.webp") return routePoster(request, log);
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
   if (path.size() == 2 && what == "levels") return routeLevel(request, target, log, path[1]);
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
   return notFound(
       "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "
-      "other forms, and preview.png");
+      "other forms, preview.png, and poster.webp");
 }
 
 }  // namespace qtet

@@ -5,14 +5,18 @@
 #include <string>
 
 #include "codec/files/mesh_file.h"
+#include "codec/picture/poster.h"
 #include "server/store/preview.h"
 
 namespace qtet {
 namespace {
 
-Result<Bytes> written(const LatticeMesh& mesh, LevelForm form) {
-  return form == LevelForm::kPng ? previewPng(mesh)
-                                 : meshFileBytes(mesh, "." + std::string(formName(form)));
+Result<Bytes> written(const LatticeMesh& mesh, const LevelRequest& request) {
+  switch (request.form) {
+    case LevelForm::kPng: return previewPng(mesh);
+    case LevelForm::kWebp: return posterWebp(mesh, request.mesh->manifest);
+    default: return meshFileBytes(mesh, "." + std::string(formName(request.form)));
+  }
 }
 
 }  // namespace
@@ -28,7 +32,7 @@ Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop
     const Result<LatticeMesh> mesh =
         meshAtLevel(request.mesh->log, request.level, request.fields, stop);
     if (!mesh) return std::unexpected(mesh.error());
-    Result<Bytes> file = written(*mesh, request.form);
+    Result<Bytes> file = written(*mesh, request);
     if (!file || stop.stop_requested()) return file;
     return encoded(std::move(*file), request.coding);
   } catch (const std::bad_alloc&) {

@@ -9,7 +9,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<std::pair<LevelForm, std::string_view>, 12> kForms = {{
+constexpr std::array<std::pair<LevelForm, std::string_view>, 13> kForms = {{
     {LevelForm::kVtu, "vtu"},
     {LevelForm::kVtk, "vtk"},
     {LevelForm::kMsh, "msh"},
@@ -21,6 +21,7 @@ constexpr std::array<std::pair<LevelForm, std::string_view>, 12> kForms = {{
     {LevelForm::kUsda, "usda"},
     {LevelForm::kNpz, "npz"},
     {LevelForm::kPng, "png"},
+    {LevelForm::kWebp, "webp"},
     {LevelForm::kIntervals, "intervals"},
 }};
 

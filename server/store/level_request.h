@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// The kinds of file of codec/files/mesh_file.h, the preview, and the table of
+/// The kinds of file of codec/files/mesh_file.h, the preview and the poster, and the table of
 /// server/store/packet_intervals.h, which nobody fetches.
 enum class LevelForm : std::uint8_t {
   kVtu,
@@ -25,6 +25,7 @@ enum class LevelForm : std::uint8_t {
   kUsda,
   kNpz,
   kPng,
+  kWebp,
   kIntervals
 };
 

@@ -16,7 +16,8 @@ RouteLabel routeOfApi(const RequestTarget& target) {
   if (path[1] == "meshes") return path.size() == 2 ? RouteLabel::kMeshes : RouteLabel::kMesh;
   if (path[1] != "logs") return RouteLabel::kOther;
   if (path.size() > 3 && path[3] == "levels") return RouteLabel::kLevel;
-  return path.size() > 3 && path[3] == "preview.png" ? RouteLabel::kPreview : RouteLabel::kLog;
+  const bool isPicture = path.size() > 3 && (path[3] == "preview.png" || path[3] == "poster.webp");
+  return isPicture ? RouteLabel::kPreview : RouteLabel::kLog;
 }
 
 RouteLabel routeOf(std::string_view text) {

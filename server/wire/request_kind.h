@@ -16,7 +16,7 @@ enum class RouteLabel : std::uint8_t {
   kMesh,     ///< /v1/meshes/{id} and below
   kLog,      ///< /v1/logs/{sha256}/... but levels and pictures
   kLevel,    ///< /v1/logs/{sha256}/levels/...
-  kPreview,  ///< /v1/logs/{sha256}/preview.png
+  kPreview,  ///< /v1/logs/{sha256}/preview.png and poster.webp
   kTickets,  ///< /v1/tickets
   kStream,   ///< /v1/stream, where it becomes no WebSocket
 };

@@ -4,6 +4,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "codec/log/log_index.h"
+#include "codec/picture/poster.h"
+#include "codec/picture/poster_page.h"
 #include "proto/field_key.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"
@@ -93,29 +96,51 @@ Result<std::vector<std::string>> viewerFiles(const fs::path& viewer) {
                   " holds no viewer (index.html); give the one of qtet-server with --viewer");
 }
 
-Result<Bytes> pageWithList(const Bytes& page) {
+/// Corrects the poster where the address names another mesh (web-client/public/first.js).
+constexpr const char* kFirstScript = "<script src=\"first.js\"></script>\n  ";
+
+/// `first` is the mesh that the page shows if its address names none.
+Result<Bytes> pageWithList(const Bytes& page, const std::string& first) {
   std::string text(page.begin(), page.end());
   const std::size_t end = text.find("</head>");
   if (end == text.npos)
     return fail(ErrorCode::kBadInput,
                 "the viewer's index.html has no </head>; give the viewer of this version");
   text.insert(end, kListElement);
-  return bytesOf(text);
+  if (const std::size_t body = text.find("</body>"); body != text.npos)
+    text.insert(body, kFirstScript);
+  return bytesOf(first.empty() ? text : pageOfMesh(text, first, percentEncoded(first) + ".webp"));
 }
 
-Status writeViewer(Site& site, const fs::path& viewer) {
+Status writeViewer(Site& site, const fs::path& viewer, const std::string& first) {
   const Result<std::vector<std::string>> names = viewerFiles(viewer);
   if (!names) return std::unexpected(names.error());
   for (const std::string& name : *names) {
     Result<Bytes> content = readWhole(viewer / name);
-    if (content && name == kPage) content = pageWithList(*content);
+    if (content && name == kPage) content = pageWithList(*content, first);
     if (!content) return std::unexpected(content.error());
     if (Status written = site.writeWithCodings(name, *content); !written) return written;
   }
   return {};
 }
 
-/// Copies the log and says what the list says of it.
+Result<Bytes> posterOf(const OpenedLog& log) {
+  const Result<LatticeMesh> mesh =
+      meshAtLevel(log.file, posterLevel(log.manifest), posterFields(log.manifest));
+  if (!mesh) return std::unexpected(mesh.error());
+  return posterWebp(*mesh, log.manifest);
+}
+
+/// The length of the file's prefix that holds the viewer's first picture: the head, and the first
+/// chunk up to the field that colours it.
+std::uint64_t firstBytes(const OpenedLog& log) {
+  std::uint32_t last = kPositionsPart;
+  for (const std::uint32_t field : posterFields(log.manifest)) last = kFirstFieldPart + field;
+  const BlockEntry& block = log.file.index().block(0, last);
+  return block.offset + block.size;
+}
+
+/// Copies the log, makes its poster, and says what the list says of it.
 Result<Json> writeLog(Site& site, const fs::path& path) {
   const auto named = [&](Error error) {  // of several logs it is this one
     if (error.message.find(path.string()) == std::string::npos)
@@ -131,18 +156,25 @@ Result<Json> writeLog(Site& site, const fs::path& path) {
                                           ".qtet, and a folder holds one; rename " + path.string());
   if (Status written = site.write(name + ".qtet", log->file.bytes()); !written)
     return std::unexpected(written.error());
+  const Result<Bytes> poster = posterOf(*log);
+  if (!poster) return named(poster.error());
+  if (Status written = site.write(name + ".webp", *poster); !written)
+    return std::unexpected(written.error());
   Json fields = Json::array();
   for (std::size_t f = 0; f < log->manifest.fields.size(); ++f)
     fields.push_back(fieldKey(log->manifest, f));
   const ManifestLevel& whole = log->manifest.levels.back();
-  return Json{{"id", name},
-              {"bytes", log->file.bytes().size()},
-              {"digest", log->file.digest()},
-              {"tetrahedra", whole.tetrahedra},
-              {"vertices", whole.vertices},
-              {"fields", fields},
-              {"firstField", firstField(log->manifest)},
-              {"links", {{"log", percentEncoded(name) + ".qtet"}}}};
+  return Json{
+      {"id", name},
+      {"bytes", log->file.bytes().size()},
+      {"firstBytes", firstBytes(*log)},
+      {"digest", log->file.digest()},
+      {"tetrahedra", whole.tetrahedra},
+      {"vertices", whole.vertices},
+      {"fields", fields},
+      {"firstField", firstField(log->manifest)},
+      {"links",
+       {{"log", percentEncoded(name) + ".qtet"}, {"poster", percentEncoded(name) + ".webp"}}}};
 }
 
 Status writeList(Site& site, const Json& meshes) {
@@ -169,7 +201,7 @@ Result<PublishedSite> publishSite(const fs::path& folder, const fs::path& viewer
     meshes.push_back(*mesh);
     out.meshes.push_back({(*mesh)["id"], (*mesh)["bytes"], (*mesh)["tetrahedra"]});
   }
-  Status status = writeViewer(site, viewer);
+  Status status = writeViewer(site, viewer, out.meshes.empty() ? "" : out.meshes.front().name);
   if (status) status = site.write("README.txt", bytesOf(hostingNotes()));
   if (status) status = site.write(".nojekyll", {});
   if (status) status = writeList(site, meshes);

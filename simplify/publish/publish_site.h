@@ -22,10 +22,13 @@ struct PublishedSite {
 };
 
 /// Makes `folder` of the viewer's files and the logs. It holds each file of the viewer with NAME.gz
-/// and NAME.br beside it where that is smaller. It also holds NAME.qtet for each log, index.json,
-/// README.txt (hosting_notes.h) and .nojekyll. index.json is a list as `GET /v1/meshes` gives it
-/// (PROTOCOL.md), with `links.log` relative to it, and `files`. A meta element gives the page
-/// index.json as its list. The same inputs give the same bytes. The folder appears whole or not at
+/// and NAME.br beside it where that is smaller. It also holds NAME.qtet and its poster NAME.webp
+/// (codec/picture/poster.h) for each log, index.json, README.txt (hosting_notes.h) and .nojekyll.
+/// index.json is a list as `GET /v1/meshes` gives it (PROTOCOL.md), with `links.log` and
+/// `links.poster` relative to it, `firstBytes` (the length of the log's prefix that the viewer's
+/// first picture takes), and `files`. A meta element gives the page
+/// index.json as its list. The page holds the name and the poster of the first log
+/// (codec/picture/poster_page.h). The same inputs give the same bytes. The folder appears whole or not at
 /// all (site_folder.h). Errors: not-found and io (of files), those of openLog and
 /// LogFile::verifyChecksums, bad-input (two logs of one name; a viewer without a page).
 [[nodiscard]] Result<PublishedSite> publishSite(const std::filesystem::path& folder,

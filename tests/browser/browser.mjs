@@ -87,6 +87,11 @@ export class Browser {
     };
   }
 
+  /** An empty page, with a cache of its own. */
+  async blank(device = kDesktop) {
+    return (await this.#browser.newContext(device)).newPage();
+  }
+
   /** Opens a page that is not ours; `receive` receives the console's errors. */
   async page(url, receive = () => undefined) {
     const page = await (await this.#browser.newContext(kDesktop)).newPage();

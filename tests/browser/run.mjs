@@ -15,6 +15,7 @@ import {legendChecks} from './legend_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
+import {posterChecks} from './poster_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
@@ -43,7 +44,7 @@ const lists = {
   checks,
   element: elementChecks,
   transport: transportChecks,
-  publish: publishChecks,
+  publish: {...publishChecks, ...posterChecks},
   volume: volumeChecks,
   edge: edgeChecks,
   legend: {

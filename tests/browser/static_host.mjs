@@ -15,6 +15,7 @@ const kTypes = {
   '.wasm': 'application/wasm',
   '.css': 'text/css',
   '.svg': 'image/svg+xml',
+  '.webp': 'image/webp',
 };
 
 /**
@@ -30,8 +31,8 @@ export function makeSite(folder, viewer, log) {
 }
 
 /**
- * Returns {name, url, requests, close()}. Without `ranges` the server answers every request with
- * the whole file. `headers` go with each answer of node.
+ * Returns {name, url, requests, close()}. `requests` are those that bring a file. Without `ranges`
+ * the server answers every request with the whole file. `headers` go with each answer of node.
  */
 export async function hostFolder(folder, {ranges = true, nginx = true, headers = {}} = {}) {
   if (nginx && ranges && !spawnSync(kNginx, ['-v']).error) return hostByNginx(folder);
@@ -41,12 +42,19 @@ export async function hostFolder(folder, {ranges = true, nginx = true, headers =
       folder,
       decodeURIComponent(new URL(request.url, 'http://x').pathname).replace(/\/$/, '/index.html'),
     );
-    const size =
-      resolve(path).startsWith(resolve(folder)) && statSync(path, {throwIfNoEntry: false})?.size;
-    if (size === undefined || size === false) return void response.writeHead(404).end();
+    const found =
+      resolve(path).startsWith(resolve(folder)) && statSync(path, {throwIfNoEntry: false});
+    if (!found) return void response.writeHead(404).end();
+    const {size, mtimeMs} = found;
+    const etag = `"${size}-${mtimeMs}"`;
+    if (request.headers['if-none-match'] === etag) return void response.writeHead(304).end();
     requests.push(`${request.url} ${request.headers.range ?? ''}`);
     const [, from, to] = (ranges && /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '')) || [];
-    const type = {...headers, 'content-type': kTypes[extname(path)] ?? 'application/octet-stream'};
+    const type = {
+      ...headers,
+      etag,
+      'content-type': kTypes[extname(path)] ?? 'application/octet-stream',
+    };
     if (from === undefined)
       return void createReadStream(path).pipe(
         response.writeHead(200, {...type, 'content-length': size}),

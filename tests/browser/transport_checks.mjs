@@ -9,6 +9,7 @@ import {coloredShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 import {makeLog, Server} from './programs.mjs';
 import {hostFolder, makeSite} from './static_host.mjs';
+import {kStrictPolicy} from './strict_policy.mjs';
 
 async function readsALogFromAPlainWebServer({browser, logs, viewer: files, out}) {
   const folder = makeSite(join(out, 'site'), files, logs.fin);
@@ -235,15 +236,9 @@ async function namesEachFault({server, browser, logs, viewer: files, out}) {
   }
 }
 
-/** As strict as a policy can be for a page with workers and WebAssembly. */
-const kPolicy =
-  "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; " +
-  "object-src 'none'; base-uri 'none'; trusted-types qtet default; " +
-  "require-trusted-types-for 'script'";
-
 async function worksUnderAStrictPolicy({browser, logs, viewer: files, out}) {
   const folder = makeSite(join(out, 'strict-site'), files, logs.fin);
-  const headers = {'content-security-policy': kPolicy};
+  const headers = {'content-security-policy': kStrictPolicy};
   const host = await hostFolder(folder, {nginx: false, headers});
   const messages = [];
   try {

@@ -26,6 +26,8 @@ const kUnasked = new Set([
   'readLevel 503',
   'readPreview 500',
   'readPreview 503',
+  'readPoster 500',
+  'readPoster 503',
   'putMesh 503',
   'putMesh 507',
   'isReady 503',
@@ -187,7 +189,8 @@ async function checkAll(port) {
     `${log}/chunks/0`,
     `${log}/fields/Density/chunks/0`,
   ];
-  const levels = kForms.map((form) => `${log}/levels/1.${form}`).concat(`${log}/preview.png`);
+  const pictures = [`${log}/preview.png`, `${log}/poster.webp`];
+  const levels = kForms.map((form) => `${log}/levels/1.${form}`).concat(pictures);
   for (const path of [...documents, ...binaries, ...levels]) {
     const whole = await get(200, path);
     await expect(200, 'HEAD', path);
@@ -235,6 +238,7 @@ async function checkAll(port) {
     `/v1/logs/${nobody}/log`,
     `/v1/logs/${nobody}/manifest`,
     `/v1/logs/${nobody}/base`,
+    `/v1/logs/${nobody}/poster.webp`,
     `${log}/chunks/99999`,
     `${log}/fields/none/chunks/0`,
     `${log}/levels/999.vtu`,

@@ -10,7 +10,8 @@ const answer = (meshes: unknown): void => {
 afterEach(() => vi.unstubAllGlobals());
 
 test('aPublishedListHasTheAddressesOfItsFiles', async () => {
-  answer([{id: 'a b', tetrahedra: 7, fields: ['T'], firstField: 'T', links: {log: 'a%20b.qtet'}}]);
+  const entry = {id: 'a b', tetrahedra: 7, fields: ['T'], firstField: 'T', firstBytes: 9300};
+  answer([{...entry, links: {log: 'a%20b.qtet'}}]);
   const list = new URL('https://a.org/meshes/index.json');
   expect(isMeshList(list)).toBe(true);
   expect(await fetchCatalog(list)).toEqual([
@@ -20,6 +21,7 @@ test('aPublishedListHasTheAddressesOfItsFiles', async () => {
       fields: ['T'],
       firstField: 'T',
       log: 'https://a.org/meshes/a%20b.qtet',
+      firstBytes: 9300,
     },
   ]);
   expect(vi.mocked(fetch).mock.calls[0]![0]).toBe(list.href);

@@ -98,7 +98,12 @@ function expectLog(log: FakeLog): void {
   assembler = new Assembler(codec, kFakeValues);
 }
 
-function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = ['p']): Session {
+function session(
+  it: Host,
+  kind: 'range' | 'chunks',
+  fields: string[] | null = ['p'],
+  firstBytes?: number,
+): Session {
   const made = new Session(
     assembler,
     new Publisher(assembler, () => undefined),
@@ -107,7 +112,7 @@ function session(it: Host, kind: 'range' | 'chunks', fields: string[] | null = [
       new HttpTransport(
         () =>
           kind === 'range'
-            ? new RangeSource(log, table, it.fetch)
+            ? new RangeSource(log, table, it.fetch, firstBytes)
             : new ChunkSource(log, table, it.fetch),
         table,
         handlers,
@@ -137,6 +142,24 @@ describe('ranges', () => {
     expect(states().at(-1)).toBe('complete');
     expect(codec.chunksApplied).toBe(kLog.chunks);
     expect(it.asked).toEqual(['bytes=0-65535']);
+  });
+
+  test('theFirstRequestTakesWhatAListSaysWithinBounds', async () => {
+    const kMost = 1 << 20;
+    for (const [firstBytes, asked] of [
+      [63, 64],
+      [64, 64],
+      [65, 65],
+      [kMost, kMost],
+      [kMost + 1, kMost],
+    ] as const) {
+      expectLog(kLog);
+      const it = host(() => file(kLog));
+      session(it, 'range', null, firstBytes);
+      await settle();
+      expect(it.asked[0]).toBe(`bytes=0-${asked - 1}`);
+      expect(states().at(-1)).toBe('complete');
+    }
   });
 
   test('aServerThatKnowsNoRangesGivesTheWhole', async () => {

@@ -41,4 +41,17 @@ for (const type of ['camera-change', 'view-change']) {
   });
 }
 window.qtetViewer = viewer;
-document.querySelector('main')!.append(viewer);
+const main = document.querySelector('main')!;
+main.append(viewer);
+// Connecting builds the viewer in a task of its own, and the next one takes over what the page
+// showed before its script came.
+setTimeout(() => {
+  main.querySelector('.first')?.remove();
+  const poster = main.querySelector('img[slot=poster]');
+  if (!poster) return;
+  viewer.append(poster);
+  // It shows this mesh alone.
+  viewer.addEventListener('view-change', ({detail}) => {
+    if (detail.name === 'mesh') poster.remove();
+  });
+});

@@ -153,12 +153,14 @@ export class StreamControl {
     listeners.opens(opened === kept.opened);
     kept.opened = opened;
     this.menu.name(mesh);
-    const file = isLogFile(base) ? base.href : this.catalog.find(({id}) => id === mesh)?.log;
+    const entry = this.catalog.find(({id}) => id === mesh);
+    const file = isLogFile(base) ? base.href : entry?.log;
     const transport = page.element.getAttribute('transport');
     const fields = this.firstFields(mesh);
     client.start({
       url: file === undefined ? streamUrl(base) : '',
       log: file ?? logUrl(base, mesh),
+      firstBytes: entry?.firstBytes,
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
       fields,

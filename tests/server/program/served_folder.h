@@ -11,11 +11,18 @@ namespace qtet::test {
 
 class ServedFolder {
  public:
+  static constexpr const char* kPage =
+      "<!doctype html><title>viewer</title><script type=\"module\" "
+      "src=\"assets/app-1a2b.js\"></script>"
+      "<link rel=\"icon\" href=\"i.svg\"><link rel=\"stylesheet\" href=\"a.css\">"
+      "<link rel=\"preload\" as=\"fetch\" crossorigin href=\"assets/codec.wasm\">"
+      "<!--mesh-poster--><h1><!--mesh-name--></h1>";
+
   ServedFolder() {
     logs_.write("noise.qtet", makeLog({.chunks = 12}));
     logs_.write("a b.qtet", makeLog({.chunks = 2, .fields = {}, .seed = 7}));
     logs_.write("readme.txt", "not a log");
-    viewer_.write("index.html", "<!doctype html><title>viewer</title>");
+    viewer_.write("index.html", kPage);
     viewer_.write("assets/app-1a2b.js", "console.log(1)");
     viewer_.write("assets/app-1a2b.js.gz", "(compressed)");
     viewer_.write("assets/alone.gz", "an archive");

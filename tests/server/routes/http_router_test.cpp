@@ -262,6 +262,7 @@ TEST_F(RouterTest, whatIsSavedIsCalledByTheMeshAndTheLevel) {
   EXPECT_EQ(savedAs("levels/11.vtu"), "attachment; filename=\"noise-level-11.vtu\"");
   EXPECT_EQ(savedAs("levels/fit.glb?tets=1"), "attachment; filename=\"noise-level-0.glb\"");
   EXPECT_EQ(savedAs("preview.png"), "inline; filename=\"noise-preview.png\"");
+  EXPECT_EQ(savedAs("poster.webp"), "inline; filename=\"noise-poster.webp\"");
 }
 
 TEST_F(RouterTest, whatDoesNotExistIsNotFound) {
@@ -297,9 +298,7 @@ TEST_F(RouterTest, whatDoesNotExistIsNotFound) {
 }
 
 TEST_F(RouterTest, theViewerAndNothingElseOfItsFolderIsServed) {
-  EXPECT_EQ(body(get("/")), "<!doctype html><title>viewer</title>");
-  EXPECT_EQ(body(get("/?mesh=noise")), "<!doctype html><title>viewer</title>");
-  EXPECT_EQ(body(get("/index.html")), "<!doctype html><title>viewer</title>");
+  EXPECT_EQ(body(get("/index.html?field=a")), test::ServedFolder::kPage);
   EXPECT_EQ(body(get("/docs/")), "<title>docs</title>");
   EXPECT_EQ(header(get("/assets/codec.wasm"), "Content-Type"), "application/wasm");
   EXPECT_NE(header(get("/assets/app-1a2b.js"), "Cache-Control").find("immutable"),
@@ -460,6 +459,37 @@ TEST_F(RouterTest, aHeadHasWhatItsClientCanUseAndNoMore) {
   const Reply part = route({.method = "GET", .target = folder_.log(), .range = "bytes=1-3"});
   EXPECT_EQ(part.status, 206u);
   EXPECT_EQ(header(part, "Accept-Ranges"), "") << "206 says it";
+}
+
+TEST_F(RouterTest, thePageHoldsNameAndPosterOfTheMeshThatItShows) {
+  const std::string poster = "src=\"" + folder_.log("poster.webp").substr(1) + "\"";
+  for (const char* target :
+       {"/?mesh=noise", "/index.html?mesh=noise", "/?transport=range&mesh=noise"}) {
+    const Reply reply = get(target);
+    EXPECT_EQ(reply.status, 200u);
+    EXPECT_NE(body(reply).find("<h1>noise</h1>"), std::string::npos) << target;
+    EXPECT_NE(body(reply).find(poster), std::string::npos) << target;
+    EXPECT_NE(header(reply, "Link").find("poster.webp>; rel=preload; as=image"), std::string::npos)
+        << header(reply, "Link");
+    EXPECT_EQ(header(reply, "Cache-Control"), kRevalidate);
+  }
+  EXPECT_NE(body(get("/")).find("<h1>a b</h1>"), std::string::npos) << "the first one";
+  const std::string tag = header(get("/?mesh=noise"), "ETag");
+  EXPECT_NE(tag, header(get("/?mesh=a%20b"), "ETag"));
+  EXPECT_EQ(route({.method = "GET", .target = "/?mesh=noise", .ifNoneMatch = tag}).status, 304u);
+}
+
+TEST_F(RouterTest, aPageWhosePictureThePosterIsNotHasNone) {
+  for (const char* target : {"/?mesh=nothing", "/?mesh=noise&camera=1,0,0,0,0,0", "/?src=x.qtet",
+                             "/?field=a", "/?mesh=noise&x", "/?mesh=%3Cb%3E"})
+    EXPECT_EQ(body(get(target)), test::ServedFolder::kPage) << target;
+}
+
+TEST_F(RouterTest, thePagesLinksGoInItsHeadToo) {
+  EXPECT_EQ(header(get("/?field=a"), "Link"),
+            "<assets/app-1a2b.js>; rel=modulepreload, <a.css>; rel=preload; as=style, "
+            "<assets/codec.wasm>; rel=preload; as=fetch; crossorigin");
+  EXPECT_EQ(header(get("/docs/"), "Link"), "");
 }
 
 TEST_F(RouterTest, anElementOfAnyPageMayLoadAFileAPictureAndALevel) {

@@ -20,6 +20,19 @@ class SampleServer : public ::testing::Test {
   ViewerFiles viewer_;
 };
 
+TEST_F(SampleServer, thePosterIsASmallPictureThatCachesMayKeep) {
+  ASSERT_TRUE(store_) << store_.error().message;
+  const MeshPointer mesh = store_->catalogue()->meshes.begin()->get()->open();
+  test::RunningServer server(*store_, viewer_);
+  test::RawClient client(server.port());
+  const auto poster = client.get("/v1/logs/" + mesh->log.digest() + "/poster.webp");
+  ASSERT_EQ(poster.status, 200u) << poster.body;
+  EXPECT_EQ(poster.header("content-type"), "image/webp");
+  EXPECT_NE(poster.header("cache-control").find("immutable"), std::string::npos);
+  EXPECT_EQ(poster.body.substr(8, 4), "WEBP");
+  EXPECT_LE(poster.body.size(), 6000u);
+}
+
 TEST_F(SampleServer, everyLevelIsServedAsEveryKindOfFile) {
   ASSERT_TRUE(store_) << store_.error().message;
   const CataloguePointer catalogue = store_->catalogue();

@@ -263,7 +263,8 @@ TEST_F(GuardedTest, aMeshIsForItsTokenAndNamesAreNotTold) {
 }
 
 TEST_F(GuardedTest, whatIsUnderADigestIsThereForThoseAloneWhoMayReadItUnderSomeName) {
-  for (const char* part : {"log", "manifest", "base", "chunks/0", "levels/0.vtu", "preview.png"}) {
+  for (const char* part :
+       {"log", "manifest", "base", "chunks/0", "levels/0.vtu", "preview.png", "poster.webp"}) {
     EXPECT_EQ(get(folder_.log(part)).status, 404u) << part;
     EXPECT_EQ(get(folder_.log(part), bearer(kOther)).status, 404u) << part;
   }
@@ -272,6 +273,16 @@ TEST_F(GuardedTest, whatIsUnderADigestIsThereForThoseAloneWhoMayReadItUnderSomeN
   EXPECT_TRUE(own.header("cache-control").starts_with("private")) << own.header("cache-control");
   const std::string open = "/v1/logs/" + folder_.store().find("a b")->log.digest() + "/log";
   EXPECT_TRUE(get(open).header("cache-control").starts_with("public"));
+}
+
+TEST_F(GuardedTest, thePageOfAGuardedMeshIsThatOfNone) {
+  const HttpResponse guarded = get("/?mesh=noise"), none = get("/?mesh=nothing");
+  EXPECT_EQ(guarded.body, none.body);
+  EXPECT_EQ(guarded.header("etag"), none.header("etag"));
+  EXPECT_EQ(guarded.header("link"), none.header("link"));
+  EXPECT_EQ(get("/?mesh=noise", bearer(kReader)).body, none.body) << "pages come without a token";
+  EXPECT_NE(get("/?mesh=a%20b").body, none.body);
+  EXPECT_EQ(get("/").body, get("/?mesh=a%20b").body) << "the first that everybody may read";
 }
 
 TEST_F(GuardedTest, aSavedFileIsCalledByANameThatTheAskerMayKnow) {

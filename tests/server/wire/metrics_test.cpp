@@ -35,6 +35,7 @@ TEST(RequestKind, routesAreNamedByTheirPath) {
                           Case{"/v1/logs/a", kLog},
                           Case{"/v1/logs/a/levels/3.vtu", kLevel},
                           Case{"/v1/logs/a/preview.png", kPreview},
+                          Case{"/v1/logs/a/poster.webp", kPreview},
                           Case{"/v1/tickets", kTickets},
                           Case{"/v1/stream?ticket=a", kStream},
                           Case{"*", kOther},

@@ -43,7 +43,9 @@ class Publish : public Tool {
     makeBoxLog();
     fs::copy(folder_ / "box.qtet", folder_ / "two words.qtet");
     fs::create_directories(folder_ / "viewer/assets");
-    put("viewer/index.html", "<!doctype html><head><title>v</title></head><body></body>");
+    put("viewer/index.html",
+        "<!doctype "
+        "html><head><title>v</title></head><body><!--mesh-poster--><!--mesh-name--></body>");
     put("viewer/assets/app-1a2b.js", std::string(2000, 'a') + "()");
     put("viewer/assets/app-1a2b.js.gz", "old");
     put("viewer/assets/tiny-3c.css", "a{}");
@@ -90,9 +92,18 @@ TEST_F(Publish, theFolderHoldsTheViewerTheLogsAndTheirList) {
   EXPECT_EQ(box["tetrahedra"], 3072);
   EXPECT_EQ(box["fields"], Json::array({"Scalar"}));
   EXPECT_EQ(list["meshes"][1]["links"]["log"], "two%20words.qtet");
+  EXPECT_EQ(list["meshes"][1]["links"]["poster"], "two%20words.webp");
+  EXPECT_GT(box["firstBytes"], 0);
+  EXPECT_LE(box["firstBytes"], info["levels"][0]["cumulativeBytes"]) << "the first picture's";
+  for (const char* poster : {"box.webp", "two words.webp"}) {
+    EXPECT_EQ(site.at(poster).substr(0, 4) + site.at(poster).substr(8, 4), "RIFFWEBP");
+    EXPECT_LE(site.at(poster).size(), 6000u);
+  }
   for (const auto& [name, content] : site)
     EXPECT_NE(std::ranges::find(list["files"], Json(name)), list["files"].end()) << name;
   EXPECT_NE(site.at("index.html").find("<meta name=\"qtet-src\" content=\"index.json\">"),
+            std::string::npos);
+  EXPECT_NE(site.at("index.html").find("data-mesh=\"box\" src=\"box.webp\">box"),
             std::string::npos);
   EXPECT_EQ(leftovers(), 0u);
   EXPECT_EQ(fs::status(folder_ / "site").permissions(),

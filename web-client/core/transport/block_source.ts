@@ -54,8 +54,9 @@ export class RangeSource implements BlockSource {
     url: string,
     private readonly table: LogTable,
     fetch?: Fetch,
+    firstBytes?: number,
   ) {
-    this.file = new RangedFile(url, fetch);
+    this.file = new RangedFile(url, fetch, firstBytes);
   }
 
   get digest(): string {

@@ -4,8 +4,14 @@
 import {QtetError} from '../protocol/errors';
 import {refusedOrigin} from './refused_origin';
 
-/** The first request asks for so much: a log's head and its first levels in one round trip. */
+/**
+ * The first request asks for so much if nothing is known of the file: a log's head and its first
+ * levels in one round trip.
+ */
 const kFirstBytes = 64 << 10;
+/** A list that says how much to ask for is believed within these bounds. */
+const kMinFirstBytes = 64;
+const kMaxFirstBytes = 1 << 20;
 /** Status codes that may pass. */
 const kPassing = [408, 425, 429];
 
@@ -58,13 +64,17 @@ export class RangedFile {
   private whole = false;
   /** All of a file without ranges is here. */
   private ended = false;
+  private readonly firstBytes: number;
   private waiting: {to: number; resolve: () => void; reject: (thrown: unknown) => void}[] = [];
 
+  /** `firstBytes`: what the first request asks for. */
   constructor(
     url: string,
     private readonly fetch: Fetch = (address, init) => globalThis.fetch(address, init),
+    firstBytes = kFirstBytes,
   ) {
     this.url = url;
+    this.firstBytes = Math.min(kMaxFirstBytes, Math.max(kMinFirstBytes, firstBytes));
   }
 
   /**
@@ -94,7 +104,7 @@ export class RangedFile {
   /** No reader's signal cancels this: the next reader needs it, too. */
   private async begin(): Promise<void> {
     const response = await fetchChecked(this.fetch, this.url, {
-      headers: {Range: `bytes=0-${kFirstBytes - 1}`},
+      headers: {Range: `bytes=0-${this.firstBytes - 1}`},
     });
     this.tag = response.headers.get('etag') ?? '';
     if (response.url) this.url = response.url;
@@ -108,7 +118,7 @@ export class RangedFile {
     this.take(new Uint8Array(await response.arrayBuffer()));
     const total = /\/(\d+)$/.exec(response.headers.get('content-range') ?? '')?.[1];
     if (total) this.size = Number(total);
-    else if (this.frontSize < kFirstBytes) this.size = this.frontSize;
+    else if (this.frontSize < this.firstBytes) this.size = this.frontSize;
   }
 
   private async range(from: number, to: number, signal: AbortSignal): Promise<Uint8Array> {

@@ -17,6 +17,8 @@ export interface LogAddress {
    * (/v1/meshes/{id}/log).
    */
   log: string;
+  /** The length of the log's prefix that the first picture takes, where a list says it. */
+  firstBytes?: number | undefined;
   /** `auto`: whatever works. */
   transport: 'auto' | TransportKind;
   /**
@@ -38,7 +40,7 @@ export function makeTransport(
   table: LogTable,
   handlers: TransportHandlers,
 ): Transport {
-  const {url, log, token} = source;
+  const {url, log, firstBytes, token} = source;
   const fetch = fetchWith(token);
   return new AutoTransport(
     kindsOf(source),
@@ -53,7 +55,11 @@ export function makeTransport(
             table,
           );
         case 'range':
-          return new HttpTransport(() => new RangeSource(log, table, fetch), table, its);
+          return new HttpTransport(
+            () => new RangeSource(log, table, fetch, firstBytes),
+            table,
+            its,
+          );
         case 'chunks':
           return new HttpTransport(() => new ChunkSource(log, table, fetch), table, its);
       }

@@ -13,6 +13,8 @@ export interface MeshEntry {
   firstField: string;
   /** The address of the log as a file, from a published list; without it the server has it. */
   log?: string;
+  /** The length of its prefix that the first picture takes, from a published list. */
+  firstBytes?: number;
 }
 
 /** Throws a QtetError whose text says what to do. `token` is empty if the server asks for none. */
@@ -49,6 +51,7 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
     fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
     firstField: typeof mesh.firstField === 'string' ? mesh.firstField : '',
     ...(isList && {log: new URL(String(mesh.links?.log), url).href}),
+    ...(isList && Number.isInteger(mesh.firstBytes) && {firstBytes: Number(mesh.firstBytes)}),
   }));
 }
 

@@ -1,0 +1,85 @@
+#include "codec/picture/field_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "proto/limits.h"
+
+namespace qtet {
+namespace {
+
+/// Without a field, and where a value is missing.
+constexpr Colour kPlain = {0.72, 0.74, 0.78};
+/// The shares of the values below and above the middle ones. If these take less than kMinMiddle of
+/// the range, the colours span them alone.
+constexpr double kTail = 0.02, kMinMiddle = 0.4;
+/// Two of each of ten hues.
+constexpr std::array<std::uint32_t, 20> kLabels = {
+    0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728, 0x9467bd, 0x8c564b, 0xe377c2,
+    0x17becf, 0xbcbd22, 0x7f7f7f, 0xaec7e8, 0xffbb78, 0x98df8a, 0xff9896,
+    0xc5b0d5, 0xc49c94, 0xf7b6d2, 0x9edae5, 0xdbdb8d, 0xc7c7c7};
+
+bool holdsLabels(const FieldInfo& field) {
+  const bool isWhole = field.type.starts_with("int") || field.type.starts_with("uint");
+  const double count = field.range[1] - field.range[0] + 1;
+  return isWhole && field.components == 1 && count >= 2 && count <= kLabels.size() &&
+         field.range[0] == std::floor(field.range[0]);
+}
+
+}  // namespace
+
+FieldLook::FieldLook(const LatticeMesh& mesh, std::size_t field) {
+  if (field >= mesh.fields.size()) return;
+  field_ = &mesh.fields[field];
+  values_ = &mesh.values[field];
+  isLabels_ = holdsLabels(*field_);
+  if (!isLabels_) range_ = automaticRange(mesh);
+}
+
+double FieldLook::at(std::size_t index) const {
+  if (field_ == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  const std::uint32_t components = field_->components;
+  double value = 0;
+  for (std::uint32_t c = 0; c < components; ++c) {
+    const double x = field_->value(c, (*values_)[index * components + c]);
+    value = components == 1 ? x : value + x * x;
+  }
+  if (components > 1) value = std::sqrt(value);
+  const double span = field_->range[1] - field_->range[0];
+  if (std::isnan(value)) return value;
+  return span > 0 ? (value - field_->range[0]) / span : 0;
+}
+
+std::array<double, 2> FieldLook::automaticRange(const LatticeMesh& mesh) const {
+  std::vector<bool> occurs(values_->size() / field_->components);
+  for (std::size_t cell = 0; cell < mesh.tetrahedra.size(); ++cell) {
+    if (ofCells()) occurs[cell] = true;
+    if (ofCells()) continue;
+    for (const VertexId v : mesh.tetrahedra[cell]) occurs[v] = true;
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < occurs.size(); ++i)
+    if (occurs[i] && !std::isnan(at(i))) values.push_back(at(i));
+  if (values.empty()) return {0, 1};
+  std::ranges::sort(values);
+  const auto quantile = [&](double share) {
+    return values[static_cast<std::size_t>(
+        std::floor(share * static_cast<double>(values.size() - 1) + 0.5))];
+  };
+  const double low = quantile(kTail), high = quantile(1 - kTail);
+  if (low < high && high - low < kMinMiddle) return {low, high};
+  return {0, 1};
+}
+
+Colour FieldLook::colour(double share) const {
+  if (field_ == nullptr || std::isnan(share)) return kPlain;
+  if (!isLabels_) return viridis((share - range_[0]) / (range_[1] - range_[0]));
+  const double label = share * (field_->range[1] - field_->range[0]) + 0.5;
+  const auto at = static_cast<std::size_t>(std::clamp(label, 0.0, kLabels.size() - 1.0));
+  Colour out{};
+  for (std::size_t c = 0; c < 3; ++c) out[c] = (kLabels[at] >> (16 - 8 * c) & 255) / 255.0;
+  return out;
+}
+
+}  // namespace qtet
