@@ -2,9 +2,9 @@
 // them while the page's script still comes.
 //
 // Why not `preload`? Chromium takes a worker's script from `modulepreload` and the codec from
-// `prefetch`, each fetched once and without a warning. A worker's use of a `preload` does not count,
-// and `as=worker` is unknown to it. Why not the worker that draws? It weighs as much as all the
-// rest, and a slow line would bring the poster a second later.
+// `prefetch`, each fetched once and without a warning. A worker's use of a `preload` does not
+// count, and `as=worker` is unknown to it. Why not the worker that draws? It weighs as much as all
+// the rest, and a slow line would bring the poster a second later.
 
 import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
