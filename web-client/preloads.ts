@@ -2,8 +2,8 @@
 // browser fetches them while the page's script still comes.
 //
 // Why not `preload`? Chromium takes a worker's script from `modulepreload` and WebAssembly from
-// `prefetch`, each fetched once and without a warning. A worker's use of a `preload` does not count,
-// and `as=worker` is unknown to it.
+// `prefetch`, each fetched once and without a warning. To it a worker's use of a `preload` does not
+// count, and `as=worker` is unknown.
 
 import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';

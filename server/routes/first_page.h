@@ -15,9 +15,9 @@
 
 namespace qtet {
 
-/// The mesh that the page at `target` shows first, as the poster shows it. nullptr if there is none,
-/// if the address says more of the view, or if not everybody may read the mesh. Pages are asked for
-/// without a token, so a guarded mesh looks like one that does not exist.
+/// The mesh that the page at `target` shows first, as the poster shows it. nullptr if there is
+/// none, if the address says more of the view, or if not everybody may read the mesh. Pages are
+/// asked for without a token, so a guarded mesh looks like one that does not exist.
 [[nodiscard]] EntryPointer meshOfPage(const RequestTarget& target, const Catalogue& catalogue,
                                       const MayRead& mayRead);
 

@@ -2,8 +2,9 @@
 // Chromium, software WebGL, an empty cache, everything on this machine.
 //   node first_picture.mjs --bin DIR --viewer DIR --out DIR [--rate KBIT] [--trip MS] [--times N]
 //     [LOG.qtet...]
-// Without logs it takes the sample `fin`. There are three hosts. The first is qtet-server. The others
-// have a published folder: one sends its compressed files, one knows no coding, as nginx by default.
+// Without logs it takes the sample `fin`. There are three hosts. The first is qtet-server. The
+// others have a published folder: one sends its compressed files, the other knows no coding, as
+// nginx by default.
 
 import {execFileSync} from 'node:child_process';
 import {cpSync, createReadStream, existsSync, mkdirSync, rmSync, statSync} from 'node:fs';
