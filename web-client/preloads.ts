@@ -11,9 +11,9 @@ import type {Plugin} from 'vite';
 
 /** The start of each name, and how the browser is told of it. The most urgent one comes first. */
 const kNeeded = [
+  ['view_worker', 'modulepreload'], // graphics take longest to start
   ['worker', 'modulepreload'],
   ['qtet-base', 'prefetch'],
-  ['view_worker', 'modulepreload'],
 ] as const;
 
 export const preloads = (): Plugin => ({

@@ -132,7 +132,7 @@ void ViewerFiles::compressText() {
                       file.type == "application/manifest+json";
     if (!text || file.bytes.size() < kMinCompressedBytes) continue;
     if (file.gzip.empty()) file.gzip = compressed(file.bytes, ContentCoding::kGzip);
-    file.zstd = compressed(file.bytes, ContentCoding::kZstd);
+    file.zstd = smallestZstd(file.bytes);
   }
 }
 

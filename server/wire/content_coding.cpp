@@ -14,6 +14,8 @@ namespace {
 /// Levels at which a level of 100 MB takes two or three seconds: higher ones gain 1-2 % of floats.
 constexpr int kGzipLevel = 6;
 constexpr int kZstdLevel = 6;
+/// Above it windows grow beyond what browsers take.
+constexpr int kSmallestZstdLevel = 19;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -70,10 +72,10 @@ Bytes gzipped(ByteView bytes) {
   return status == Z_STREAM_END ? out : Bytes();
 }
 
-Bytes zstandard(ByteView bytes) {
+Bytes zstandard(ByteView bytes, int level = kZstdLevel) {
   Bytes out(ZSTD_compressBound(bytes.size()));
   const std::size_t size =
-      ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), kZstdLevel);
+      ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
   out.resize(ZSTD_isError(size) != 0 ? 0 : size);
   return out;
 }
@@ -127,6 +129,11 @@ Bytes encoded(Bytes bytes, ContentCoding coding) {
 Bytes compressed(ByteView bytes, ContentCoding coding) {
   assert(coding != ContentCoding::kIdentity);
   Bytes out = coding == ContentCoding::kGzip ? gzipped(bytes) : zstandard(bytes);
+  return out.size() < bytes.size() ? out : Bytes();
+}
+
+Bytes smallestZstd(ByteView bytes) {
+  Bytes out = zstandard(bytes, kSmallestZstdLevel);
   return out.size() < bytes.size() ? out : Bytes();
 }
 

@@ -25,5 +25,7 @@ inline constexpr std::size_t kMinCompressedBytes = 1024;
 [[nodiscard]] Bytes encoded(Bytes bytes, ContentCoding coding);
 /// The same, but empty where that would be no smaller. REQUIRES: not kIdentity.
 [[nodiscard]] Bytes compressed(ByteView bytes, ContentCoding coding);
+/// The same by Zstandard, smaller and far slower: for what is compressed once and sent often.
+[[nodiscard]] Bytes smallestZstd(ByteView bytes);
 
 }  // namespace qtet

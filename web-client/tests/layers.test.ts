@@ -13,7 +13,7 @@ import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
 import {displayOf} from '../viewer/requests';
 import {kViewAttributes, type ViewAttribute} from '../viewer/settings/settings';
 import {unfittingParts, wrongParts} from '../viewer/settings/wrong_parts';
-import {kTemplate} from '../viewer/template';
+import {kControls} from '../viewer/controls_template';
 import {toy} from './toy_layer';
 
 vi.mock('../core/layers/layers', async (original) => {
@@ -48,7 +48,7 @@ test('hasAnAttributeThatIsCheckedAndControls', () => {
   ]);
   expect(unfittingParts(read({toy: 'c=1'}), manifest)[0]).toMatch(/^toy="c=1" is not shown/);
   for (const part of ['name="toy"', 'class="toy sub"', 'Place of the toy'])
-    expect(kTemplate).toContain(part);
+    expect(kControls).toContain(part);
 });
 
 test('askedForItsTrianglesTravelToThePage', () => {

@@ -27,6 +27,7 @@ import {
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: 3};
 
 let codec: FakeCodec;
+let decoder: Assembler;
 let session: Session;
 let sockets: FakeSocket[];
 let received: FromWorker[];
@@ -38,15 +39,15 @@ beforeEach(() => {
   sockets = [];
   received = [];
   codec = new FakeCodec(kLog);
-  const assembler = new Assembler(codec, kFakeValues);
+  decoder = new Assembler(codec, kFakeValues);
   pictures = [];
-  publisher = new Publisher(assembler, (snapshot) => void pictures.push(snapshot));
+  publisher = new Publisher(decoder, (snapshot) => void pictures.push(snapshot));
   const makeSocket = (): FakeSocket => {
     sockets.push(new FakeSocket());
     return sockets.at(-1)!;
   };
   session = new Session(
-    assembler,
+    decoder,
     publisher,
     (message) => received.push(message),
     ({url}, _, handlers) => new SocketTransport(url, handlers, makeSocket, () => 0),
@@ -119,6 +120,23 @@ describe('the first picture', () => {
     expect(codec.chunksApplied).toBe(1);
     vi.advanceTimersByTime(1);
     expect(codec.chunksApplied).toBe(kLog.chunks);
+  });
+});
+
+describe('a codec that is still on its way', () => {
+  test('isWaitedForWhileTheLineOpensAndTheStreamComes', async () => {
+    let come = (): void => undefined;
+    decoder.codecReady = new Promise((resolve) => void (come = resolve));
+    session.waitForCodec();
+    const socket = start();
+    expect(opens()).toHaveLength(1);
+    opened(socket, 1);
+    socket.deliver(headFrame(1, kLog));
+    sendAll(socket, 1, 0);
+    expect([decoder.manifest, states().at(-1)]).toEqual([null, 'connecting']);
+    come();
+    await decoder.codecReady;
+    expect([codec.chunksApplied, states().at(-1)]).toEqual([kLog.chunks, 'complete']);
   });
 });
 

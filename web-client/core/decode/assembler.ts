@@ -24,6 +24,7 @@ import {readValueBlock} from './value_block';
 
 export class Assembler implements LogTable {
   manifest: Manifest | null = null;
+  codecReady = Promise.resolve();
   private ledger: Ledger | null = null;
   private head: Uint8Array | null = null;
   /** By chunk and part. */

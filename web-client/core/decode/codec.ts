@@ -140,16 +140,19 @@ interface Exports {
 }
 
 export class WasmCodec implements Codec {
-  private constructor(
-    private module: WebAssembly.Module,
-    private wasm: Exports,
-  ) {}
+  private module!: WebAssembly.Module;
+  private wasm!: Exports;
+
+  /** REQUIRES: `become` is called before anything else. */
+  constructor() {
+    return;
+  }
 
   static async create(module: WebAssembly.Module): Promise<WasmCodec> {
-    return new WasmCodec(
-      module,
-      begin(await WebAssembly.instantiate(module, stubbedImports(module))),
-    );
+    const codec = new WasmCodec();
+    codec.module = module;
+    codec.wasm = begin(await WebAssembly.instantiate(module, stubbedImports(module)));
+    return codec;
   }
 
   get isWhole(): boolean {

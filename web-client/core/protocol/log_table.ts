@@ -8,6 +8,8 @@ import type {WireLattice} from './view_request';
  * places.
  */
 export interface LogTable {
+  /** Settled once a head can be taken: the codec may still be on its way. */
+  readonly codecReady: Promise<void>;
   readonly isKnown: boolean;
   readonly chunkCount: number;
   readonly fieldKeys: string[];

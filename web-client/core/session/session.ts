@@ -61,6 +61,8 @@ export class Session implements TransportHandlers {
   /** Called once a log's base mesh is decoded. */
   onBase: () => void = () => undefined;
   private state: SessionState = {name: 'connecting'};
+  /** What came before the codec; null once that is here. */
+  private early: (() => void)[] | null = null;
   private source = kNoSource;
   /** The page has received this log's base mesh. */
   private baseReported = false;
@@ -81,6 +83,16 @@ export class Session implements TransportHandlers {
     publisher.onFirst = () => this.advance();
     publisher.pace.untilLast = () => this.untilDecoded();
     publisher.onLayers = (positions) => this.lookAtSurface(positions);
+  }
+
+  /** What comes before the assembler is ready waits. */
+  waitForCodec(): void {
+    this.early = [];
+    void this.assembler.codecReady.then(() => {
+      const early = this.early ?? [];
+      this.early = null;
+      for (const action of early) action();
+    });
   }
 
   start(source: Source): void {
@@ -151,6 +163,19 @@ export class Session implements TransportHandlers {
   }
 
   message(message: ServerMessage): void {
+    this.whenReady(() => this.heed(message));
+  }
+
+  frame(frame: Frame): void {
+    this.whenReady(() => this.take(frame));
+  }
+
+  private whenReady(action: () => void): void {
+    if (this.early) this.early.push(action);
+    else action();
+  }
+
+  private heed(message: ServerMessage): void {
     switch (message.type) {
       case 'opened':
         this.stream.digest = message.digest;
@@ -164,7 +189,7 @@ export class Session implements TransportHandlers {
     }
   }
 
-  frame(frame: Frame): void {
+  private take(frame: Frame): void {
     const isFirst = !this.assembler.manifest;
     try {
       this.assembler.take(frame);
@@ -394,6 +419,7 @@ export class Session implements TransportHandlers {
   /** Must be called before another log. */
   private forget(): void {
     this.baseReported = false;
+    if (this.early) this.early = [];
     this.decoding.forget();
     this.stream.forget();
     this.requested.forget();

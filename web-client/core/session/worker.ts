@@ -4,15 +4,16 @@ import {Assembler} from '../decode/assembler';
 import {WasmCodec} from '../decode/codec';
 import {kDraco} from '../decode/draco';
 import {fieldsOf} from '../layers/shown';
+import type {Display} from '../picture/display';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
-import {errorText} from '../protocol/errors';
+import {errorText, QtetError} from '../protocol/errors';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
-import {Inspector} from './inspector';
+import type {Inspector} from './inspector';
 import {Publisher} from './publisher';
 import {Session} from './session';
 import {buffersOf} from './snapshot_buffers';
-import type {FromWorker, Posted, Snapshot, ToWorker} from './worker_messages';
+import type {Answer, FromWorker, Posted, Question, Snapshot, ToWorker} from './worker_messages';
 
 interface Parts {
   session: Session;
@@ -20,7 +21,8 @@ interface Parts {
   coarse: CoarseVolume;
   /** The mesh's; empty while there is none. */
   digest(): Promise<string>;
-  inspector: Inspector;
+  /** Loaded with the first question. */
+  inspector(): Promise<Inspector>;
 }
 
 declare global {
@@ -28,26 +30,24 @@ declare global {
   var qtetPublisher: Publisher | undefined;
 }
 
-let parts: Promise<Parts>;
+let parts: Parts;
 let run: number | undefined;
 
 self.onmessage = (event: MessageEvent<ToWorker>) => {
-  if (event.data.type === 'load') {
-    parts = start(event.data.baseUrl, event.data.codecUrl);
-    parts.catch(fail);
-    return;
-  }
-  // Commands keep their order: each waits for the same promise.
-  const message = event.data;
-  parts.then((ready) => obey(ready, message)).catch(() => undefined);
+  if (event.data.type === 'load') parts = start(event.data.baseUrl, event.data.codecUrl);
+  else obey(parts, event.data);
 };
 
-/** The base mesh is decoded by a module of its own, which is here sooner. */
-async function start(baseUrl: string, codecUrl: string): Promise<Parts> {
-  const codec = await WasmCodec.create(await retry(() => compile(baseUrl)));
+/**
+ * The session begins before its codec is here: a line takes as long to open. The base mesh is
+ * decoded by a module of its own, which comes sooner.
+ */
+function start(baseUrl: string, codecUrl: string): Parts {
+  const codec = new WasmCodec();
   const assembler = new Assembler(codec, kDraco);
   const publisher = (globalThis.qtetPublisher = new Publisher(assembler, postSnapshot));
   let whole: Promise<WebAssembly.Module> | null = null;
+  let inspector: Inspector | null = null;
   const becomeWhole = async (): Promise<WebAssembly.Module> => {
     const module = await retry(() => compile(codecUrl));
     codec.become(module);
@@ -61,12 +61,19 @@ async function start(baseUrl: string, codecUrl: string): Promise<Parts> {
   const session = new Session(assembler, publisher, post);
   session.coarse = coarse;
   session.onBase = () => void makeWhole().catch(fail);
+  assembler.codecReady = retry(() => compile(baseUrl)).then((module) => codec.become(module));
+  assembler.codecReady.catch(fail);
+  session.waitForCodec();
   return {
     publisher,
     coarse,
     session,
-    inspector: new Inspector(assembler),
+    inspector: async () => {
+      const {Inspector} = await retry(() => import('./inspector'));
+      return (inspector ??= new Inspector(assembler));
+    },
     digest: async () => {
+      await assembler.codecReady;
       if (codec.chunkCount === 0) return '';
       await makeWhole();
       return codec.digest();
@@ -75,12 +82,8 @@ async function start(baseUrl: string, codecUrl: string): Promise<Parts> {
 }
 
 function fail(thrown: unknown): void {
-  post({
-    type: 'error',
-    code: 'internal',
-    message: `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`,
-  });
-  post({type: 'state', state: 'failed', attempt: 0, delayMs: 0});
+  const message = `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`;
+  parts.session.failed(new QtetError('internal', message));
 }
 
 /** Compiles while downloading. A host that serves .wasm under another type loses only that. */
@@ -93,7 +96,7 @@ async function compile(url: string): Promise<WebAssembly.Module> {
 }
 
 function obey(
-  {session, publisher, coarse, inspector, ...its}: Parts,
+  {session, publisher, coarse, ...its}: Parts,
   message: Exclude<ToWorker, {type: 'load'}>,
 ): void {
   switch (message.type) {
@@ -120,29 +123,13 @@ function obey(
         .digest()
         .then((answer) => post({type: 'answer', id: message.id, answer}), fail);
     case 'pick':
-      return post({
-        type: 'answer',
-        id: message.id,
-        answer: inspector.pick(message.ray, publisher.display),
-      });
     case 'probe':
-      return post({
-        type: 'answer',
-        id: message.id,
-        answer: inspector.probe(message.from, message.to, publisher.display),
-      });
     case 'line':
-      return post({
-        type: 'answer',
-        id: message.id,
-        answer: inspector.line(message.from, message.to, publisher.display),
-      });
     case 'histogram':
-      return post({
-        type: 'answer',
-        id: message.id,
-        answer: inspector.histogram(message.axis, publisher.display),
-      });
+      return void its
+        .inspector()
+        .then((inspector) => answered(inspector, publisher.display, message))
+        .then((answer) => post({type: 'answer', id: message.id, answer}), fail);
     case 'coarse': {
       const {id, have} = message;
       const reply = (answer: CoarseCells | null): void =>
@@ -151,6 +138,23 @@ function obey(
         });
       return void coarse.cells(have, publisher.display).then(reply, () => reply(null));
     }
+  }
+}
+
+function answered(
+  inspector: Inspector,
+  display: Display,
+  question: Extract<Question, {type: 'pick' | 'probe' | 'line' | 'histogram'}>,
+): Answer {
+  switch (question.type) {
+    case 'pick':
+      return inspector.pick(question.ray, display);
+    case 'probe':
+      return inspector.probe(question.from, question.to, display);
+    case 'line':
+      return inspector.line(question.from, question.to, display);
+    case 'histogram':
+      return inspector.histogram(question.axis, display);
   }
 }
 

@@ -111,6 +111,7 @@ export class HttpTransport implements Transport {
     // The head is fetched even if another transport has brought the table: only the head tells the
     // source which log this is.
     const head = await this.source.head(signal);
+    await this.table.codecReady;
     const isOver = (): boolean => signal.aborted;
     if (isOver()) return;
     const {digest} = this.source;
