@@ -61,7 +61,7 @@ export class Session implements TransportHandlers {
   /** Called once a log's base mesh is decoded. */
   onBase: () => void = () => undefined;
   private state: SessionState = {name: 'connecting'};
-  /** What came before the codec; null once that is here. */
+  /** The messages and frames that came before the codec; null once that is here. */
   private early: (() => void)[] | null = null;
   private source = kNoSource;
   /** The page has received this log's base mesh. */
@@ -85,7 +85,7 @@ export class Session implements TransportHandlers {
     publisher.onLayers = (positions) => this.lookAtSurface(positions);
   }
 
-  /** What comes before the assembler is ready waits. */
+  /** Messages and frames wait until the assembler is ready. */
   waitForCodec(): void {
     this.early = [];
     void this.assembler.codecReady.then(() => {
