@@ -10,7 +10,7 @@ export interface TargetParts {
   kind: TargetKind;
   /** `texture`: shaders can read the depths. */
   depths: 'none' | 'buffer' | 'texture';
-  /** Above 0 the colours can be read after `resolve` only, by readPixels. */
+  /** Above 0 shaders cannot read the colours, `read` can. */
   samples?: number;
 }
 
