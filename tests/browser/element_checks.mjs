@@ -219,9 +219,9 @@ async function keepsWhatIsAskedForBeforeThereIsAMesh({server, browser}) {
     late.pause();
     window.qtetRange = new Promise((chosen) => {
       const choose = setInterval(() => {
-        const select = late.shadowRoot.querySelector('select[name=range]');
-        if (!late.viewing?.shell) return;
+        if (!late.viewing?.later) return;
         clearInterval(choose);
+        const select = late.shadowRoot.querySelector('select[name=range]');
         select.value = 'fixed';
         select.dispatchEvent(new Event('change'));
         late.resume();

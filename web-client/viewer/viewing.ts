@@ -329,6 +329,7 @@ export class Viewing implements LaterHost {
 
   private showState(state: StreamState, attempt: number, delayMs: number): void {
     this.completeTold &&= state === 'complete';
+    if (state === 'paused' || state === 'failed') void this.loadLater(); // no picture is due
     this.tellComplete();
     if (!this.shell) return;
     this.shell.progress.showState(state, attempt, delayMs);
