@@ -293,7 +293,7 @@ async function coloursBothSidesOfZero(context) {
   );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
-  assert.equal(await viewer.text('.legend-note'), 'Linear from -1 to 1'.replace('-', '−'));
+  assert.equal(await viewer.text('.legend-note'), 'Linear from −1.0000 to 1.0000');
   await viewer.page.evaluate(() => window.qtetViewer.look('-y'));
   await viewer.settle();
   const bent = (value) => (value < 0 ? -1 : 1) * (1 + Math.log(Math.abs(value)));

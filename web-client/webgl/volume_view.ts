@@ -136,8 +136,7 @@ export class VolumeView {
 
   /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
   private fitting(cells: VolumeCells): VolumeCells | null {
-    const {gl} = this.graphics;
-    const maxSize = Number(gl.getParameter(gl.MAX_TEXTURE_SIZE));
+    const maxSize = this.graphics.maxTextureSize;
     if (maxRows(cells) <= maxSize) return cells;
     reportError(
       new Error(

@@ -13,6 +13,8 @@ export interface Drawing {
 
 export class Graphics {
   readonly gl: WebGL2RenderingContext;
+  /** Infinity if the graphics are lost already. */
+  readonly maxTextureSize: number;
   /** Counts how often the browser has given the graphics back. */
   generation = 0;
 
@@ -25,6 +27,8 @@ export class Graphics {
     }) as WebGL2RenderingContext | null;
     if (!gl) throw new Error('the browser gives no WebGL 2');
     this.gl = gl;
+    // Lost graphics answer nothing.
+    this.maxTextureSize = Number(gl.getParameter(gl.MAX_TEXTURE_SIZE) ?? Infinity);
   }
 
   /** Must be called when the browser has given the graphics back. */

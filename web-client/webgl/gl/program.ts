@@ -91,6 +91,7 @@ function linked(
   attributes: readonly string[],
 ): {program: WebGLProgram; slots: Slot[]} {
   const program = gl.createProgram();
+  if (gl.isContextLost()) return {program, slots: []}; // all is made anew
   const shaders = [
     [gl.VERTEX_SHADER, vertexShader],
     [gl.FRAGMENT_SHADER, fragmentShader],
@@ -109,13 +110,11 @@ function linked(
     throw new Error([gl.getProgramInfoLog(program), ...logs].filter(Boolean).join('\n'));
   }
   const count = Number(gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS) ?? 0);
-  const slots = Array.from({length: count}, (_, i) => {
-    const {name, type} = gl.getActiveUniform(program, i)!;
-    return {
-      name: name.replace(/\[0\]$/, ''),
-      type,
-      location: gl.getUniformLocation(program, name),
-    };
+  const slots = Array.from({length: count}, (_, i): Slot[] => {
+    const info = gl.getActiveUniform(program, i);
+    if (!info) return []; // lost meanwhile
+    const location = gl.getUniformLocation(program, info.name);
+    return [{name: info.name.replace(/\[0\]$/, ''), type: info.type, location}];
   });
-  return {program, slots};
+  return {program, slots: slots.flat()};
 }
