@@ -185,7 +185,7 @@ async function staysSoundWhateverIsDone({server, browser, logs}) {
           'qtet-viewer::part(result) { display: none }',
       });
       await its.waitInView(
-        ({frame, moved, volume}) => frame === 0 && !moved && (!volume.hasCells || volume.atRest),
+        ({frame, moved, volume}) => frame === 0 && !moved && (!volume?.hasCells || volume.atRest),
       );
       await its.settle();
     };

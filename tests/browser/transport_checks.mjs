@@ -113,10 +113,7 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   await server.start();
   const lookedAt = (viewer) =>
     viewer.inView(({parts: {cuts, layers}}) =>
-      [cuts[0], ...layers.map(({mesh}) => mesh)].reduce(
-        (sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count : 0),
-        0,
-      ),
+      [cuts[0], ...layers.values()].reduce((sum, {shown}) => sum + shown.length / 3, 0),
     );
   const open = async (query) => {
     const viewer = await browser.open(`${server.url}?mesh=regions&${query}`);
