@@ -74,8 +74,7 @@ Bytes gzipped(ByteView bytes) {
 
 Bytes zstandard(ByteView bytes, int level = kZstdLevel) {
   Bytes out(ZSTD_compressBound(bytes.size()));
-  const std::size_t size =
-      ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
+  const std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
   out.resize(ZSTD_isError(size) != 0 ? 0 : size);
   return out;
 }
