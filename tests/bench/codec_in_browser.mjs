@@ -34,7 +34,7 @@ globalThis.measure = async (module, log, runs) => {
   const compiled = await WebAssembly.compile(bytesOf(module));
   let best = {values: Infinity, all: Infinity};
   for (let run = 0; run < runs; ++run) {
-    const codec = await WasmCodec.create(compiled);
+    const codec = new WasmCodec(compiled);
     const raw = codec.wasm;
     const head = file.subarray(0, headBytesOf(file));
     codec.open(head);

@@ -29,7 +29,7 @@ const kDigests = new URL('../../tests/golden/digests.txt', import.meta.url);
 async function opened(): Promise<{assembler: Assembler; bytes: Uint8Array}> {
   const bytes = new Uint8Array(readFileSync(kLog));
   const assembler = new Assembler(
-    await WasmCodec.create(await WebAssembly.compile(readFileSync(kTestWasm))),
+    new WasmCodec(await WebAssembly.compile(readFileSync(kTestWasm))),
     kDraco,
   );
   const header = new DataView(bytes.buffer, bytes.byteOffset);

@@ -21,9 +21,7 @@ export async function takeWholeLog(
   values: ValueDecoder,
   module?: WebAssembly.Module,
 ): Promise<Assembler> {
-  const codec = await WasmCodec.create(
-    module ?? (await WebAssembly.compile(readFileSync(kTestWasm))),
-  );
+  const codec = new WasmCodec(module ?? (await WebAssembly.compile(readFileSync(kTestWasm))));
   const assembler = new Assembler(codec, values);
   const headBytes = headBytesOf(log);
   assembler.take({

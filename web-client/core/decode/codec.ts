@@ -143,16 +143,9 @@ export class WasmCodec implements Codec {
   private module!: WebAssembly.Module;
   private wasm!: Exports;
 
-  /** REQUIRES: `become` is called before anything else. */
-  constructor() {
-    return;
-  }
-
-  static async create(module: WebAssembly.Module): Promise<WasmCodec> {
-    const codec = new WasmCodec();
-    codec.module = module;
-    codec.wasm = begin(await WebAssembly.instantiate(module, stubbedImports(module)));
-    return codec;
+  /** REQUIRES: without a module `become` is called before anything else. */
+  constructor(module?: WebAssembly.Module) {
+    if (module) this.become(module);
   }
 
   get isWhole(): boolean {

@@ -88,11 +88,13 @@ export class Session implements TransportHandlers {
   /** Messages and frames wait until the assembler is ready. */
   waitForCodec(): void {
     this.early = [];
-    void this.assembler.codecReady.then(() => {
+    const go = (): void => {
       const early = this.early ?? [];
       this.early = null;
       for (const action of early) action();
-    });
+    };
+    // Whoever loads the codec tells of a failure.
+    this.assembler.codecReady.then(go, () => undefined);
   }
 
   start(source: Source): void {

@@ -56,7 +56,7 @@ function start(baseUrl: string, codecUrl: string): Parts {
   };
   const makeWhole = (): Promise<WebAssembly.Module> => (whole ??= becomeWhole());
   const coarse = new CoarseVolume(
-    async () => new Assembler(await WasmCodec.create(await makeWhole()), kDraco),
+    async () => new Assembler(new WasmCodec(await makeWhole()), kDraco),
   );
   const session = new Session(assembler, publisher, post);
   session.coarse = coarse;
