@@ -193,10 +193,10 @@ Result<FrameHeader> FrameHeader::parse(ByteView frame) {
   if (reader.failed()) return std::unexpected(reader.error());
   if (out.size != reader.remaining())
     reader.fail(ErrorCode::kBadValue, "the frame's payload is not as long as its header says");
-  const bool head = out.firstPart == kHead;
-  if (head ? out.chunk != 0 || out.parts != 0 : out.parts == 0)
-    reader.fail(ErrorCode::kBadValue,
-                "a head names no chunk and no parts, any other frame at least one part");
+  if (out.firstPart == kHead && (out.chunk != 0 || out.parts != 0))
+    reader.fail(ErrorCode::kBadValue, "a head names no chunk and no parts");
+  if (out.firstPart != kHead && out.parts == kPiece && out.size == 0)
+    reader.fail(ErrorCode::kBadValue, "a piece of a block has at least one byte");
   if (reader.failed()) return std::unexpected(reader.error());
   return out;
 }

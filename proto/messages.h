@@ -107,6 +107,8 @@ struct FrameHeader {
   /// `firstPart` of the frame that carries header, manifest and chunk table; its `chunk` and
   /// `parts` are 0.
   static constexpr std::uint16_t kHead = 0xFFFF;
+  /// `parts` of a frame that carries some bytes of the block `firstPart`, but not its last.
+  static constexpr std::uint16_t kPiece = 0;
 
   std::uint32_t stream = 0;
   std::uint32_t chunk = 0;
@@ -116,7 +118,7 @@ struct FrameHeader {
 
   [[nodiscard]] std::array<std::uint8_t, kBytes> encode() const;
   /// Reads a whole frame. Errors: truncated (under 16 bytes), bad-value (the payload is not `size`
-  /// bytes long, or a head that names a chunk or parts, or a frame without parts).
+  /// bytes long, or a head that names a chunk or parts, or a piece without bytes).
   [[nodiscard]] static Result<FrameHeader> parse(ByteView frame);
   bool operator==(const FrameHeader&) const = default;
 };

@@ -24,6 +24,8 @@ constexpr Seconds kQueued = milliseconds(15);
 /// Packets that may be under way however slow the line is: fewer would leave it idle while the
 /// client holds its acknowledgement back.
 constexpr std::uint64_t kMinPackets = 6;
+/// A piece of a block has at least so many bytes: heads of frames and packets stay below 4 % then.
+constexpr double kMinPiece = 4096;
 /// The shortest sample of the rate. The largest of kSamples counts, so a short sample of few
 /// packets overstates the rate. With 50 ms nothing bounded 20 clients of reno on 20 Mbit/s, and
 /// their shares were unequal.
@@ -70,6 +72,7 @@ std::size_t LineRoom::room(const LineFigures& line, Clock::time_point now) {
   // while congestion control tries out more, samples come too late
   if (!queued && line.rtt.count() > 0)
     rate = std::max(rate, static_cast<double>(line.underWay) / Seconds(line.rtt).count());
+  if (rate > 0) piece_ = static_cast<std::size_t>(std::max(rate * kAhead.count(), kMinPiece));
   const Seconds held = queued ? kAhead + Seconds(line.minRtt) : kAhead;
   const double bound =
       std::max(rate * held.count(), static_cast<double>(kMinPackets * line.packetBytes));

@@ -34,6 +34,9 @@ class LineRoom {
 
   /// Bytes that may be written now, 0: none before wait() has passed.
   [[nodiscard]] std::size_t room(const LineFigures& line, Clock::time_point now);
+  /// Bytes of a frame that does not delay the next one for long, as of the last room(): kUnbounded
+  /// while the rate is unknown.
+  [[nodiscard]] std::size_t piece() const { return piece_; }
   /// How long until there may be room, after room() was 0.
   [[nodiscard]] Clock::duration wait() const { return wait_; }
   /// Whether something was acknowledged between the last two calls of room().
@@ -55,6 +58,7 @@ class LineRoom {
   std::uint64_t acknowledged_ = 0;
   bool progressed_ = false;
   Clock::duration wait_{};
+  std::size_t piece_ = kUnbounded;
 };
 
 }  // namespace qtet

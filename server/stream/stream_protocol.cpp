@@ -142,7 +142,11 @@ std::uint64_t StreamProtocol::plan(Stream& stream) {
   stream.nextRun = 0;
   stream.planState = Stream::PlanState::kCurrent;
   std::uint64_t planned = 0;
-  for (const BlockRun& run : stream.plan) planned += sliceOf(index, run).size;
+  for (const BlockRun& run : stream.plan) {
+    planned += sliceOf(index, run).size;
+    for (std::uint16_t i = 0; i < run.parts; ++i)
+      planned -= stream.sentOf(run.chunk, std::uint32_t{run.firstPart} + i);
+  }
   return planned;
 }
 
@@ -186,6 +190,7 @@ void StreamProtocol::handle(const ResumeMessage& message) {
     if (!blocks) return answerError(blocks.error().code, blocks.error().detail);
     catchUp();  // what is due is said of the blocks before
     stream_->blocks = std::move(*blocks);
+    stream_->begun.clear();
     plan(*stream_);
   }
   stream_->paused = false;
@@ -224,7 +229,7 @@ void StreamProtocol::refuse(const char* code, std::string detail) {
   answerError(code, std::move(detail));
 }
 
-std::optional<Outgoing> StreamProtocol::next(std::size_t room) {
+std::optional<Outgoing> StreamProtocol::next(std::size_t room, std::size_t piece) {
   catchUp();
   if (!answers_.empty()) {
     std::string text = std::move(answers_.front());
@@ -235,31 +240,51 @@ std::optional<Outgoing> StreamProtocol::next(std::size_t room) {
   if (!stream_) return std::nullopt;
   if (stream_->nextRun < stream_->plan.size()) {
     if (stream_->paused || stream_->credit <= 0 || room == 0) return std::nullopt;
-    return nextFrame(*stream_, room);
+    return nextFrame(*stream_, room, piece);
   }
   if (stream_->planState == Stream::PlanState::kDone) return std::nullopt;
   stream_->planState = Stream::PlanState::kDone;
   return toJson(DoneMessage{opens_});
 }
 
-OutgoingFrame StreamProtocol::nextFrame(Stream& stream, std::size_t room) const {
+OutgoingFrame StreamProtocol::nextFrame(Stream& stream, std::size_t room, std::size_t piece) const {
+  BlockRun run = stream.plan[stream.nextRun];
+  const bool head = run.firstPart == FrameHeader::kHead;
+  const bool whole = head || stream.rest(run) <= piece;
+  const FileSlice slice = whole ? takeBlocks(stream, run, room) : takePiece(stream, run, piece);
+  stream.credit -= slice.size;
+  return {{opens_, run.chunk, run.firstPart, run.parts, slice.size},
+          stream.mesh->log.bytes().subspan(slice.offset, slice.size),
+          stream.mesh};
+}
+
+FileSlice StreamProtocol::takePiece(Stream& stream, BlockRun& run, std::size_t piece) {
+  const std::uint64_t offset = stream.mesh->log.index().block(run.chunk, run.firstPart).offset;
+  run.parts = FrameHeader::kPiece;
+  std::uint32_t& sent = stream.begun[{run.chunk, run.firstPart}];
+  const FileSlice slice{offset + sent, static_cast<std::uint32_t>(piece)};
+  sent += slice.size;
+  return slice;
+}
+
+FileSlice StreamProtocol::takeBlocks(Stream& stream, BlockRun& run, std::size_t room) {
   const LogIndex& index = stream.mesh->log.index();
+  const std::uint32_t sent = stream.sentOf(run.chunk, run.firstPart);
+  for (std::uint16_t i = 1; i < run.parts; ++i)
+    if (stream.sentOf(run.chunk, std::uint32_t{run.firstPart} + i) > 0) run.parts = i;
+  while (run.parts > 1 && sliceOf(index, run).size - sent > room) --run.parts;
   BlockRun& planned = stream.plan[stream.nextRun];
-  BlockRun run = planned;
-  while (run.parts > 1 && sliceOf(index, run).size > room) --run.parts;
   planned.firstPart += run.parts;
   planned.parts -= run.parts;
   if (planned.parts == 0) ++stream.nextRun;
-  const FileSlice slice = sliceOf(index, run);
-  stream.credit -= slice.size;
   if (run.firstPart == FrameHeader::kHead) {
     stream.hasHead = true;
   } else {
     stream.blocks.addRun(run.chunk, run.firstPart, run.parts);
+    stream.begun.erase({run.chunk, run.firstPart});
   }
-  return {{opens_, run.chunk, run.firstPart, run.parts, slice.size},
-          stream.mesh->log.bytes().subspan(slice.offset, slice.size),
-          stream.mesh};
+  const FileSlice slice = sliceOf(index, run);
+  return {slice.offset + sent, slice.size - sent};
 }
 
 }  // namespace qtet

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,8 +44,10 @@ class StreamProtocol {
   void receiveBinary();
   /// The next thing to send; nullopt: nothing before the next message arrives, or nothing but
   /// hasFrame(). After a CloseCode nothing follows. A frame's payload has at most `room` bytes, or
-  /// is one block or the head; without room there is none.
-  [[nodiscard]] std::optional<Outgoing> next(std::size_t room = limits::kFramePayload);
+  /// is one block, a piece of one, or the head; without room there is none. While more than `piece`
+  /// bytes of a block are to come, a frame has so many of them. REQUIRES: piece > 0.
+  [[nodiscard]] std::optional<Outgoing> next(std::size_t room = limits::kFramePayload,
+                                             std::size_t piece = limits::kFramePayload);
 
   /// `open`s so far.
   [[nodiscard]] std::uint32_t opens() const { return opens_; }
@@ -89,6 +92,18 @@ class StreamProtocol {
     PlanState planState = PlanState::kCurrent;
     std::vector<BlockRun> plan{};
     std::size_t nextRun = 0;
+    /// Bytes of blocks that were sent in part, by chunk and part. The client keeps them.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> begun{};
+
+    [[nodiscard]] std::uint32_t sentOf(std::uint32_t chunk, std::uint32_t part) const {
+      const auto found = begun.find({chunk, part});
+      return found == begun.end() ? 0 : found->second;
+    }
+    /// Bytes to come of a run's first block.
+    [[nodiscard]] std::uint32_t rest(const BlockRun& run) const {
+      return mesh->log.index().block(run.chunk, run.firstPart).size -
+             sentOf(run.chunk, run.firstPart);
+    }
   };
   /// Returns the payload bytes to come.
   static std::uint64_t plan(Stream& stream);
@@ -98,7 +113,10 @@ class StreamProtocol {
   [[nodiscard]] bool hasRun() const {
     return stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused;
   }
-  OutgoingFrame nextFrame(Stream& stream, std::size_t room) const;
+  OutgoingFrame nextFrame(Stream& stream, std::size_t room, std::size_t piece) const;
+  /// Take the bytes of the next frame off the plan, and say in `run` which blocks they are.
+  static FileSlice takePiece(Stream& stream, BlockRun& run, std::size_t piece);
+  static FileSlice takeBlocks(Stream& stream, BlockRun& run, std::size_t room);
   /// Ends the stream, or leaves it as it is.
   void refuse(const char* code, std::string detail);
   void answerError(const char* code, std::string detail);

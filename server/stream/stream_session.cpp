@@ -218,7 +218,8 @@ void StreamSession::collect(FrameGather& gather) {
   while (std::optional<ControlFrame> sign = control_.takeSign())
     gather.add(sign->kind, std::move(sign->payload));
   while (!gather.full() && !control_.closing()) {
-    std::optional<Outgoing> outgoing = protocol_.next(left);
+    std::optional<Outgoing> outgoing =
+        protocol_.next(left, bounded_ ? line_.piece() : LineRoom::kUnbounded);
     if (!outgoing) {
       if (protocol_.hasFrame()) break;
       // The server still sends as much as the credit allows. The client gets the rest elsewhere,

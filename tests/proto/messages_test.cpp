@@ -240,7 +240,8 @@ TEST(FrameHeader, contradictionsAreRefused) {
   EXPECT_TRUE(FrameHeader::parse(frame({1, 0, FrameHeader::kHead, 0, 5}, 5)));
   EXPECT_TRUE(FrameHeader::parse(frame({1, 0, 0, 1, 0}, 0)));
   EXPECT_FALSE(FrameHeader::parse(frame({1, 0, 0, 1, 5}, 6)));
-  EXPECT_FALSE(FrameHeader::parse(frame({1, 0, 0, 0, 5}, 5)));
+  EXPECT_TRUE(FrameHeader::parse(frame({1, 0, 0, FrameHeader::kPiece, 1}, 1)));
+  EXPECT_FALSE(FrameHeader::parse(frame({1, 0, 0, FrameHeader::kPiece, 0}, 0)));
   EXPECT_FALSE(FrameHeader::parse(frame({1, 1, FrameHeader::kHead, 0, 5}, 5)));
   EXPECT_FALSE(FrameHeader::parse(frame({1, 0, FrameHeader::kHead, 1, 5}, 5)));
 }

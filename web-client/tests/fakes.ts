@@ -57,7 +57,7 @@ export function frame(options: {
   view.setUint32(0, options.stream, true);
   view.setUint32(4, options.chunk ?? 0, true);
   view.setUint16(8, options.firstPart ?? 0, true);
-  view.setUint16(10, options.parts ?? 0, true);
+  view.setUint16(10, options.parts ?? (options.firstPart === kHeadPart ? 0 : 1), true);
   view.setUint32(12, payload.length, true);
   bytes.set(payload, kFrameHeaderBytes);
   return bytes.buffer;

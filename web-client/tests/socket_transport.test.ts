@@ -1,7 +1,7 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
 import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/transport/backoff';
-import type {OpenRequest} from '../core/protocol/messages';
-import {SocketTransport} from '../core/transport/socket_transport';
+import type {Frame, OpenRequest} from '../core/protocol/messages';
+import {kCreditShare, SocketTransport} from '../core/transport/socket_transport';
 import type {TransportHandlers} from '../core/transport/transport';
 import {kNoViewRequest, type ViewRequest} from '../core/protocol/view_request';
 import {FakeSocket, frame} from './fakes';
@@ -43,6 +43,42 @@ test('framesAndRepliesOfASupersededStreamAreDropped', () => {
   sockets[0]!.deliver(frame({stream: 2, chunk: 6}));
   sockets[0]!.deliver('{"type":"done","stream":2}');
   expect(received).toEqual(['connected', 'chunk 6', 'done']);
+});
+
+test('piecesOfABlockAreJoinedAndCreditedWhenTheyArrive', () => {
+  const frames: Frame[] = [];
+  handlers.frame = (whole) => frames.push(whole);
+  const socket = sockets[0]!;
+  const deliver = (chunk: number, parts: number, ...bytes: number[]): void =>
+    socket.deliver(frame({stream: 1, chunk, firstPart: 2, parts, payload: new Uint8Array(bytes)}));
+  socket.accept();
+  transport.open({...kOpen, credit: 2 * kCreditShare});
+  deliver(3, 0, 1, 2);
+  deliver(4, 0, 9);
+  deliver(3, 0, 3);
+  expect(socket.sentOf('credit').map(({bytes}) => bytes)).toEqual([2, 2]);
+  deliver(3, 2, 4, 5, 6);
+  deliver(4, 1, 8);
+  expect(
+    frames.map(({chunk, firstPart, parts, payload}) => [chunk, firstPart, parts, ...payload]),
+  ).toEqual([
+    [3, 2, 2, 1, 2, 3, 4, 5, 6],
+    [4, 2, 1, 9, 8],
+  ]);
+  transport.applied(8);
+  expect(socket.sentOf('credit').map(({bytes}) => bytes)).toEqual([2, 2, 4]);
+});
+
+test('anotherStreamForgetsThePiecesOfTheOneBefore', () => {
+  const frames: Frame[] = [];
+  handlers.frame = (whole) => frames.push(whole);
+  const piece = {chunk: 3, payload: new Uint8Array([1])};
+  sockets[0]!.accept();
+  transport.open(kOpen);
+  sockets[0]!.deliver(frame({...piece, stream: 1, parts: 0}));
+  transport.open(kOpen);
+  sockets[0]!.deliver(frame({...piece, stream: 2, parts: 1}));
+  expect(frames.map(({payload}) => [...payload])).toEqual([[1]]);
 });
 
 test('aViewIsToldOnceAndOnlyWhereItMatters', () => {

@@ -55,6 +55,17 @@ TEST(LineRoom, withAQueueWhatIsUnderWayCountsToo) {
   EXPECT_EQ(m.room(), 0u);
 }
 
+TEST(LineRoom, aPieceTakesTheLineFortyMillisecondsButHasFourKilobytes) {
+  LineRoom unknown;
+  EXPECT_EQ(unknown.piece(), LineRoom::kUnbounded);
+  MeasuredLine m;
+  (void)m.room();
+  EXPECT_EQ(m.line.piece(), 10'000u);
+  for (int i = 0; i < 1000; ++i) m.pass(10ms, 50'000);
+  (void)m.room();
+  EXPECT_EQ(m.line.piece(), 4096u);
+}
+
 TEST(LineRoom, aSlowLineHoldsSixPackets) {
   LineRoom line;
   LineFigures figures{.unsent = 0, .packetBytes = kPacket, .rtt = 50ms, .minRtt = 50ms};

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <ranges>
+
 #include "server/stream/stream_limits.h"
 #include "tests/server/store/synthetic_log.h"
 
@@ -65,6 +68,12 @@ class StreamProtocolTest : public testing::Test {
     }
     return out;
   }
+  static Bytes encoded(const OutgoingFrame& frame) {
+    const auto head = frame.header.encode();
+    Bytes out(head.begin(), head.end());
+    out.insert(out.end(), frame.payload.begin(), frame.payload.end());
+    return out;
+  }
   bool silent() { return !protocol_->next(); }
   bool closes() {
     const auto out = protocol_->next();
@@ -97,6 +106,68 @@ TEST_F(StreamProtocolTest, everythingAskedForIsTheFileItself) {
   EXPECT_TRUE(std::ranges::equal(all, mesh().log.bytes()));
   EXPECT_EQ(text(), R"({"stream":1,"type":"done"})");
   EXPECT_TRUE(silent());
+}
+
+/// Joins pieces as a client does, by chunk and first part.
+struct Joined {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Bytes> begun, whole;
+  void take(const OutgoingFrame& frame) {
+    const std::pair at{frame.header.chunk, std::uint32_t{frame.header.firstPart}};
+    Bytes& bytes = begun[at];
+    bytes.insert(bytes.end(), frame.payload.begin(), frame.payload.end());
+    if (frame.header.parts == FrameHeader::kPiece && at.second != FrameHeader::kHead) return;
+    whole[at] = std::move(bytes);
+    begun.erase(at);
+  }
+};
+
+TEST_F(StreamProtocolTest, aSlowLineGetsBlocksInPiecesThatMakeTheFile) {
+  open(kMaxCredit, R"(,"fields":["velocity","density"])");
+  const std::uint64_t planned = opened().planned;
+  constexpr std::size_t kPiece = 100;
+  Joined joined;
+  std::uint64_t sent = 0;
+  while (const auto out = protocol_->next(kPiece, kPiece)) {
+    const auto* frame = std::get_if<OutgoingFrame>(&*out);
+    if (!frame) break;
+    sent += frame->payload.size();
+    EXPECT_GT(frame->payload.size(), 0u);
+    const FrameHeader& header = frame->header;
+    if (header.firstPart == FrameHeader::kHead) continue;
+    EXPECT_LE(frame->payload.size(), kPiece);
+    EXPECT_TRUE(FrameHeader::parse(encoded(*frame)));
+    joined.take(*frame);
+  }
+  EXPECT_EQ(sent, planned);
+  EXPECT_TRUE(joined.begun.empty());
+  const LogIndex& index = mesh().log.index();
+  std::size_t large = 0;
+  for (const auto& [at, bytes] : joined.whole) {
+    const BlockEntry& block = index.block(at.first, at.second);
+    EXPECT_TRUE(std::ranges::equal(bytes | std::views::take(block.size),
+                                   mesh().log.bytes().subspan(block.offset, block.size)));
+    large += block.size > kPiece;
+  }
+  EXPECT_GT(large, 6u) << "else no piece was tried";
+}
+
+TEST_F(StreamProtocolTest, aBlockThatWasBegunGoesOnWhereItStoppedWhenItsTurnComesAgain) {
+  openPlaces("");
+  (void)opened();
+  (void)frame();  // the head
+  const auto piece = [&] { return std::get<OutgoingFrame>(*protocol_->next(10, 10)); };
+  const OutgoingFrame first = piece();
+  ASSERT_EQ(first.header.parts, FrameHeader::kPiece);
+  say(R"({"type":"target","target":{"level":99}})");
+  const std::uint64_t before = planned().planned;
+  const OutgoingFrame second = piece();
+  EXPECT_EQ(second.header.chunk, first.header.chunk);
+  EXPECT_EQ(second.header.firstPart, first.header.firstPart);
+  EXPECT_EQ(second.payload.data(), first.payload.data() + 10);
+  say(R"({"type":"target","target":{"level":99}})");
+  EXPECT_EQ(planned().planned, before - 10);
+  say(R"({"type":"resume","have":{}})");
+  EXPECT_EQ(piece().payload.data(), first.payload.data()) << "have says that nothing is there";
 }
 
 TEST_F(StreamProtocolTest, noFrameIsSentWithoutCredit) {

@@ -53,6 +53,7 @@ export interface Frame {
   stream: number;
   chunk: number;
   firstPart: number;
+  /** 0: some bytes of the block `firstPart`, but not its last; or the head. */
   parts: number;
   payload: Uint8Array;
 }

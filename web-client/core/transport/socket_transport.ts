@@ -17,6 +17,7 @@ import {
   type Target,
 } from '../protocol/messages';
 import {kNoViewRequest, wireView, type ViewRequest} from '../protocol/view_request';
+import {Pieces} from './pieces';
 import {ReconnectingSocket, type SocketFactory} from './reconnecting_socket';
 import type {Transport, TransportHandlers} from './transport';
 
@@ -24,7 +25,7 @@ import type {Transport, TransportHandlers} from './transport';
  * Credit is returned in portions of this share of the window. Messages are few, and the server
  * never waits for one.
  */
-const kCreditShare = 8;
+export const kCreditShare = 8;
 
 /** One stream, from its `open` to the next. */
 interface Stream {
@@ -37,13 +38,21 @@ interface Stream {
   isPaused: boolean;
   /** The last view that the server was sent. */
   sentView: string;
+  pieces: Pieces;
 }
 
-const kNoStream: Stream = {window: 0, owed: 0, layout: '', isPaused: false, sentView: ''};
+const noStream = (): Stream => ({
+  window: 0,
+  owed: 0,
+  layout: '',
+  isPaused: false,
+  sentView: '',
+  pieces: new Pieces(),
+});
 
 export class SocketTransport implements Transport {
   private readonly socket: ReconnectingSocket;
-  private stream: Stream = {...kNoStream};
+  private stream = noStream();
   /** The number of the stream in this connection; 0: none was opened. */
   private number = 0;
   private view: ViewRequest = kNoViewRequest;
@@ -83,7 +92,7 @@ export class SocketTransport implements Transport {
     ++this.number;
     this.view = request.view ?? this.view;
     const wire = this.wire();
-    this.stream = {...kNoStream, window: request.credit, sentView: viewMessage(wire)};
+    this.stream = {...noStream(), window: request.credit, sentView: viewMessage(wire)};
     this.socket.send(openMessage(request, wire));
   }
 
@@ -155,6 +164,10 @@ export class SocketTransport implements Transport {
     const frame = parseFrame(data as ArrayBuffer);
     if (frame.stream !== this.number) return;
     this.socket.works(); // only bytes prove it
-    this.handlers.frame(frame);
+    const whole = this.stream.pieces.join(frame);
+    // A piece is credited when it arrives: blocks may be larger than the window.
+    if (!whole) return this.applied(frame.payload.length);
+    this.stream.owed -= whole.payload.length - frame.payload.length;
+    this.handlers.frame(whole);
   }
 }
