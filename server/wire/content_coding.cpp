@@ -1,11 +1,12 @@
 #include "server/wire/content_coding.h"
 
-#include <zlib.h>
+#include <libdeflate.h>
 #include <zstd.h>
-#include <cassert>
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
+#include <memory>
 #include <optional>
 
 namespace qtet {
@@ -44,32 +45,14 @@ int weightOf(std::string_view parameters) {
 }
 
 Bytes gzipped(ByteView bytes) {
-  z_stream stream{};
-  constexpr int kGzipWindow = 15 + 16;  // 32 KB, with the header of gzip instead of zlib's
-  constexpr int kMemory = 8;            // zlib's default
-  if (deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, kMemory, Z_DEFAULT_STRATEGY) !=
-      Z_OK)
-    return {};
-  // zlib counts in 32 bits: fed and emptied in pieces.
-  constexpr std::size_t kPiece = 1u << 20;
-  Bytes out;
-  int status = Z_OK;
-  while (status == Z_OK) {
-    const ByteView piece = bytes.first(std::min(bytes.size(), kPiece));
-    bytes = bytes.subspan(piece.size());
-    stream.next_in = const_cast<Bytef*>(piece.data());  // zlib's interface; it only reads
-    stream.avail_in = static_cast<uInt>(piece.size());
-    do {
-      const std::size_t before = out.size();
-      out.resize(before + kPiece);
-      stream.next_out = out.data() + before;
-      stream.avail_out = static_cast<uInt>(kPiece);
-      status = deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
-      out.resize(out.size() - stream.avail_out);
-    } while (stream.avail_out == 0 && status == Z_OK);
-  }
-  deflateEnd(&stream);
-  return status == Z_STREAM_END ? out : Bytes();
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kGzipLevel), libdeflate_free_compressor);
+  if (!compressor) return {};
+  Bytes out(libdeflate_gzip_compress_bound(compressor.get(), bytes.size()));
+  out.resize(libdeflate_gzip_compress(compressor.get(), bytes.data(), bytes.size(), out.data(),
+                                      out.size()));
+  out.shrink_to_fit();  // some are kept
+  return out;
 }
 
 Bytes zstandard(ByteView bytes, int level = kZstdLevel) {
