@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// "T" for "T@0.5", the name of a field in a step of a series (simplify/read/vtk/join_blocks.h).
+/// "T" for "T@0.5", the name of a field in a step of a series (simplify/read/steps/join_blocks.h).
 /// nullopt for a name that does not end in a number.
 [[nodiscard]] inline std::optional<std::string_view> nameWithoutStep(std::string_view name) {
   const std::size_t at = name.rfind('@');

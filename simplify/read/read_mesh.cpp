@@ -11,10 +11,10 @@
 #include "simplify/read/parts/weld_points.h"
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/process/run_meshio.h"
+#include "simplify/read/read_steps.h"
+#include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/text/text_readers.h"
 #include "simplify/read/unused_points.h"
-#include "simplify/read/vtk/join_blocks.h"
-#include "simplify/read/vtk/vtk_grid.h"
 #include "simplify/read/vtu/grid_parts.h"
 #include "simplify/read/xdmf/read_xdmf.h"
 
@@ -73,7 +73,7 @@ Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std:
   const Status done =
       throughMeshio({path, kind, options.time, options.patience},
                     [&](const std::filesystem::path& file) -> Status {
-                      out = joined(readVtk(file, formatOf(file), options, report), path);
+                      out = joined(readSteps(file, formatOf(file), options, report), path);
                       if (!out) return std::unexpected(out.error());
                       return {};
                     });
@@ -84,7 +84,7 @@ Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std:
 Result<CellMesh> readFluent(const std::filesystem::path& path, const ReadOptions& options,
                             ReadReport& report) {
   if (!hasFaces(path)) return readThroughMeshio(path, "ansys", options, report);
-  return joined(readVtk(path, MeshFormat::kFluent, options, report), path);
+  return joined(readSteps(path, MeshFormat::kFluent, options, report), path);
 }
 
 Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
@@ -171,7 +171,7 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
     case MeshFormat::kOther: return readThroughMeshio(path, options.format, options, report);
     default: break;
   }
-  return joined(readVtk(path, format, options, report), path);
+  return joined(readSteps(path, format, options, report), path);
 }
 
 /// "of its 12 cells, 8 hexahedron and 4 wedge were split"

@@ -1,5 +1,4 @@
-// Reading meshes of every format that qtet knows as tetrahedra. VTK is used in fast_xml_parser.cpp,
-// higher_cells.cpp, vtk_cells.cpp, vtk_grid.cpp and vtk_readers.cpp alone.
+// Reading meshes of every format that qtet knows as tetrahedra. Only the folder vtk uses VTK.
 #pragma once
 
 #include <filesystem>

@@ -1,11 +1,9 @@
 #include "simplify/split/higher_cells.h"
 
-#include <vtkHigherOrderHexahedron.h>
-#include <vtkHigherOrderTetra.h>
-#include <vtkHigherOrderWedge.h>
-
 #include <cmath>
 #include <map>
+
+#include "simplify/split/node_order.h"
 
 namespace qtet {
 namespace {
@@ -45,15 +43,10 @@ std::uint16_t pyramidNodeAt(int n, const NodePlace& place) {
 }
 
 std::uint16_t nodeAt(Shape shape, const Degrees& d, int i, int j, int k) {
-  if (shape == Shape::kTetrahedron) {
-    const std::array<vtkIdType, 4> weights{i, j, k, d[0] - i - j - k};
-    return static_cast<std::uint16_t>(vtkHigherOrderTetra::Index(weights.data(), d[0]));
-  }
   if (shape == Shape::kPyramid) return pyramidNodeAt(d[0], {i, j, k});
-  const std::array<int, 4> order{d[0], d[1], d[2], static_cast<int>(nodesOf(shape, d))};
-  return static_cast<std::uint16_t>(
-      shape == Shape::kWedge ? vtkHigherOrderWedge::PointIndexFromIJK(i, j, k, order.data())
-                             : vtkHigherOrderHexahedron::PointIndexFromIJK(i, j, k, order.data()));
+  return static_cast<std::uint16_t>(shape == Shape::kTetrahedron ? tetrahedronNode(d[0], i, j, k)
+                                    : shape == Shape::kWedge     ? wedgeNode(d, i, j, k)
+                                                                 : hexahedronNode(d, i, j, k));
 }
 
 bool isInside(Shape shape, const Degrees& d, int i, int j, int k) {

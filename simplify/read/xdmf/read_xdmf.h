@@ -10,7 +10,7 @@
 
 #include "simplify/read/hdf/hdf_file.h"
 #include "simplify/read/options/read_options.h"
-#include "simplify/read/xdmf/xml_tree.h"
+#include "simplify/read/parts/xml_tree.h"
 #include "simplify/split/cell_mesh.h"
 
 namespace qtet {

@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "simplify/read/vtk/vtk_grid.h"
+#include "simplify/read/options/read_options.h"
+#include "simplify/read/steps/timed_cells.h"
 #include "simplify/split/cell_mesh.h"
 
 namespace qtet {

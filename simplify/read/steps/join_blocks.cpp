@@ -1,4 +1,4 @@
-#include "simplify/read/vtk/join_blocks.h"
+#include "simplify/read/steps/join_blocks.h"
 
 #include <algorithm>
 #include <cmath>

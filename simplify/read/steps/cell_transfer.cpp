@@ -1,4 +1,4 @@
-#include "simplify/read/vtk/cell_transfer.h"
+#include "simplify/read/steps/cell_transfer.h"
 
 #include <sys/mman.h>
 #include <sys/stat.h>

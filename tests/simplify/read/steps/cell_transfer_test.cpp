@@ -1,4 +1,4 @@
-#include "simplify/read/vtk/cell_transfer.h"
+#include "simplify/read/steps/cell_transfer.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

@@ -1,4 +1,4 @@
-#include "simplify/read/xdmf/xml_tree.h"
+#include "simplify/read/parts/xml_tree.h"
 
 #include <expat.h>
 

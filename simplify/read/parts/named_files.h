@@ -1,0 +1,27 @@
+// The files that VTK's XML lists of files name: series, summaries of pieces, blocks.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "simplify/read/options/mesh_format.h"
+#include "simplify/read/parts/file_series.h"
+
+namespace qtet {
+
+/// Those of a .pvd file, by time. Errors: those of readXml; bad-input (no list, or an entry without
+/// a file).
+[[nodiscard]] Result<std::vector<SeriesEntry>> entriesOfPvd(const std::filesystem::path& path);
+
+/// The Source of each Piece that a summary names. Errors: those of readXml; bad-input (no piece, or
+/// one without a file). REQUIRES: namesPieces(format).
+[[nodiscard]] Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path& path,
+                                                                  MeshFormat format);
+
+/// The files of a .vtm file's blocks, depth first. Those that can hold no volume cells (surfaces,
+/// tables) are noted instead. Errors: those of readXml; bad-input (no such file).
+[[nodiscard]] Result<std::vector<std::filesystem::path>> blocksOf(const std::filesystem::path& path,
+                                                                  std::vector<std::string>& notes);
+
+}  // namespace qtet

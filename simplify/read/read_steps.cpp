@@ -1,0 +1,206 @@
+#include "simplify/read/read_steps.h"
+
+#include <algorithm>
+#include <span>
+
+#include "simplify/read/foam/read_foam.h"
+#include "simplify/read/hdf/read_vtkhdf.h"
+#include "simplify/read/parts/file_series.h"
+#include "simplify/read/parts/named_files.h"
+#include "simplify/read/parts/piece_files.h"
+#include "simplify/read/steps/join_blocks.h"
+#include "simplify/read/steps/read_apart.h"
+#include "simplify/read/steps/step_reports.h"
+#include "simplify/read/vtk/run_vtk.h"
+#include "simplify/read/vtu/read_vtu.h"
+#include "simplify/read/xdmf/read_xdmf.h"
+
+namespace qtet {
+namespace {
+
+/// Files that name files that name files: a series of .vtm of .pvtu has three.
+constexpr int kMaxDepth = 8;
+
+bool isSeries(MeshFormat format) {
+  return format == MeshFormat::kPvd || format == MeshFormat::kSeries;
+}
+
+std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
+  return fail(ErrorCode::kBadInput, path.string() + ": " + what);
+}
+
+/// The step's partitions in one mesh.
+Result<CellMesh> joinedPartitions(const VtkHdfFile& file, std::size_t step,
+                                  const ReadOptions& options, ReadReport& report) {
+  Result<std::vector<CellMesh>> blocks = file.partitions(step, options.fields, report);
+  if (!blocks) return std::unexpected(blocks.error());
+  return joinBlocks(std::move(*blocks), options.joinPieces, report);
+}
+
+Result<std::vector<TimedCells>> readVtkHdf(const std::filesystem::path& path,
+                                           const ReadOptions& options, ReadReport& report) {
+  const Result<VtkHdfFile> file = VtkHdfFile::open(path);
+  if (!file) return std::unexpected(file.error());
+  if (!file->isGrid()) return runVtk(path, MeshFormat::kVtkHdf, options, report);
+  return readChosen(file->times(), path, options, report,
+                    [&](std::size_t step, ReadReport& ofStep) {
+                      return joinedPartitions(*file, step, options, ofStep);
+                    });
+}
+
+Result<std::vector<TimedCells>> readXdmf(const std::filesystem::path& path,
+                                         const ReadOptions& options, ReadReport& report) {
+  Result<XdmfFile> file = XdmfFile::open(path);
+  if (!file) return std::unexpected(file.error());
+  return readChosen(file->times(), path, options, report,
+                    [&](std::size_t step, ReadReport& ofStep) {
+                      return file->read(step, options.fields, ofStep);
+                    });
+}
+
+/// A reader that damage can break, in a process of its own.
+Result<std::vector<TimedCells>> readByVtk(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report) {
+  return readApart(path, options, report,
+                   [&](ReadReport& found) { return runVtk(path, format, options, found); });
+}
+
+/// Reads a .vtu file without VTK, unless it holds several steps, which no program writes any more.
+Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& path,
+                                                 const ReadOptions& options, ReadReport& report) {
+  const Result<VtuFile> file = VtuFile::open(path);
+  if (!file) return std::unexpected(file.error());
+  const Result<VtuDocument> document = readVtuDocument(*file);
+  if (!document) return std::unexpected(document.error());
+  if (document->hasTimeSteps) return readByVtk(path, MeshFormat::kVtu, options, report);
+  const auto time = readVtuTime(*file, *document);
+  if (!time) return std::unexpected(time.error());
+  std::vector<double> times;
+  if (*time) times.push_back(**time);
+  if (const auto steps = chosenSteps(times, options.time, path, report.notes); !steps)
+    return std::unexpected(steps.error());
+  ReadReport step;
+  Result<CellMesh> cells = readVtu(*file, *document, options.fields, step);
+  if (!cells) return std::unexpected(cells.error());
+  addStep(std::move(step), true, report);
+  std::vector<TimedCells> out;
+  out.push_back({*time ? timeText(**time) : "", std::move(*cells)});
+  return out;
+}
+
+/// readSteps of a file that is named by one that is named by one ..., `depth` of them.
+Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
+                                       const ReadOptions& options, ReadReport& report, int depth);
+
+/// The cells of the files that the file at `path` names as parts of one mesh. Each is read alone
+/// and by a reader of its own. VTK's readers of such files believe what the summary says of types
+/// and components, and write beyond their arrays where a part has others.
+Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
+                              const std::filesystem::path& path, const ReadOptions& options,
+                              ReadReport& report, int depth) {
+  std::vector<CellMesh> blocks;
+  ReadOptions ofPart = options;
+  ofPart.time = "last";  // the step is chosen already, and a part knows no times
+  for (const std::filesystem::path& part : parts) {
+    const MeshFormat format = formatOf(part);
+    if (isSeries(format) || format >= MeshFormat::kGmsh)
+      return bad(path, "it names " + part.string() +
+                           ", but may name VTK's files alone; convert that to .vtu first");
+    if (Status checked = checkMeshFile(part, format); !checked)
+      return fail(checked.error().code, path.string() + " names it: " + checked.error().message);
+    ReadReport ofOne;
+    Result<std::vector<TimedCells>> read = readAt(part, format, ofPart, ofOne, depth + 1);
+    if (!read) return std::unexpected(read.error());
+    addPiece(std::move(ofOne), report);
+    blocks.push_back(std::move(read->back().cells));
+  }
+  const bool isOne = blocks.size() == 1;
+  CellMesh out = joinBlocks(std::move(blocks), options.joinPieces, report);
+  if (isOne) report.pieces = 1;
+  return out;
+}
+
+/// A file that names the parts of one mesh.
+Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report,
+                                          int depth) {
+  if (depth == kMaxDepth)
+    return bad(path, "files that name files go deeper than " + std::to_string(kMaxDepth) +
+                         "; does one name itself?");
+  if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
+    return std::unexpected(steps.error());
+  const auto parts = namesPieces(format) ? piecesOf(path, format) : blocksOf(path, report.notes);
+  if (!parts) return std::unexpected(parts.error());
+  Result<CellMesh> cells = cellsOfParts(*parts, path, options, report, depth);
+  if (!cells) return std::unexpected(cells.error());
+  std::vector<TimedCells> out;
+  out.push_back({"", std::move(*cells)});
+  return out;
+}
+
+Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, MeshFormat format,
+                                           const ReadOptions& options, ReadReport& report) {
+  const auto entries = format == MeshFormat::kPvd ? entriesOfPvd(path) : entriesOfJson(path);
+  if (!entries) return std::unexpected(entries.error());
+  std::vector<double> times;
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < entries->size(); ++i) {
+    if (!times.empty() && times.back() == (*entries)[i].time) continue;
+    times.push_back((*entries)[i].time);
+    begins.push_back(i);
+  }
+  begins.push_back(entries->size());
+  const auto steps = chosenSteps(times, options.time, path, report.notes);
+  if (!steps) return std::unexpected(steps.error());
+  std::vector<TimedCells> out;
+  for (const std::size_t s : *steps) {
+    ReadReport step;
+    std::vector<std::filesystem::path> parts;
+    for (std::size_t i = begins[s]; i < begins[s + 1]; ++i) parts.push_back((*entries)[i].file);
+    Result<CellMesh> cells = cellsOfParts(parts, path, options, step, 0);
+    if (!cells) return std::unexpected(cells.error());
+    addStep(std::move(step), s == steps->front(), report);
+    out.push_back({timeText(times[s]), std::move(*cells)});
+  }
+  return out;
+}
+
+Result<std::vector<TimedCells>> readExodusPieces(const std::filesystem::path& path,
+                                                 const ReadOptions& options, ReadReport& report) {
+  const auto files = exodusPieces(path);
+  if (!files) return std::unexpected(files.error());
+  std::vector<std::vector<TimedCells>> pieces;
+  for (const std::filesystem::path& file : *files) {
+    ReadReport ofOne;
+    Result<std::vector<TimedCells>> steps = readByVtk(file, MeshFormat::kExodus, options, ofOne);
+    if (!steps) return steps;
+    addPiece(std::move(ofOne), report);
+    pieces.push_back(std::move(*steps));
+  }
+  return joinedPieces(std::move(pieces), path, options, report);
+}
+
+Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
+                                       const ReadOptions& options, ReadReport& report, int depth) {
+  if (isSeries(format)) return readSeries(path, format, options, report);
+  if (format == MeshFormat::kVtu) return readUnstructured(path, options, report);
+  if (format == MeshFormat::kExodusPieces) return readExodusPieces(path, options, report);
+  if (format == MeshFormat::kOpenFoam) return readFoam(path, options, report);
+  if (namesPieces(format) || format == MeshFormat::kVtm)
+    return readParts(path, format, options, report, depth);
+  if (format == MeshFormat::kVtkHdf || format == MeshFormat::kXdmf)
+    return readApart(path, options, report, [&](ReadReport& found) {
+      return format == MeshFormat::kXdmf ? readXdmf(path, options, found)
+                                         : readVtkHdf(path, options, found);
+    });
+  return readByVtk(path, format, options, report);
+}
+
+}  // namespace
+
+Result<std::vector<TimedCells>> readSteps(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report) {
+  return readAt(path, format, options, report, 0);
+}
+
+}  // namespace qtet
