@@ -41,7 +41,7 @@ function displayFor(attributes: Record<string, string>): ReturnType<typeof displ
 }
 
 test('hasAnAttributeThatIsCheckedAndControls', () => {
-  expect(kViewAttributes.slice(8, 14).join(' ')).toBe('clip clip-mode iso threshold volume toy');
+  expect(kViewAttributes.slice(9, 15).join(' ')).toBe('clip clip-mode iso threshold volume toy');
   expect(wrongParts(read({toy: 'p=1'}))).toEqual([]);
   expect(wrongParts(read({toy: 'p=1,2'}))).toEqual([
     'toy="p=1,2" is not understood. It takes a field, "=" and a number.',

@@ -44,6 +44,7 @@ export class FieldMaterial extends ShaderMaterial {
         linear: {value: 0},
         opacity: {value: 1},
         edgeStrength: {value: 0.6},
+        creaseStrength: {value: 0}, // a SoupMesh has none
         edgeFade: {value: 1},
         pixelRatio: {value: 1},
       },

@@ -128,6 +128,7 @@ export const kControls = `    ${section(
       true,
       `
       ${toggle('edges', 'Cell edges', true)}
+      ${toggle('creases', 'Creases', true)}
       ${toggle('surface', 'Surface', true)}
       <div class="field">
         <span class="row">

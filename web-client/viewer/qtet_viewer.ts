@@ -10,6 +10,7 @@
 //   range        "auto" (default), "full", "symmetric" or "LOW,HIGH".
 //   scale        "log".
 //   edges        "off" hides them.
+//   creases      "off" hides them.
 //   surface      "off" hides it.
 //   opacity      of the surface: above 0, at most 1.
 //   clip         up to three planes. Each is an axis x, y or z or a direction "1,0,1", then a share

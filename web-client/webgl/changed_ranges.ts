@@ -1,10 +1,12 @@
 // Finds the changed parts of a buffer, so that only they are sent to the GPU.
 
 /**
- * The unit of comparing and sending, a compromise between the number of calls and the floats that
+ * The unit of comparing and sending, a compromise between the number of calls and the numbers that
  * are sent for nothing.
  */
 export const kBlockFloats = 1024;
+
+type Numbers = Float32Array | Uint8Array;
 
 export interface Range {
   start: number;
@@ -15,7 +17,7 @@ export interface Range {
  * Copies `from` to the start of `to` and returns the ranges of `to` that have changed, in order.
  * REQUIRES: `to` is not shorter.
  */
-export function copyChanged(to: Float32Array, from: Float32Array): Range[] {
+export function copyChanged(to: Numbers, from: Numbers): Range[] {
   const ranges: Range[] = [];
   for (let start = 0; start < from.length; start += kBlockFloats) {
     const end = Math.min(start + kBlockFloats, from.length);

@@ -11,7 +11,9 @@ import {kBendShader} from '../core/picture/log_scale';
 export const kFieldVertexShader = /* glsl */ `
   uniform int firstHalf;
   in float value;
+  in float creases; // creasesOf the triangle
   out float vValue;
+  flat out vec3 vCreases;
   // centroid: a place outside the triangle would leave pixels of slivers above a plane
   centroid out vec3 vLattice;
   out vec3 vView;
@@ -22,6 +24,7 @@ export const kFieldVertexShader = /* glsl */ `
     // In triangles from firstHalf on, the side opposite to the first corner is a quad's diagonal.
     if (gl_VertexID / 3 >= firstHalf) vCorner.x = 1.0;
     vValue = value;
+    vCreases = vec3(ivec3(int(creases)) >> ivec3(0, 1, 2) & 1);
     vLattice = position;
     vec4 view = modelViewMatrix * vec4(position, 1.0);
     vView = view.xyz;
@@ -36,6 +39,7 @@ export const kFieldFragmentShader = /* glsl */ `
   centroid in vec3 vLattice;
   in vec3 vView;
   in vec3 vCorner;
+  flat in vec3 vCreases;
   uniform sampler2D colorMap;
   // the ends of the map, in units of vValue; of the value itself if logarithmic
   uniform vec2 range;
@@ -49,6 +53,7 @@ export const kFieldFragmentShader = /* glsl */ `
   uniform vec4 clipPlanes[3];
   uniform float opacity;
   uniform float edgeStrength;
+  uniform float creaseStrength;
   uniform float edgeFade;
   uniform float pixelRatio;
 
@@ -69,14 +74,19 @@ ${kBendShader}
     return texture(colorMap, vec2(at, 0.5)).rgb;
   }
 
-  // 1 on an edge, 0 inside. All edges have one strength (edge_fade.ts), so that none stand alone.
-  // Only those of cells far smaller than the others are fainter: the lines would cover the colours.
-  float edge() {
+  // How dark the lines make a place. All edges have one strength (edge_fade.ts), so that none stand
+  // alone. Only those of cells far smaller than the others are fainter: the lines would cover the
+  // colours. Creases are as strong wherever they are, half of the line in each triangle.
+  float lines() {
     vec3 perPixel = max(fwidth(vCorner), 1e-6);
-    vec3 distance = smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
-    float coverage = 1.0 - min(min(distance.x, distance.y), distance.z);
+    vec3 onSide = 1.0 - smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
     float density = max(max(perPixel.x, perPixel.y), perPixel.z) * pixelRatio;
-    return coverage * min(1.0, ${kPlainDensity} / density);
+    float fade = min(1.0, ${kPlainDensity} / density);
+    vec3 onCrease = onSide * vCreases;
+    return max(
+      edgeStrength * edgeFade * fade * max(max(onSide.x, onSide.y), onSide.z),
+      creaseStrength * max(max(onCrease.x, onCrease.y), onCrease.z)
+    );
   }
 
   void main() {
@@ -93,6 +103,6 @@ ${kBendShader}
       color *= 0.68 + 0.18 * facing + 0.14 * sky;
       if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
-    color = mix(color, color * 0.22, edgeStrength * edgeFade * edge());
+    color = mix(color, color * 0.22, lines());
     gl_FragColor = vec4(min(color, 1.0), opacity);
   }`;

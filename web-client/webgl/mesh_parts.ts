@@ -17,6 +17,8 @@ import type {Look} from './view';
 
 /** The darkness of cell edges: enough to follow them, too little to change what a colour says. */
 const kEdgeStrength = 0.52;
+/** The darkness of creases: they stand off from edges of cells, and need to be seen alone. */
+const kCreaseStrength = 0.72;
 
 const kPrecisions = `precision highp float;
   precision highp int;
@@ -40,6 +42,7 @@ export class MeshParts {
   private readonly colorMap: Texture;
   private tableName = '';
   private edgeStrength = 0;
+  private creaseStrength = 0;
   /** The uniforms of all. */
   private readonly look: Record<string, Uniform>;
 
@@ -83,7 +86,7 @@ export class MeshParts {
     for (const soup of this.all) soup.show(null);
   }
 
-  setLook({map, reversed, edges, opacity}: Look): void {
+  setLook({map, reversed, edges, creases, opacity}: Look): void {
     const table = `${map} ${reversed}`;
     if (table !== this.tableName) {
       this.table.set(colorTable(map, reversed));
@@ -91,6 +94,7 @@ export class MeshParts {
     }
     this.tableName = table;
     this.edgeStrength = edges ? kEdgeStrength : 0;
+    this.creaseStrength = creases ? kCreaseStrength : 0;
     this.surface.look.opacity = opacity;
   }
 
@@ -136,6 +140,7 @@ export class MeshParts {
         ...seen,
         ...soup.look,
         edgeStrength: soup.hasEdges ? this.edgeStrength : 0,
+        creaseStrength: soup.hasCreases ? this.creaseStrength : 0,
       });
       soup.draw();
     }

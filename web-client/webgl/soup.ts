@@ -10,9 +10,9 @@ import type {Uniform} from './gl/program';
 
 /** A buffer gets this many times the room that it needs, for later levels. */
 const kGrowth = 1.5;
-/** The attributes of a corner, in the order of a program: their names, and their floats. */
-export const kSoupAttributes = ['position', 'value'] as const;
-const kFloats = {position: 3, value: 1};
+/** The attributes of a corner, in the order of a program: their names, and their numbers. */
+export const kSoupAttributes = ['position', 'value', 'creases'] as const;
+const kNumbers = {position: 3, value: 1, creases: 1};
 
 interface Buffers {
   vertices: WebGLVertexArrayObject;
@@ -23,10 +23,15 @@ export class Soup {
   /** The uniforms of its own. */
   readonly look: Record<string, Uniform>;
   private readonly made: Made<Buffers>;
-  private readonly data = {position: new Float32Array(0), value: new Float32Array(0)};
+  private readonly data = {
+    position: new Float32Array(0),
+    value: new Float32Array(0),
+    creases: new Uint8Array(0),
+  };
   private corners = 0;
   /** The sides of its triangles are edges of cells. */
   hasEdges = true;
+  hasCreases = false;
 
   /**
    * `lit` shades it as a surface, without `lit` it is flat, as a cut. The inside of a surface is
@@ -69,11 +74,13 @@ export class Soup {
     this.corners = (soup?.positions.length ?? 0) / 3;
     if (!soup || !this.visible) return;
     this.hasEdges = soup.edges ?? true;
+    this.hasCreases = soup.creases !== undefined;
     const colored = soup.values.length > 0;
     Object.assign(this.look, {colored, firstHalf: soup.firstHalf});
     if (this.corners > this.data.value.length) this.grow();
     this.update('position', soup.positions);
     if (colored) this.update('value', soup.values);
+    if (soup.creases) this.update('creases', soup.creases);
   }
 
   setClip(planes: readonly Plane[]): void {
@@ -95,19 +102,20 @@ export class Soup {
   private grow(): void {
     const capacity =
       this.data.value.length === 0 ? this.corners : Math.ceil(this.corners * kGrowth);
-    for (const name of kSoupAttributes)
-      this.data[name] = new Float32Array(kFloats[name] * capacity);
+    this.data.position = new Float32Array(kNumbers.position * capacity);
+    this.data.value = new Float32Array(capacity);
+    this.data.creases = new Uint8Array(capacity);
     this.made.dispose();
   }
 
-  private update(name: (typeof kSoupAttributes)[number], values: Float32Array): void {
+  private update(name: (typeof kSoupAttributes)[number], values: Float32Array | Uint8Array): void {
     const {gl} = this.graphics;
     const data = this.data[name];
     const ranges = copyChanged(data, values);
     if (ranges.length === 0) return;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.made.get().buffers[kSoupAttributes.indexOf(name)]!);
     for (const {start, count} of ranges)
-      gl.bufferSubData(gl.ARRAY_BUFFER, 4 * start, data, start, count);
+      gl.bufferSubData(gl.ARRAY_BUFFER, data.BYTES_PER_ELEMENT * start, data, start, count);
   }
 
   private upload(): Buffers {
@@ -119,7 +127,8 @@ export class Soup {
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.bufferData(gl.ARRAY_BUFFER, this.data[name], gl.DYNAMIC_DRAW);
       gl.enableVertexAttribArray(at);
-      gl.vertexAttribPointer(at, kFloats[name], gl.FLOAT, false, 0, 0);
+      const type = name === 'creases' ? gl.UNSIGNED_BYTE : gl.FLOAT;
+      gl.vertexAttribPointer(at, kNumbers[name], type, false, 0, 0);
       return buffer;
     });
     gl.bindVertexArray(null);

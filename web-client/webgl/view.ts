@@ -40,6 +40,8 @@ export interface Look {
   map: ColorMapName;
   reversed: boolean;
   edges: boolean;
+  /** Lines where the surface is bent sharply. */
+  creases: boolean;
   /** Opacity of the surface. Cuts and isosurfaces stay solid. */
   opacity: number;
   /** Opacities of the volume at even shares of the range; null hides it. */

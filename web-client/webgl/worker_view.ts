@@ -156,8 +156,8 @@ class WorkerView implements View {
   clear(): void {
     this.command('clear');
   }
-  setLook({map, reversed, edges, opacity, volume = null, onDark = false}: Look): void {
-    this.command('setLook', {map, reversed, edges, opacity, volume, onDark});
+  setLook({map, reversed, edges, creases, opacity, volume = null, onDark = false}: Look): void {
+    this.command('setLook', {map, reversed, edges, creases, opacity, volume, onDark});
   }
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     this.command('setRange', low, high, scaleRange, logarithmic);

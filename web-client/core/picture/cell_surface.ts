@@ -3,7 +3,7 @@
 
 import type {FieldScale} from './field_scale';
 import type {Cells} from './section';
-import type {TriangleSoup} from './triangle_soup';
+import {soupCreases, soupOf, type TriangleSoup} from './triangle_soup';
 
 /** Corners of the face opposite to corner i. */
 const kFaces = [
@@ -46,23 +46,20 @@ export function surfaceFaces(cells: Cells, boundary: Uint32Array): Uint32Array {
   return candidates.filter((_, i) => inner[i] === 0);
 }
 
-/** The faces as a soup. */
+/** The faces as a soup. A surface of a part of the cells is jagged, and has no creases. */
 export function facesSoup(
-  {points, tetrahedra}: Cells,
+  {points, tetrahedra, kept}: Cells,
   faces: Uint32Array,
   scale: FieldScale | null,
 ): TriangleSoup {
-  const positions = new Float32Array(9 * faces.length);
-  const values = new Float32Array(scale ? 3 * faces.length : 0);
-  for (let i = 0; i < faces.length; ++i) {
-    const cell = faces[i]! >> 2;
-    outwardCorners(points, tetrahedra, faces[i]!).forEach((vertex, k) => {
-      for (let axis = 0; axis < 3; ++axis)
-        positions[9 * i + 3 * k + axis] = points[3 * vertex + axis]!;
-      if (scale) values[3 * i + k] = scale.at(scale.ofCells ? cell : vertex);
-    });
-  }
-  return {positions, values, firstHalf: faces.length};
+  const triangles = new Uint32Array(3 * faces.length);
+  faces.forEach((face, i) => triangles.set(outwardCorners(points, tetrahedra, face), 3 * i));
+  const cellOf = (corner: number): number => faces[Math.trunc(corner / 3)]! >> 2;
+  const valueOf =
+    scale &&
+    ((corner: number): number => scale.at(scale.ofCells ? cellOf(corner) : triangles[corner]!));
+  const soup = soupOf(points, triangles, valueOf);
+  return kept ? soup : {...soup, creases: soupCreases(points, triangles)};
 }
 
 /**

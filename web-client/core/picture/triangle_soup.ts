@@ -1,6 +1,7 @@
 // The renderer draws triangles without shared corners. A shader can tell the corner from the
 // vertex's number and draw edges of even width.
 
+import {creasesOf} from './creases';
 import type {FieldScale} from './field_scale';
 
 export interface TriangleSoup {
@@ -15,6 +16,8 @@ export interface TriangleSoup {
   firstHalf: number;
   /** False: the sides of its triangles are no edges of cells. */
   edges?: boolean;
+  /** creasesOf its triangles, three times each; absent: it has none. */
+  creases?: Uint8Array;
 }
 
 /** The boundary as a soup. `points`: 3 a vertex, `triangles`: 3 a triangle. */
@@ -23,16 +26,32 @@ export function boundarySoup(
   triangles: Uint32Array,
   scale: FieldScale | null,
 ): TriangleSoup {
+  const valueOf = scale && ((corner: number): number => scale.at(triangles[corner]!));
+  return {...soupOf(points, triangles, valueOf), creases: soupCreases(points, triangles)};
+}
+
+/** The triangles without creases. `valueOf` is asked for each corner; null: there is no field. */
+export function soupOf(
+  points: Int32Array,
+  triangles: Uint32Array,
+  valueOf: ((corner: number) => number) | null,
+): TriangleSoup {
   const positions = new Float32Array(3 * triangles.length);
-  const values = new Float32Array(scale ? triangles.length : 0);
+  const values = new Float32Array(valueOf ? triangles.length : 0);
   for (let corner = 0; corner < triangles.length; ++corner) {
     const vertex = triangles[corner]!;
     positions[3 * corner] = points[3 * vertex]!;
     positions[3 * corner + 1] = points[3 * vertex + 1]!;
     positions[3 * corner + 2] = points[3 * vertex + 2]!;
-    if (scale) values[corner] = scale.at(vertex);
+    if (valueOf) values[corner] = valueOf(corner);
   }
   return {positions, values, firstHalf: triangles.length / 3};
+}
+
+/** TriangleSoup.creases of the whole surface. */
+export function soupCreases(points: Int32Array, triangles: Uint32Array): Uint8Array {
+  const creases = creasesOf(points, triangles);
+  return new Uint8Array(triangles.length).map((_, corner) => creases[Math.trunc(corner / 3)]!);
 }
 
 /** An empty soup, new each time, because soups are transferred. */

@@ -10,7 +10,11 @@ export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
   const soups = [surface, ...cuts, ...kLayers.map((layer) => soupOf(snapshot, layer))].filter(
     (soup) => soup !== undefined,
   );
-  const arrays: ArrayBufferView[] = soups.flatMap(({positions, values}) => [positions, values]);
+  const arrays: ArrayBufferView[] = soups.flatMap(({positions, values, creases}) => [
+    positions,
+    values,
+    ...(creases ? [creases] : []),
+  ]);
   return [
     ...arrays.map(({buffer}) => buffer as ArrayBuffer),
     ...(volume ? buffersOfVolume(volume) : []),

@@ -1,4 +1,4 @@
-// Field, colour map, scale, range, edges, surface and opacity.
+// Field, colour map, scale, range, edges, creases, surface and opacity.
 
 import {parseNumbers} from '../../core/layers/field_values';
 import {colorGradient, labelGradient, type ColorMapName} from '../../core/picture/color_maps';
@@ -10,6 +10,8 @@ import {fillScalars, type Panel, type Scene} from './panel';
 
 /** The labels in their map's swatch. */
 const kShownLabels = 5;
+/** Everything that is drawn unless it is switched off. */
+const kSwitches = ['edges', 'creases', 'surface'] as const;
 /** The ends of the range are shown to this share of it. */
 const kRangeShare = 1e-4;
 
@@ -40,12 +42,10 @@ export class ColorPanel implements Panel {
     this.on('select[name=range]', (select) => this.writeRange(select.value));
     for (const end of ['low', 'high'])
       this.on(`input[name=range-${end}]`, () => this.writeRange('fixed'));
-    this.on('input[name=edges]', (input) =>
-      attributes.write('edges', (input as HTMLInputElement).checked ? null : 'off'),
-    );
-    this.on('input[name=surface]', (input) =>
-      attributes.write('surface', (input as HTMLInputElement).checked ? null : 'off'),
-    );
+    for (const name of kSwitches)
+      this.on(`input[name=${name}]`, (input) =>
+        attributes.write(name, (input as HTMLInputElement).checked ? null : 'off'),
+      );
     this.input('opacity').addEventListener('input', () =>
       attributes.write('opacity', String(Number(this.input('opacity').value) / 100)),
     );
@@ -56,8 +56,7 @@ export class ColorPanel implements Panel {
       swatch.checked = swatch.value === settings.map;
     this.input('reversed').checked = settings.reversed;
     this.input('log').checked = settings.logarithmic;
-    this.input('edges').checked = settings.edges;
-    this.input('surface').checked = settings.surface;
+    for (const name of kSwitches) this.input(name).checked = settings[name];
     this.input('opacity').value = String(Math.round(100 * settings.opacity));
     this.find('.opacity-text').textContent = `${Math.round(100 * settings.opacity)}\u202f%`;
     this.disableHidden(settings);
@@ -95,7 +94,7 @@ export class ColorPanel implements Panel {
     const hint = this.find('.hides-surface');
     hint.hidden = volume === null;
     const hasEdges = mode === 'slice' && planes.length > 0;
-    for (const name of ['edges', 'surface', 'opacity']) {
+    for (const name of [...kSwitches, 'opacity']) {
       const input = this.input(name);
       input.disabled = volume !== null && !(name === 'edges' && hasEdges);
       input.title = input.disabled ? hint.textContent.replace(/\s+/g, ' ') : '';

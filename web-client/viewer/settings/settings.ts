@@ -21,6 +21,7 @@ const kBeforeLayers = [
   'range',
   'scale',
   'edges',
+  'creases',
   'surface',
   'opacity',
 ] as const;
@@ -44,6 +45,7 @@ export interface Settings {
   range: 'auto' | 'full' | 'symmetric' | [number, number];
   logarithmic: boolean;
   edges: boolean;
+  creases: boolean;
   surface: boolean;
   opacity: number;
   /** Opacities at even shares of the shown range; null: the volume is not shown. */
@@ -69,6 +71,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     range: parseRange(get('range')),
     logarithmic: get('scale') === 'log',
     edges: get('edges') !== 'off',
+    creases: get('creases') !== 'off',
     surface: get('surface') !== 'off',
     opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
     ...readVolume(get('volume')),

@@ -46,6 +46,7 @@ const kRules: Partial<Record<Name, Rule>> = {
   ],
   scale: oneOf('log', 'linear'),
   edges: oneOf('on', 'off'),
+  creases: oneOf('on', 'off'),
   surface: oneOf('on', 'off'),
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
