@@ -1,5 +1,4 @@
-// The page's side of a view that a worker draws: commands out, poses in. It needs no three; the
-// worker does.
+// The page's side of a view that a worker draws: commands out, poses in.
 
 import type {Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
