@@ -50,6 +50,11 @@ if(QTET_PYTHON)
   # The golden files, judged by a decoder that was written from the documents alone.
   qtet_system_test(second_decoder ROOM codec
     COMMAND ${QTET_PYTHON} ${here}/golden/second_decoder/judge.py)
+  if(TARGET qtet-portable)
+    qtet_system_test(portable ROOM simplify COMMAND
+      ${here}/simplify/portable/portable_test.sh $<TARGET_FILE:qtet>
+      $<TARGET_FILE:qtet-portable> ${here}/simplify/read/meshes ${out}/portable)
+  endif()
   # One of 41 cases; a machine with other work may take longer than the 5 s of bench/HOSTILE.md.
   qtet_system_test(hostile_attributes ROOM simplify COMMAND ${QTET_PYTHON}
     ${here}/simplify/read/hostile_attributes.py $<TARGET_FILE:qtet> ${here}/simplify/read/meshes

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# The program that is linked statically needs the C library alone, no newer one than Debian 12's,
+# and makes the log that qtet makes. It says so where it lacks VTK or HTTP.
+#   portable_test.sh QTET QTET_PORTABLE MESHES SCRATCH
+set -euo pipefail
+qtet=$1 portable=$2 meshes=$3 scratch=$4
+rm -rf "$scratch" && mkdir -p "$scratch"
+
+fail() { echo "portable: $*" >&2; exit 1; }
+
+others=$(ldd "$portable" | grep -vE 'linux-vdso|libc\.so\.6|libm\.so\.6|ld-linux' || true)
+[[ -z $others ]] || fail "it needs $others"
+newest=$(objdump -T "$portable" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -1)
+[[ $(printf '%s\n' "$newest" GLIBC_2.36 | sort -V | tail -1) == GLIBC_2.36 ]] || fail "it needs $newest"
+
+for mesh in run.pvd p.pvtu gmsh-mixed1.msh; do
+  for program in qtet portable; do
+    "${!program}" convert "$meshes/$mesh" -o "$scratch/$program.vtu" --quiet 2>/dev/null
+  done
+  cmp "$scratch/qtet.vtu" "$scratch/portable.vtu" || fail "$mesh is read otherwise"
+done
+"$qtet" sample box -o "$scratch/box.vtu" --quiet
+for program in qtet portable; do
+  "${!program}" simplify "$scratch/box.vtu" -o "$scratch/$program.qtet" --quiet
+done
+cmp "$scratch/qtet.qtet" "$scratch/portable.qtet" || fail "its log is another one"
+
+! "$portable" check "$meshes/two.e" >"$scratch/words" 2>&1 || fail "it reads Exodus"
+grep -q 'built without' "$scratch/words" || fail "it does not say that VTK is missing"
+! QTET_TOKEN=x "$portable" push "$scratch/qtet.qtet" http://localhost/ 2>"$scratch/words" ||
+  fail "it pushes"
+grep -q 'curl -T' "$scratch/words" || fail "it does not say how to send a log"
+echo "portable: $(stat -c %s "$portable") bytes, needs $newest"
