@@ -7,13 +7,13 @@
 // nginx by default.
 
 import {execFileSync} from 'node:child_process';
-import {cpSync, createReadStream, existsSync, mkdirSync, rmSync, statSync} from 'node:fs';
-import {createServer} from 'node:http';
-import {basename, extname, join, resolve} from 'node:path';
+import {cpSync, mkdirSync, rmSync} from 'node:fs';
+import {basename, join} from 'node:path';
 import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
 import {makeLog, Server} from './programs.mjs';
 import {SlowLine} from './slow_line.mjs';
+import {hostFolder} from './static_host.mjs';
 
 const {values: options, positionals} = parseArgs({
   allowPositionals: true,
@@ -37,51 +37,6 @@ mkdirSync(folder, {recursive: true});
 if (positionals.length === 0) makeLog(options.bin, 'fin', options.out);
 for (const log of positionals) cpSync(log, join(folder, basename(log)));
 const names = positionals.length === 0 ? ['fin'] : positionals.map((log) => basename(log, '.qtet'));
-
-const kTypes = {
-  '.html': 'text/html',
-  '.js': 'text/javascript',
-  '.wasm': 'application/wasm',
-  '.css': 'text/css',
-  '.svg': 'image/svg+xml',
-  '.webp': 'image/webp',
-  '.json': 'application/json',
-};
-
-/** A web server that answers ranges; with `codings` it sends NAME.br for NAME. */
-async function host(site, codings) {
-  const server = createServer((request, response) => {
-    const {pathname} = new URL(request.url, 'http://x');
-    const path = join(site, decodeURIComponent(pathname).replace(/\/$/, '/index.html'));
-    if (!resolve(path).startsWith(resolve(site)) || !existsSync(path))
-      return void response.writeHead(404).end();
-    const [, from, to] = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '') ?? [];
-    const isCoded = codings && from === undefined && existsSync(`${path}.br`);
-    const file = isCoded ? `${path}.br` : path;
-    const {size, mtime} = statSync(file);
-    const head = {
-      'content-type': kTypes[extname(path)] ?? 'application/octet-stream',
-      'last-modified': mtime.toUTCString(),
-      etag: `"${size}-${Number(mtime)}"`,
-      ...(isCoded && {'content-encoding': 'br'}),
-    };
-    if (request.headers['if-none-match'] === head.etag)
-      return void response.writeHead(304, head).end();
-    if (from === undefined) {
-      response.writeHead(200, {...head, 'content-length': size});
-      return void createReadStream(file).pipe(response);
-    }
-    const end = Math.min(Number(to), size - 1);
-    response.writeHead(206, {
-      ...head,
-      'content-range': `bytes ${from}-${end}/${size}`,
-      'content-length': end - Number(from) + 1,
-    });
-    createReadStream(file, {start: Number(from), end}).pipe(response);
-  });
-  await new Promise((listening) => void server.listen(0, '127.0.0.1', listening));
-  return {port: server.address().port, close: () => server.close()};
-}
 
 /** Runs before the page's scripts: the times of what can be seen, in ms after the navigation. */
 function watch() {
@@ -113,8 +68,8 @@ const site = join(options.out, 'site');
 rmSync(site, {recursive: true, force: true});
 const logs = names.map((name) => join(folder, `${name}.qtet`));
 execFileSync(join(options.bin, 'qtet'), ['publish', site, ...logs, '--viewer', options.viewer]);
-const coded = await host(site, true);
-const plain = await host(site, false);
+const coded = await hostFolder(site, {nginx: false, codings: true});
+const plain = await hostFolder(site, {nginx: false});
 // The first visitor waits for the server to draw the poster; measured is a later one.
 for (const name of names)
   await (

@@ -2,7 +2,15 @@
 // with byte ranges or without.
 
 import {spawn, spawnSync} from 'node:child_process';
-import {createReadStream, cpSync, mkdirSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {
+  createReadStream,
+  cpSync,
+  existsSync,
+  mkdirSync,
+  rmSync,
+  statSync,
+  writeFileSync,
+} from 'node:fs';
 import {createServer} from 'node:http';
 import net from 'node:net';
 import {extname, join, resolve} from 'node:path';
@@ -16,6 +24,7 @@ const kTypes = {
   '.css': 'text/css',
   '.svg': 'image/svg+xml',
   '.webp': 'image/webp',
+  '.json': 'application/json',
 };
 
 /**
@@ -31,10 +40,14 @@ export function makeSite(folder, viewer, log) {
 }
 
 /**
- * Returns {name, url, requests, close()}. `requests` are those that bring a file. Without `ranges`
- * the server answers every request with the whole file. `headers` go with each answer of node.
+ * Returns {name, url, port, requests, close()}. `requests` are those that bring a file. Without
+ * `ranges` the server answers every request with the whole file. With `codings` node sends NAME.br
+ * for NAME, but for ranges. `headers` go with each answer of node.
  */
-export async function hostFolder(folder, {ranges = true, nginx = true, headers = {}} = {}) {
+export async function hostFolder(
+  folder,
+  {ranges = true, nginx = true, codings = false, headers = {}} = {},
+) {
   if (nginx && ranges && !spawnSync(kNginx, ['-v']).error) return hostByNginx(folder);
   const requests = [];
   const server = createServer((request, response) => {
@@ -42,21 +55,24 @@ export async function hostFolder(folder, {ranges = true, nginx = true, headers =
       folder,
       decodeURIComponent(new URL(request.url, 'http://x').pathname).replace(/\/$/, '/index.html'),
     );
+    const [, from, to] = (ranges && /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '')) || [];
+    const isCoded = codings && from === undefined && existsSync(`${path}.br`);
+    const file = isCoded ? `${path}.br` : path;
     const found =
-      resolve(path).startsWith(resolve(folder)) && statSync(path, {throwIfNoEntry: false});
+      resolve(path).startsWith(resolve(folder)) && statSync(file, {throwIfNoEntry: false});
     if (!found) return void response.writeHead(404).end();
     const {size, mtimeMs} = found;
     const etag = `"${size}-${mtimeMs}"`;
     if (request.headers['if-none-match'] === etag) return void response.writeHead(304).end();
     requests.push(`${request.url} ${request.headers.range ?? ''}`);
-    const [, from, to] = (ranges && /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '')) || [];
     const type = {
       ...headers,
+      ...(isCoded && {'content-encoding': 'br'}),
       etag,
       'content-type': kTypes[extname(path)] ?? 'application/octet-stream',
     };
     if (from === undefined)
-      return void createReadStream(path).pipe(
+      return void createReadStream(file).pipe(
         response.writeHead(200, {...type, 'content-length': size}),
       );
     if (Number(from) >= size) return void response.writeHead(416).end();
@@ -72,6 +88,7 @@ export async function hostFolder(folder, {ranges = true, nginx = true, headers =
   return {
     name: 'node',
     url: `http://127.0.0.1:${server.address().port}/`,
+    port: server.address().port,
     requests,
     close: () => server.close(),
   };
@@ -103,5 +120,5 @@ http {
   const url = `http://127.0.0.1:${port}/`;
   for (let tries = 0; tries < 100 && !(await fetch(url).catch(() => null)); ++tries)
     await sleep(50);
-  return {name: 'nginx', url, requests: [], close: () => nginx.kill()};
+  return {name: 'nginx', url, port, requests: [], close: () => nginx.kill()};
 }
