@@ -130,15 +130,15 @@ inside sh -c 'cc -std=c99 /tmp/levels.c $(pkg-config --cflags --libs qtet) -o /t
 inside sh -c 'cc -std=c99 /tmp/simplify.c $(pkg-config --cflags --libs qtet) -o /tmp/simplify &&
   /tmp/simplify /tmp/fin.qtet /tmp/again.qtet fin 0.5' >/dev/null 2>&1 || fail "simplify.c"
 inside qtet verify /tmp/again.qtet --quiet >/dev/null || fail "the log that simplify.c made"
-inside python3 -c 'import qtet_log
-log = qtet_log.Log("/tmp/fin.qtet")
-print(log.refine(log.last_level), log.counts())' >/dev/null || fail "qtet_log"
+inside python3 -c 'import qtet
+log = qtet.open("/tmp/fin.qtet")
+print(log.refine(log.last_level), log.counts())' >/dev/null || fail "qtet.open"
 inside python3 -c 'import qtet
 points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 qtet.simplify(points, [[0, 1, 2, 3]], path="/tmp/one.qtet")' ||
   fail "qtet.simplify"
-inside python3 -c "import qtet_log
-qtet_log.Log('http://127.0.0.1:$port/?mesh=fin').refine(0)" || fail "qtet_log over HTTP"
+inside python3 -c "import qtet
+qtet.open('http://127.0.0.1:$port/?mesh=fin').refine(0)" || fail "qtet.open over HTTP"
 
 # ---- ParaView, which takes libvtk9-dev's place on Debian 12 and so cannot be where the project is
 # built
@@ -146,7 +146,7 @@ qtet_log.Log('http://127.0.0.1:$port/?mesh=fin').refine(0)" || fail "qtet_log ov
 step "the plugin in ParaView"
 install paraview python3-paraview xvfb xauth
 cp "$source/tests/codec/python/qtet_paraview_test.py" "$root/tmp/"
-plugin=$(inside dpkg -L python3-qtet | grep '/qtet_paraview\.py$')
+plugin=$(inside dpkg -L python3-qtet | grep '/paraview_plugin\.py$')
 # Without -noreset a window that is opened while the server gets over the last one's end fails.
 inside xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" \
   pvbatch --force-offscreen-rendering /tmp/qtet_paraview_test.py "$plugin" \

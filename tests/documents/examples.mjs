@@ -151,7 +151,7 @@ function runPython(block, context) {
   scratch.run(python, ['-B', '-c', text], {environment: pythonEnvironment(scratch)});
 }
 
-const importsOfOurs = ({text}) => (/\bqtet_vtk\b/.test(text) ? 'import vtkmodules' : '');
+const importsOfOurs = ({text}) => (/\bqtet\.vtk\b/.test(text) ? 'import vtkmodules' : '');
 
 // ---- pages
 

@@ -18,4 +18,4 @@ display=()
 [[ -n ${DISPLAY:-} ]] || ! command -v xvfb-run >/dev/null || display=(xvfb-run -a)
 here=$(dirname "${BASH_SOURCE[0]}")
 QTET_LIBRARY=$1 exec "${display[@]}" pvbatch --force-offscreen-rendering \
-  "$here/qtet_paraview_test.py" "$3/qtet_paraview.py" "$4/paraview.qtet" "$4"
+  "$here/qtet_paraview_test.py" "$3/qtet/paraview_plugin.py" "$4/paraview.qtet" "$4"

@@ -45,7 +45,7 @@ def plugin():
     for name in ("paraview", "paraview.util"):
         sys.modules[name] = types.ModuleType(name)
     sys.modules[stand_in.__name__] = stand_in
-    import qtet_paraview
+    from qtet import paraview_plugin as qtet_paraview
 
     return qtet_paraview
 
@@ -56,7 +56,7 @@ def cells(source):
 
 
 def a_log_opens_at_its_coarsest_level(module):
-    import qtet_vtk
+    from qtet import vtk as qtet_vtk
 
     with qtet_vtk.Log(LOG) as log:
         sizes = [log.level_info(level).tetrahedra for level in range(log.info.levels)]

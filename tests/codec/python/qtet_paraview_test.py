@@ -19,7 +19,7 @@ if not hasattr(inspect, "getargspec"):
 plugin, path, out = sys.argv[1:4]
 simple.LoadPlugin(plugin, remote=False, ns=globals())
 sys.path.insert(0, os.path.dirname(plugin))
-import qtet_vtk  # noqa: E402
+from qtet import vtk as qtet_vtk  # noqa: E402
 
 with qtet_vtk.Log(path) as log:
     levels = log.info.levels

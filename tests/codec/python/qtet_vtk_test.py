@@ -14,7 +14,7 @@ library, program, modules, logs, out = sys.argv[1:]
 os.environ["QTET_LIBRARY"] = library
 sys.path.insert(0, modules)
 try:
-    import qtet_vtk
+    from qtet import vtk as qtet_vtk
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 except ImportError as error:
     print("skipped:", error)

@@ -81,14 +81,14 @@ class LevelInfo(ctypes.Structure):
 
 
 def _candidates():
-    """Where libqtet.so may be: QTET_LIBRARY, beside an installed copy of this file, where the
-    system's linker looks."""
+    """Where libqtet.so may be: QTET_LIBRARY, in this folder, beside an installed copy of it, where
+    the system's linker looks."""
     if os.environ.get("QTET_LIBRARY"):
         return [os.environ["QTET_LIBRARY"]]
     here = pathlib.Path(__file__).resolve().parent
-    installed = [
+    installed = [str(found) for found in here.glob("libqtet.so")] + [
         str(found)
-        for up in list(here.parents)[:3]
+        for up in list(here.parents)[:4]
         for below in ("lib", "lib64", "lib/*-linux-gnu")
         for found in up.glob(below + "/libqtet.so.0")
     ]
@@ -126,6 +126,13 @@ def library():
         + "; ".join(tried)
         + "); install libqtet0, or set QTET_LIBRARY to its path"
     )
+
+
+def version():
+    """That of libqtet.so: "0.2.0"."""
+    text = library().qtet_version_text
+    text.restype = _text
+    return text().decode()
 
 
 class _Remote:

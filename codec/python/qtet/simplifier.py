@@ -1,21 +1,14 @@
-"""qtet logs made of numpy arrays (simplify/api/qtet_simplify.h): numpy and libqtet.so are needed.
-
-    import qtet
-    log = qtet.simplify(points, cells, point_data={"Heat": heat}, target_ratio=0.02)  # bytes
-    qtet.simplify(points, cells, path="part.qtet", progress=lambda stage, done: print(stage, done))
-    with qtet.Log("part.qtet") as log:  # qtet_log.py
-        print(log.counts())
-
-The same mesh and options give the same bytes as the program `qtet simplify`."""
+"""qtet.simplify: logs made of numpy arrays (simplify/api/qtet_simplify.h). The same mesh and options
+give the same bytes as the program `qtet simplify`."""
 import ctypes
 import os
 import threading
 
 import numpy
 
-from qtet_log import Log, QtetError, library
+from .log import QtetError, library
 
-__all__ = ["Cancelled", "Log", "QtetError", "simplify"]
+__all__ = ["Cancelled", "simplify"]
 
 _u32, _u64, _f64, _text, _address = (
     ctypes.c_uint32,
@@ -345,7 +338,9 @@ def simplify(
     c = _library()
     options = _Options()
     if c.qtet_simplify_defaults(ctypes.c_size_t(ctypes.sizeof(options)), ctypes.byref(options)):
-        raise QtetError("libqtet.so and qtet.py are of different versions; install both anew")
+        raise QtetError(
+            "libqtet.so and the package qtet are of different versions; install both again"
+        )
     for member, value in (
         ("targetRatio", target_ratio),
         ("boundaryWeight", boundary_weight),

@@ -1,12 +1,12 @@
 """ParaView plugin: opens qtet logs, files (File > Open) and URLs (Sources > Qtet URL), with a
 slider for the level or the error.
 
-Tools > Manage Plugins > Load New... > qtet_paraview.py. It needs qtet_vtk.py and qtet_log.py beside
-it, and libqtet.so (QTET_LIBRARY names it where it is not installed)."""
+Tools > Manage Plugins > Load New... > paraview_plugin.py. It needs the package qtet that it is part
+of, and libqtet.so (QTET_LIBRARY names it where it is not installed)."""
 import os
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 from paraview.util.vtkAlgorithm import (  # noqa: E402
     VTKPythonAlgorithmBase,
@@ -18,7 +18,7 @@ from paraview.util.vtkAlgorithm import (  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkDataArraySelection  # noqa: E402
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid  # noqa: E402
 
-import qtet_vtk  # noqa: E402
+from qtet import vtk as qtet_vtk  # noqa: E402
 
 BY_LEVEL, BY_BOUNDARY_ERROR, BY_FIELD_ERROR = 0, 1, 2
 

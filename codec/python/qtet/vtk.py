@@ -1,8 +1,8 @@
 """qtet logs as VTK's grids, for VTK, PyVista and ParaView.
 
-    grid = qtet_vtk.read("part.qtet", tetrahedra=100_000)       # a vtkUnstructuredGrid
+    grid = qtet.vtk.read("part.qtet", tetrahedra=100_000)       # a vtkUnstructuredGrid
     part = "http://localhost:8080/v1/meshes/part"
-    mesh = pyvista.wrap(qtet_vtk.read(part, error=("Density", 0.01)))
+    mesh = pyvista.wrap(qtet.vtk.read(part, error=("Density", 0.01)))
 
 libqtet.so decodes straight into VTK's own arrays; numpy is not needed."""
 import array
@@ -16,7 +16,7 @@ except ImportError as error:
         "VTK's Python modules are needed (Debian: python3-vtk9; or pip install vtk)"
     ) from error
 
-from qtet_log import CELL, POINT, Log, QtetError
+from .log import CELL, POINT, Log, QtetError
 
 __all__ = ["Log", "QtetError", "grid_of", "read", "surface_of"]
 
