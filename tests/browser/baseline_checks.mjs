@@ -45,6 +45,7 @@ async function looksAsItDid({server, browser, out}) {
     await viewer.waitForPicture();
     // The panel may have been hidden after the mesh was fitted beside it.
     if (!panels) await viewer.page.evaluate(() => window.qtetViewer.resetView());
+    await viewer.waitForLines();
     if (query.includes('volume')) await viewer.restVolume();
     await viewer.settle();
     await viewer.settle();

@@ -58,7 +58,9 @@ export class Browser {
     await page.addInitScript(watchEvents, kOpenedMark);
     await page.addInitScript(before);
     await page.goto(url);
-    await page.waitForFunction(() => window.qtetViewer !== undefined, null, {timeout: kTimeoutMs});
+    await page.waitForFunction(() => window.qtetViewer !== undefined, null, {
+      timeout: kTimeoutMs,
+    });
     return viewer;
   }
 
@@ -264,6 +266,15 @@ export class ViewerPage {
         ({volume, frame, moved}) => volume?.hasCells && volume.atRest && frame === 0 && !moved,
       );
     }
+  }
+
+  /** They come behind the first picture. */
+  async waitForLines() {
+    const [worker] = this.page.workers().filter((its) => /\/worker\b/.test(its.url()));
+    for (const end = Date.now() + kTimeoutMs; Date.now() < end; await this.page.waitForTimeout(50))
+      if (await worker.evaluate(() => globalThis.qtetPublisher.creasesOf !== null))
+        return this.settle();
+    throw new Error('there are no lines');
   }
 
   statistics() {

@@ -408,20 +408,6 @@ async function drawsOnlyWhatChanges({server, browser}) {
   assert.ok((await drawnAfter('projection', 'parallel')) > 0);
 }
 
-/** A box has lines along its edges, and only there: without them about one pixel in 100 differs. */
-async function drawsCreasesAndOnlyThem({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=box&edges=off&clip=none`);
-  await viewer.waitForState('complete');
-  await viewer.waitForControls();
-  const withCreases = await viewer.screenshot('creases-on');
-  await viewer.page.evaluate(() => window.qtetViewer.setAttribute('creases', 'off'));
-  await viewer.settle();
-  const without = await viewer.screenshot('creases-off');
-  const share = differingShare(withCreases, without);
-  assert.ok(share > 0.001 && share < 0.02, `${share} of the pixels differ`);
-  return `${(100 * share).toFixed(2)} % of the pixels are lines`;
-}
-
 /**
  * Every control that is touched or reached by Tab must be visible then, and the panel's head must
  * stay in place.
@@ -477,7 +463,6 @@ export const elementChecks = {
   holdsTheAddressFromTheFirstPictureOn,
   showsWhatHasTheFocus,
   drawsOnlyWhatChanges,
-  drawsCreasesAndOnlyThem,
   showsNothingOfTheMeshBefore,
   tellsOfTheWholeMeshOnceItIsDrawn,
   tellsTheNewestFiguresWithAnOldPicture,

@@ -56,6 +56,7 @@ async function staysSoundWhateverIsDone({server, browser, logs}) {
     range: () => set('range', pick('symmetric', '0.5,2', null)),
     scale: () => set('scale', pick('log', null)),
     edges: () => set('edges', pick('off', null)),
+    creases: () => set('creases', pick('off', null)),
     surface: () => set('surface', pick('off', null, null)),
     opacity: () => set('opacity', pick('0.3', null)),
     clip: () =>

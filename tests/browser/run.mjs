@@ -12,6 +12,7 @@ import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
 import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
+import {lineChecks} from './line_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
@@ -42,7 +43,7 @@ if (!options.bin || !options.viewer || !options.out) {
 /** Each list is a test of its own (tests/system_tests.cmake), beside the others. */
 const lists = {
   checks,
-  element: elementChecks,
+  element: {...elementChecks, ...lineChecks},
   transport: transportChecks,
   publish: {...publishChecks, ...posterChecks},
   volume: volumeChecks,

@@ -1,6 +1,7 @@
 import {describe, expect, test} from 'vitest';
 import {keepBelow, keepWithin} from '../core/picture/cell_choice';
 import {facesSoup, surfaceFaces} from '../core/picture/cell_surface';
+import {creasesOf} from '../core/picture/creases';
 import {
   cutsOf,
   kPlainDisplay,
@@ -79,6 +80,19 @@ describe('the surface of cells', () => {
       expect(30 * soup.values[i]!).toBeLessThanOrEqual(low + 0.001);
     }
   });
+});
+
+test('onlyAWholeSurfaceHasCreases', () => {
+  const ofCells = display({color: {field: 1, component: kMagnitude}});
+  // twelve edges of four cells, from both their triangles
+  const sides = (kept: Uint8Array | null, its: Display): number | undefined =>
+    surfaceOf(mesh, its, kept, creasesOf).creases?.reduce(
+      (sum, bits, side) => sum + ((bits >> (side % 3)) & 1),
+      0,
+    );
+  expect(sides(null, ofCells)).toBe(2 * 12 * 4);
+  expect(sides(new Uint8Array(cells).fill(1), ofCells)).toBeUndefined();
+  expect(surfaceOf(mesh, ofCells, null).creases).toBeUndefined();
 });
 
 describe('chosen cells', () => {

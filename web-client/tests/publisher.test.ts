@@ -156,3 +156,9 @@ test('aPictureThatIsLostComesAgainWholeWithoutWaitingForTheLostOne', () => {
   expect(untilNext()).toBeLessThanOrEqual(1);
   expect(pictures.at(-1)!.surface).toBeDefined();
 });
+
+test('creasesComeWithAPictureOfTheirOwn', () => {
+  publisher.useCreases(() => Uint8Array.of(1, 1, 1));
+  expect(untilNext()).toBeLessThanOrEqual(501);
+  expect(pictures.map(({surface}) => surface?.creases?.join())).toEqual([undefined, '1,1,1']);
+});

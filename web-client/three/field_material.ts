@@ -46,6 +46,7 @@ export class FieldMaterial extends ShaderMaterial {
         edgeStrength: {value: 0.6},
         creaseStrength: {value: 0}, // a SoupMesh has none
         edgeFade: {value: 1},
+        onDark: {value: false},
         pixelRatio: {value: 1},
       },
     });

@@ -55,6 +55,7 @@ export const kFieldFragmentShader = /* glsl */ `
   uniform float edgeStrength;
   uniform float creaseStrength;
   uniform float edgeFade;
+  uniform bool onDark; // creases are lighter than their surface
   uniform float pixelRatio;
 
 ${kBendShader}
@@ -74,23 +75,27 @@ ${kBendShader}
     return texture(colorMap, vec2(at, 0.5)).rgb;
   }
 
-  // How dark the lines make a place. All edges have one strength (edge_fade.ts), so that none stand
-  // alone. Only those of cells far smaller than the others are fainter: the lines would cover the
-  // colours. Creases are as strong wherever they are, half of the line in each triangle.
-  float lines() {
+  // How strong lines are at a place: edges, creases. All edges have one strength (edge_fade.ts), so
+  // that none stand alone. Only those of cells far smaller than the others are fainter: the lines
+  // would cover the colours. Half of a crease lies in each triangle. Where a plane cuts, half of
+  // the line stands out of the cut.
+  vec2 lines(vec3 onPlanes) {
     vec3 perPixel = max(fwidth(vCorner), 1e-6);
     vec3 onSide = 1.0 - smoothstep(vec3(0.0), perPixel * 0.85 * pixelRatio, vCorner);
     float density = max(max(perPixel.x, perPixel.y), perPixel.z) * pixelRatio;
     float fade = min(1.0, ${kPlainDensity} / density);
-    vec3 onCrease = onSide * vCreases;
-    return max(
+    vec3 onCrease = max(onSide * vCreases, onPlanes);
+    return vec2(
       edgeStrength * edgeFade * fade * max(max(onSide.x, onSide.y), onSide.z),
       creaseStrength * max(max(onCrease.x, onCrease.y), onCrease.z)
     );
   }
 
   void main() {
-    for (int i = 0; i < 3; ++i) if (dot(clipPlanes[i].xyz, vLattice) > clipPlanes[i].w) discard;
+    vec3 heights;
+    for (int i = 0; i < 3; ++i) heights[i] = dot(clipPlanes[i].xyz, vLattice) - clipPlanes[i].w;
+    vec3 width = creaseStrength > 0.0 ? fwidth(heights) * 0.85 * pixelRatio : vec3(0.0);
+    if (any(greaterThan(heights, width))) discard;
     vec3 color = surfaceColor();
     if (lit) {
       // Flat shading from screen derivatives makes cells look like cells. A lamp is a little above
@@ -103,6 +108,8 @@ ${kBendShader}
       color *= 0.68 + 0.18 * facing + 0.14 * sky;
       if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
-    color = mix(color, color * 0.22, lines());
+    vec2 line = lines(1.0 - smoothstep(vec3(0.0), max(width, 1e-6), abs(heights)));
+    vec3 crease = onDark ? mix(color, vec3(1.0), 0.7) : color * 0.22;
+    color = mix(mix(color, color * 0.22, line.x), crease, line.y);
     gl_FragColor = vec4(min(color, 1.0), opacity);
   }`;

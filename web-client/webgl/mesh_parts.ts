@@ -4,7 +4,7 @@ import {colorTable, kColorMapEntries} from '../core/picture/color_maps';
 import {linearPart} from '../core/picture/log_scale';
 import {kMaxPlanes} from '../core/picture/display';
 import type {Snapshot} from '../core/session/worker_messages';
-import {edgeFade} from './edge_fade';
+import {fadesOf} from './edge_fade';
 import {kFieldFragmentShader, kFieldVertexShader} from './field_shaders';
 import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
@@ -43,6 +43,7 @@ export class MeshParts {
   private tableName = '';
   private edgeStrength = 0;
   private creaseStrength = 0;
+  private creaseFade = 1;
   /** The uniforms of all. */
   private readonly look: Record<string, Uniform>;
 
@@ -64,6 +65,7 @@ export class MeshParts {
       logarithmic: false,
       linear: 0,
       edgeFade: 1,
+      onDark: false,
       pixelRatio: 1,
     };
   }
@@ -86,7 +88,7 @@ export class MeshParts {
     for (const soup of this.all) soup.show(null);
   }
 
-  setLook({map, reversed, edges, creases, opacity}: Look): void {
+  setLook({map, reversed, edges, creases, opacity, onDark = false}: Look): void {
     const table = `${map} ${reversed}`;
     if (table !== this.tableName) {
       this.table.set(colorTable(map, reversed));
@@ -95,6 +97,7 @@ export class MeshParts {
     this.tableName = table;
     this.edgeStrength = edges ? kEdgeStrength : 0;
     this.creaseStrength = creases ? kCreaseStrength : 0;
+    this.look.onDark = onDark;
     this.surface.look.opacity = opacity;
   }
 
@@ -117,10 +120,12 @@ export class MeshParts {
     return range;
   }
 
-  /** Draws the edges as strong as the cells are large on a canvas of this size. */
-  fadeEdges(toCanvas: Matrix, canvas: Size): void {
-    const withEdges = [this.surface, ...this.cuts].map(({shown}) => shown);
-    this.look.edgeFade = edgeFade(withEdges, toCanvas, canvas);
+  /** Draws lines as strong as there is space between them on a canvas of this size. */
+  fadeLines(toCanvas: Matrix, canvas: Size): void {
+    const lined = [this.surface, ...this.cuts].map(({shown}) => shown);
+    const {edges, creases} = fadesOf(lined, toCanvas, canvas);
+    this.look.edgeFade = edges;
+    this.creaseFade = creases;
   }
 
   setPixelRatio(ratio: number): void {
@@ -140,7 +145,7 @@ export class MeshParts {
         ...seen,
         ...soup.look,
         edgeStrength: soup.hasEdges ? this.edgeStrength : 0,
-        creaseStrength: soup.hasCreases ? this.creaseStrength : 0,
+        creaseStrength: soup.hasEdges ? this.creaseStrength * this.creaseFade : 0,
       });
       soup.draw();
     }

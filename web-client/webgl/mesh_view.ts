@@ -271,7 +271,7 @@ export class MeshView implements View {
     const tiles: Tile[] = [];
     const {width, height, pixelRatio} = frame;
     const whole = this.camera.lensFor(frame, {x: 0, y: 0, width, height});
-    this.parts.fadeEdges(this.camera.sightOf(whole).toCanvas, {
+    this.parts.fadeLines(this.camera.sightOf(whole).toCanvas, {
       clientWidth: width / pixelRatio,
       clientHeight: height / pixelRatio,
     });
@@ -321,7 +321,7 @@ export class MeshView implements View {
     const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
     try {
       this.orbit.setDepths();
-      this.parts.fadeEdges(this.camera.sightOf(this.orbit.lens).toCanvas, this.canvas);
+      this.parts.fadeLines(this.camera.sightOf(this.orbit.lens).toCanvas, this.canvas);
       if (this.drawsVolume) this.volume!.draw(this.pictureOf(), this.moved);
       else this.drawCanvas();
       this.moved = false;

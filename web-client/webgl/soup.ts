@@ -5,6 +5,7 @@ import type {TriangleSoup} from '../core/picture/triangle_soup';
 import type {Plane} from '../core/protocol/geometry';
 import {copyChanged} from './changed_ranges';
 import {clipValues} from './clip_values';
+import type {Lined} from './edge_fade';
 import {Made, type Graphics} from './gl/graphics';
 import type {Uniform} from './gl/program';
 
@@ -31,7 +32,6 @@ export class Soup {
   private corners = 0;
   /** The sides of its triangles are edges of cells. */
   hasEdges = true;
-  hasCreases = false;
 
   /**
    * `lit` shades it as a surface, without `lit` it is flat, as a cut. The inside of a surface is
@@ -64,9 +64,13 @@ export class Soup {
   get visible(): boolean {
     return this.corners > 0;
   }
-  /** 9 coordinates a triangle; empty while it is invisible. */
-  get shown(): Float32Array {
-    return this.data.position.subarray(0, 3 * this.corners);
+  /** Empty while it is invisible. */
+  get shown(): Lined {
+    const {position, creases} = this.data;
+    return {
+      positions: position.subarray(0, 3 * this.corners),
+      creases: creases.subarray(0, this.corners),
+    };
   }
 
   /** Shows the soup, or nothing for null. The soup's arrays are free afterwards. */
@@ -74,13 +78,12 @@ export class Soup {
     this.corners = (soup?.positions.length ?? 0) / 3;
     if (!soup || !this.visible) return;
     this.hasEdges = soup.edges ?? true;
-    this.hasCreases = soup.creases !== undefined;
     const colored = soup.values.length > 0;
     Object.assign(this.look, {colored, firstHalf: soup.firstHalf});
     if (this.corners > this.data.value.length) this.grow();
     this.update('position', soup.positions);
     if (colored) this.update('value', soup.values);
-    if (soup.creases) this.update('creases', soup.creases);
+    this.update('creases', soup.creases ?? new Uint8Array(this.corners));
   }
 
   setClip(planes: readonly Plane[]): void {

@@ -46,7 +46,7 @@ export interface Look {
   opacity: number;
   /** Opacities of the volume at even shares of the range; null hides it. */
   volume?: number[] | null;
-  /** The canvas lies on a dark ground: the volume's colours stand off from it. */
+  /** The canvas lies on a dark ground: creases are light, and the volume's colours stand off. */
   onDark?: boolean;
 }
 

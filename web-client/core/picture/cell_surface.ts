@@ -3,7 +3,7 @@
 
 import type {FieldScale} from './field_scale';
 import type {Cells} from './section';
-import {soupCreases, soupOf, type TriangleSoup} from './triangle_soup';
+import {soupOf, type CreasesOf, type TriangleSoup} from './triangle_soup';
 
 /** Corners of the face opposite to corner i. */
 const kFaces = [
@@ -51,6 +51,7 @@ export function facesSoup(
   {points, tetrahedra, kept}: Cells,
   faces: Uint32Array,
   scale: FieldScale | null,
+  creasesOf: CreasesOf | null = null,
 ): TriangleSoup {
   const triangles = new Uint32Array(3 * faces.length);
   faces.forEach((face, i) => triangles.set(outwardCorners(points, tetrahedra, face), 3 * i));
@@ -59,7 +60,7 @@ export function facesSoup(
     scale &&
     ((corner: number): number => scale.at(scale.ofCells ? cellOf(corner) : triangles[corner]!));
   const soup = soupOf(points, triangles, valueOf);
-  return kept ? soup : {...soup, creases: soupCreases(points, triangles)};
+  return kept || !creasesOf ? soup : {...soup, creases: creasesOf(points, triangles)};
 }
 
 /**

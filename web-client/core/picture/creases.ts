@@ -1,35 +1,74 @@
 // Where a surface is bent sharply: its creases, drawn as lines. A coarse mesh of a smooth body is
-// bent everywhere, so a bend alone is no crease.
+// bent everywhere, and so is a rough surface. A bend alone is no crease there.
 
-/** A crease bends by more than 45 degrees, which hardly any mesh of a smooth body does. */
-const kMaxCosine = Math.SQRT1_2;
+/** A crease bends by more than 30 degrees. */
+const kMaxCosine = 0.866;
 /** Across a side that bends by less than 20 degrees the surface goes on flat. */
 const kFlatCosine = 0.94;
+/** A crease's `1 - cosine` is so many times the mean around it: its bend 4.5 times. */
+const kContrast = 20;
 const kNone = -1;
 
 /**
- * Creases that hang together and are shorter than this share of the surface's extent in all are
- * left out: rough surfaces have many.
+ * Rough surfaces have short creases. Creases that hang together are left out below this length in
+ * all, as a share of the surface's extent, and with fewer sides than kMinSides.
  */
-const kMinLength = 0.05;
+const kMinLength = 0.1;
+const kMinSides = 4;
 
 /**
- * The creases among the sides of each triangle: bit k is the side opposite to corner k. A side is a
- * crease if the surface bends sharply there, while both its triangles go on flat across another of
- * their sides. `points`: 3 a vertex; `triangles`: 3 a triangle, all seen from outside.
+ * CreasesOf. A side may be a crease if the surface bends sharply there, while both its
+ * triangles go on flat across another of their sides. It is one if the other sides around are flat
+ * beside it. Those that may be creases themselves do not count.
  */
 export function creasesOf(points: Int32Array, triangles: Uint32Array): Uint8Array {
   const twins = twinsOf(triangles);
   const bends = bendsOf(normalsOf(points, triangles), twins);
-  const sharp: Side[] = [];
-  for (let side = 0; side < triangles.length; ++side) {
-    if (bends[side]! >= kMaxCosine || !goesOn(bends, side) || !goesOn(bends, twins[side]!))
-      continue;
-    sharp.push({side, from: triangles[next(side)]!, to: triangles[next(next(side))]!});
+  const sharp = new Uint8Array(bends.length);
+  for (let side = 0; side < bends.length; ++side)
+    if (bends[side]! < kMaxCosine && goesOn(bends, side) && goesOn(bends, twins[side]!))
+      sharp[side] = 1;
+  const rough = roughness(bends, sharp, triangles, points.length / 3);
+  const found: Side[] = [];
+  sharp.forEach((isSharp, side) => {
+    if (!isSharp) return;
+    const [from, to] = [triangles[next(side)]!, triangles[next(next(side))]!];
+    const near = [from, to, triangles[side]!, triangles[twins[side]!]!];
+    const sum = near.reduce((all, vertex) => all + rough.sums[vertex]!, 0);
+    const count = near.reduce((all, vertex) => all + rough.counts[vertex]!, 0);
+    if ((1 - bends[side]!) * count >= kContrast * sum) found.push({side, from, to});
+  });
+  const creases = new Uint8Array(triangles.length);
+  for (const {side} of longOnes(found, points)) {
+    const first = side - (side % 3);
+    creases.fill(creases[first]! | (1 << (side % 3)), first, first + 3);
   }
-  const creases = new Uint8Array(triangles.length / 3);
-  for (const {side} of longOnes(sharp, points)) creases[Math.trunc(side / 3)]! |= 1 << (side % 3);
   return creases;
+}
+
+/** For each vertex `1 - cosine` of the sides of its triangles, without the sharp ones. */
+function roughness(
+  bends: Float32Array,
+  sharp: Uint8Array,
+  triangles: Uint32Array,
+  vertices: number,
+): {sums: Float32Array; counts: Float32Array} {
+  const sums = new Float32Array(vertices);
+  const counts = new Float32Array(vertices);
+  for (let at = 0; at < triangles.length; at += 3) {
+    let sum = 0,
+      count = 0;
+    for (let side = at; side < at + 3; ++side) {
+      if (sharp[side]) continue;
+      sum += 1 - bends[side]!;
+      ++count;
+    }
+    for (let corner = at; corner < at + 3; ++corner) {
+      sums[triangles[corner]!]! += sum;
+      counts[triangles[corner]!]! += count;
+    }
+  }
+  return {sums, counts};
 }
 
 /** A triangle's side, and the vertices at its ends. */
@@ -52,24 +91,34 @@ function longOnes(sides: readonly Side[], points: Int32Array): Side[] {
     const [a, b] = [first(from), first(to)];
     if (a !== b) heads.set(a, b);
   }
-  const lengths = new Map<number, number>();
+  const sums = new Map<number, {length: number; count: number}>();
   for (const {from, to} of sides) {
-    const length = Math.hypot(...[0, 1, 2].map((i) => points[3 * from + i]! - points[3 * to + i]!));
-    lengths.set(first(from), (lengths.get(first(from)) ?? 0) + length / 2);
+    const sum = sums.get(first(from)) ?? {length: 0, count: 0};
+    const at = (axis: number): number => points[3 * from + axis]! - points[3 * to + axis]!;
+    sum.length += Math.hypot(at(0), at(1), at(2)) / 2;
+    sum.count += 1 / 2;
+    sums.set(first(from), sum);
   }
   const least = kMinLength * extentOf(points);
-  return sides.filter(({from}) => lengths.get(first(from))! >= least);
+  return sides.filter(({from}) => {
+    const {length, count} = sums.get(first(from))!;
+    return length >= least && count >= kMinSides;
+  });
 }
 
 /** The longest side of the points' box. */
 function extentOf(points: Int32Array): number {
-  const low = [Infinity, Infinity, Infinity],
-    high = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < points.length; ++i) {
-    low[i % 3] = Math.min(low[i % 3]!, points[i]!);
-    high[i % 3] = Math.max(high[i % 3]!, points[i]!);
-  }
-  return Math.max(...high.map((x, axis) => x - low[axis]!));
+  const extents = [0, 1, 2].map((axis) => {
+    let low = Infinity,
+      high = -Infinity;
+    for (let i = axis; i < points.length; i += 3) {
+      const at = points[i]!;
+      if (at < low) low = at;
+      if (at > high) high = at;
+    }
+    return high - low;
+  });
+  return Math.max(...extents);
 }
 
 /** The next corner of the same triangle, and so the next side. */
@@ -89,7 +138,8 @@ function twinsOf(triangles: Uint32Array): Int32Array {
   for (let side = 0; side < triangles.length; ++side) {
     const a = triangles[next(side)]!,
       b = triangles[next(next(side))]!;
-    let slot = (Math.imul(Math.min(a, b), 73856093) ^ Math.imul(Math.max(a, b), 19349663)) & mask;
+    const both = Math.imul(Math.imul(a, b) + a + b, 73856093); // the same both ways
+    let slot = (both ^ (both >>> 15)) & mask;
     for (; ; slot = (slot + 1) & mask) {
       const other = slots[slot]!;
       if (other === kNone) {

@@ -5,7 +5,7 @@ import {facesSoup, surfaceFaces} from './cell_surface';
 import type {FieldScale, Scalar} from './field_scale';
 import type {Cells} from './section';
 import {slice} from './slice';
-import {boundarySoup, type TriangleSoup} from './triangle_soup';
+import {boundarySoup, type CreasesOf, type TriangleSoup} from './triangle_soup';
 
 /**
  * cut: the part above a plane is removed, and flat caps close the hole. cells: whole cells stay or
@@ -62,11 +62,15 @@ export function surfaceOf(
   mesh: MeshArrays,
   display: Display,
   kept: Uint8Array | null,
+  creasesOf: CreasesOf | null = null,
 ): TriangleSoup {
   const scale = display.color && mesh.scale(display.color);
-  if (!kept && !scale?.ofCells) return boundarySoup(mesh.points, mesh.boundary, scale);
+  const {points, boundary} = mesh;
   const cells: Cells = {...mesh, kept};
-  return facesSoup(cells, surfaceFaces(cells, mesh.boundary), scale);
+  if (kept || scale?.ofCells)
+    return facesSoup(cells, surfaceFaces(cells, boundary), scale, creasesOf);
+  const soup = boundarySoup(points, boundary, scale);
+  return creasesOf ? {...soup, creases: creasesOf(points, boundary)} : soup;
 }
 
 /**

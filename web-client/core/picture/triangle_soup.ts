@@ -1,7 +1,6 @@
 // The renderer draws triangles without shared corners. A shader can tell the corner from the
 // vertex's number and draw edges of even width.
 
-import {creasesOf} from './creases';
 import type {FieldScale} from './field_scale';
 
 export interface TriangleSoup {
@@ -16,9 +15,17 @@ export interface TriangleSoup {
   firstHalf: number;
   /** False: the sides of its triangles are no edges of cells. */
   edges?: boolean;
-  /** creasesOf its triangles, three times each; absent: it has none. */
+  /** CreasesOf it; absent: it has none. */
   creases?: Uint8Array;
 }
+
+/**
+ * Finds the sides of a surface's triangles that are drawn as lines. The result has a byte for each
+ * corner, the same for all of a triangle. Its bit k is the side opposite to corner k. `points`: 3 a
+ * vertex; `triangles`: 3 a triangle, all seen from outside. It is creasesOf of creases.ts, which
+ * comes behind the first picture.
+ */
+export type CreasesOf = (points: Int32Array, triangles: Uint32Array) => Uint8Array;
 
 /** The boundary as a soup. `points`: 3 a vertex, `triangles`: 3 a triangle. */
 export function boundarySoup(
@@ -26,11 +33,10 @@ export function boundarySoup(
   triangles: Uint32Array,
   scale: FieldScale | null,
 ): TriangleSoup {
-  const valueOf = scale && ((corner: number): number => scale.at(triangles[corner]!));
-  return {...soupOf(points, triangles, valueOf), creases: soupCreases(points, triangles)};
+  return soupOf(points, triangles, scale && ((corner) => scale.at(triangles[corner]!)));
 }
 
-/** The triangles without creases. `valueOf` is asked for each corner; null: there is no field. */
+/** As boundarySoup. `valueOf` is asked for each corner; null: there is no field. */
 export function soupOf(
   points: Int32Array,
   triangles: Uint32Array,
@@ -46,12 +52,6 @@ export function soupOf(
     if (valueOf) values[corner] = valueOf(corner);
   }
   return {positions, values, firstHalf: triangles.length / 3};
-}
-
-/** TriangleSoup.creases of the whole surface. */
-export function soupCreases(points: Int32Array, triangles: Uint32Array): Uint8Array {
-  const creases = creasesOf(points, triangles);
-  return new Uint8Array(triangles.length).map((_, corner) => creases[Math.trunc(corner / 3)]!);
 }
 
 /** An empty soup, new each time, because soups are transferred. */

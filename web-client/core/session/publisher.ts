@@ -13,7 +13,7 @@ import {
 import {scalarRange, type FieldScale, type Scalar} from '../picture/field_scale';
 import {meshArrays} from '../picture/mesh_arrays';
 import {amountsOf, middleOf} from '../picture/spread';
-import {noSoup, pointBounds} from '../picture/triangle_soup';
+import {noSoup, pointBounds, type CreasesOf} from '../picture/triangle_soup';
 import {volumeCells, type VolumeCells} from '../picture/volume';
 import {PicturePace} from './picture_pace';
 import type {Snapshot} from './worker_messages';
@@ -27,6 +27,8 @@ export class Publisher {
   onFirst: () => void = () => undefined;
   /** Called with refinedCorners of each new mesh. */
   onLayers: (positions: Float32Array) => void = () => undefined;
+  /** Null: pictures have no creases yet. */
+  private creasesOf: CreasesOf | null = null;
   private meshChanged = false;
   private cutChanged = false;
   /** Nothing finer will follow by itself. */
@@ -55,6 +57,12 @@ export class Publisher {
     this.meshChanged = true;
     this.isLast = isLast;
     this.schedule();
+  }
+
+  /** Draws creases from the next picture on. */
+  useCreases(creasesOf: CreasesOf): void {
+    this.creasesOf = creasesOf;
+    this.changed(this.isLast);
   }
 
   show(display: Display): void {
@@ -136,7 +144,9 @@ export class Publisher {
     };
     if (this.meshChanged) {
       snapshot.surface =
-        display.body && display.mode !== 'slice' ? surfaceOf(mesh, display, kept) : noSoup();
+        display.body && display.mode !== 'slice'
+          ? surfaceOf(mesh, display, kept, this.creasesOf)
+          : noSoup();
       Object.assign(snapshot, layerSoups(mesh, display, kept));
       this.onLayers(refinedCorners(snapshot));
       snapshot.volume = this.volumeOf(mesh, kept);

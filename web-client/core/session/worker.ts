@@ -52,6 +52,10 @@ function start(baseUrl: string, codecUrl: string): Parts {
     const module = await retry(() => compile(codecUrl));
     codec.become(module);
     session.renewed();
+    retry(() => import('../picture/creases')).then(
+      ({creasesOf}) => publisher.useCreases(creasesOf),
+      () => undefined, // pictures stay without
+    );
     return module;
   };
   const makeWhole = (): Promise<WebAssembly.Module> => (whole ??= becomeWhole());
