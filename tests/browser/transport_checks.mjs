@@ -113,7 +113,7 @@ async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
   await server.start();
   const lookedAt = (viewer) =>
     viewer.inView(({parts: {cuts, layers}}) =>
-      [cuts[0], ...layers.values()].reduce((sum, {shown}) => sum + shown.length / 3, 0),
+      [cuts[0], ...layers.values()].reduce((sum, {shown}) => sum + shown.positions.length / 9, 0),
     );
   const open = async (query) => {
     const viewer = await browser.open(`${server.url}?mesh=regions&${query}`);

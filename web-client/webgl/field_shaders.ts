@@ -16,6 +16,8 @@ export const kFieldVertexShader = /* glsl */ `
   flat out vec3 vCreases;
   // centroid: a place outside the triangle would leave pixels of slivers above a plane
   centroid out vec3 vLattice;
+  centroid out float vReach; // half of the canvas's height there, in lattice units
+  out vec2 vAcross; // divided, -1 to 1 over the canvas's height
   out vec3 vView;
   out vec3 vCorner;
   void main() {
@@ -29,6 +31,8 @@ export const kFieldVertexShader = /* glsl */ `
     vec4 view = modelViewMatrix * vec4(position, 1.0);
     vView = view.xyz;
     gl_Position = projectionMatrix * view;
+    vAcross = gl_Position.yw;
+    vReach = gl_Position.w / (projectionMatrix[1].y * length(modelViewMatrix[1].xyz));
   }`;
 
 /** Edges of cells less than 6 pixels high are fainter, as the cells are smaller. */
@@ -37,6 +41,8 @@ const kPlainDensity = 1 / 6;
 export const kFieldFragmentShader = /* glsl */ `
   in float vValue;
   centroid in vec3 vLattice;
+  centroid in float vReach;
+  in vec2 vAcross;
   in vec3 vView;
   in vec3 vCorner;
   flat in vec3 vCreases;
@@ -94,8 +100,11 @@ ${kBendShader}
   void main() {
     vec3 heights;
     for (int i = 0; i < 3; ++i) heights[i] = dot(clipPlanes[i].xyz, vLattice) - clipPlanes[i].w;
-    vec3 width = creaseStrength > 0.0 ? fwidth(heights) * 0.85 * pixelRatio : vec3(0.0);
-    if (any(greaterThan(heights, width))) discard;
+    float halfLine = creaseStrength > 0.0 ? 0.85 * pixelRatio : 0.0;
+    vec3 width = fwidth(heights) * halfLine;
+    // A triangle seen edge-on is high within a pixel. It stands out by two pixels' own size at most.
+    float pixels = 2.0 * vReach * abs(dFdy(vAcross.x / vAcross.y));
+    if (any(greaterThan(heights, min(width, pixels * halfLine)))) discard;
     vec3 color = surfaceColor();
     if (lit) {
       // Flat shading from screen derivatives makes cells look like cells. A lamp is a little above
