@@ -21,7 +21,7 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .PHONY: help setup build build-checked demo demo-port demo-log test test-units test-system check
 .PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
-.PHONY: bench-server clean
+.PHONY: bench-server wheel clean
 .DEFAULT_GOAL := help
 
 help:
@@ -40,6 +40,7 @@ help:
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make fresh                 continuous integration in a new Debian 12 (needs root and mmdebstrap)
 	make deb                   Debian packages: build/release/packages/*.deb
+	make wheel                 the Python package: build/release/wheels/*.whl
 	make test-deb              install, use and remove them in a Debian of their own (needs root)
 	make build                 build only: build/release/bin/qtet and qtet-server
 	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root)
@@ -304,6 +305,9 @@ sanitize: setup build build-checked
 # Proves that .ci/packages.txt names all that is needed.
 fresh:
 	@.ci/fresh.sh
+
+wheel:
+	@python3 .packaging/python_backend.py build/release/wheels
 
 deb: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging
 deb: setup build

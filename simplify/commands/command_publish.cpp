@@ -1,20 +1,13 @@
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/tool_main.h"
 #include "simplify/publish/publish_site.h"
 
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Where the packages and the build folder have the viewer: beside this program's folder.
-fs::path installedViewer() {
-  std::error_code code;
-  return fs::read_symlink("/proc/self/exe", code).parent_path() / "../share/qtet/viewer";
-}
 
 /// Logs whose names can be shown and be part of an address.
 std::vector<fs::path> logsOf(const ParsedWords& parsed) {
@@ -44,10 +37,11 @@ int runPublish(const Words& words, Console& console) {
   po::options_description options("options");
   options.add_options()("viewer", po::value<std::string>(),
                         "the viewer's files; without it those installed with qtet-server")(
+      "plain", "without NAME.gz and NAME.br, for a server that compresses by itself")(
       "json", "print one JSON object");
   const ParsedWords parsed(
       words,
-      {"publish", "publish FOLDER LOG.qtet... [--viewer DIR] [--json]",
+      {"publish", "publish FOLDER LOG.qtet... [--viewer DIR] [--plain] [--json]",
        "Writes a folder that any web server can serve as it is, without a program of ours: the "
        "viewer, compressed too, the logs,\n"
        "index.json with their list, and README.txt with the settings for nginx, Caddy, S3 with "
@@ -61,8 +55,10 @@ int runPublish(const Words& words, Console& console) {
   if (parsed.helped(console)) return kExitOk;
   const auto folder = parsed.get<std::string>("FOLDER");
   const fs::path viewer =
-      parsed.has("viewer") ? fs::path(parsed.get<std::string>("viewer")) : installedViewer();
-  const Result<PublishedSite> site = publishSite(folder, viewer, logsOf(parsed));
+      parsed.has("viewer") ? fs::path(parsed.get<std::string>("viewer")) : installation().viewer;
+  const Result<PublishedSite> site =
+      publishSite(folder, viewer, logsOf(parsed),
+                  parsed.has("plain") ? Codings::kNone : Codings::kGzipAndBrotli);
   if (!site) return reportFailure(site.error(), parsed.has("json"), console);
   if (parsed.has("json")) {
     printJson(toJson(folder, *site), console);

@@ -10,6 +10,7 @@
 
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
+#include "simplify/commands/tool_main.h"
 #include "simplify/read/process/guarded_folder.h"
 
 namespace qtet {
@@ -30,8 +31,8 @@ std::string meshName(const fs::path& file) {
 /// qtet-server beside this program, else what PATH has.
 std::string serverProgram() {
   std::error_code code;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", code).parent_path() / "qtet-server";
-  return !code && fs::exists(beside, code) ? beside.string() : "qtet-server";
+  const fs::path beside = installation().programs / "qtet-server";
+  return fs::exists(beside, code) ? beside.string() : "qtet-server";
 }
 
 volatile std::sig_atomic_t serverProcess = 0;

@@ -57,15 +57,16 @@ struct Coding {
 /// A folder that is being made, and how many bytes are in it.
 struct Site {
   SiteFolder folder;
+  bool isCoded = true;
   std::uint64_t bytes = 0;
 
   Status write(const std::string& name, ByteView content) {
     bytes += content.size();
     return folder.write(name, content);
   }
-  /// Also writes each coding beside it that takes fewer bytes.
+  /// If isCoded, also writes each coding beside it that takes fewer bytes.
   Status writeWithCodings(const std::string& name, ByteView content) {
-    if (Status written = write(name, content); !written) return written;
+    if (Status written = write(name, content); !written || !isCoded) return written;
     for (const auto& [ending, coded] : {Coding{".gz", gzipped}, Coding{".br", brotlied}}) {
       const Result<Bytes> small = coded(content);
       if (!small) return std::unexpected(small.error());
@@ -189,10 +190,10 @@ Status writeList(Site& site, const Json& meshes) {
 }  // namespace
 
 Result<PublishedSite> publishSite(const fs::path& folder, const fs::path& viewer,
-                                  const std::vector<fs::path>& logs) {
+                                  const std::vector<fs::path>& logs, Codings codings) {
   Result<SiteFolder> begun = SiteFolder::begin(folder);
   if (!begun) return std::unexpected(begun.error());
-  Site site{std::move(*begun)};
+  Site site{std::move(*begun), codings == Codings::kGzipAndBrotli};
   PublishedSite out;
   Json meshes = Json::array();
   for (const fs::path& path : logs) {

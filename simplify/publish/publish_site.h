@@ -21,9 +21,13 @@ struct PublishedSite {
   std::uint64_t bytes = 0;
 };
 
-/// Makes `folder` of the viewer's files and the logs. It holds each file of the viewer with NAME.gz
-/// and NAME.br beside it where that is smaller. It also holds NAME.qtet and its poster NAME.webp
-/// (codec/picture/poster.h) for each log, index.json, README.txt (hosting_notes.h) and .nojekyll.
+/// Which compressed copies lie beside the viewer's files.
+enum class Codings { kNone, kGzipAndBrotli };
+
+/// Makes `folder` of the viewer's files and the logs. It holds each file of the viewer, and with
+/// codings NAME.gz and NAME.br beside it where that is smaller. It also holds NAME.qtet and its
+/// poster NAME.webp (codec/picture/poster.h) for each log, index.json, README.txt
+/// (hosting_notes.h) and .nojekyll.
 /// index.json is a list as `GET /v1/meshes` gives it (PROTOCOL.md), with `links.log` and
 /// `links.poster` relative to it, `firstBytes` (the length of the log's prefix that the viewer's
 /// first picture takes), and `files`. A meta element gives the page index.json as its list. The
@@ -33,6 +37,7 @@ struct PublishedSite {
 /// of one name; a viewer without a page).
 [[nodiscard]] Result<PublishedSite> publishSite(const std::filesystem::path& folder,
                                                 const std::filesystem::path& viewer,
-                                                const std::vector<std::filesystem::path>& logs);
+                                                const std::vector<std::filesystem::path>& logs,
+                                                Codings codings);
 
 }  // namespace qtet

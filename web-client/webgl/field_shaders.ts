@@ -102,7 +102,7 @@ ${kBendShader}
     for (int i = 0; i < 3; ++i) heights[i] = dot(clipPlanes[i].xyz, vLattice) - clipPlanes[i].w;
     float halfLine = creaseStrength > 0.0 ? 0.85 * pixelRatio : 0.0;
     vec3 width = fwidth(heights) * halfLine;
-    // A triangle seen edge-on is high within a pixel. It stands out by two pixels' own size at most.
+    // A triangle seen edge-on is high within a pixel. It stands out by the size of two pixels.
     float pixels = 2.0 * vReach * abs(dFdy(vAcross.x / vAcross.y));
     if (any(greaterThan(heights, min(width, pixels * halfLine)))) discard;
     vec3 color = surfaceColor();

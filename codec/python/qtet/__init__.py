@@ -1,18 +1,29 @@
-"""qtet logs of tetrahedral meshes: made of numpy arrays, opened from files and URLs.
+"""qtet logs of tetrahedral meshes: made of numpy arrays and of grids, opened, and shown in a browser.
 
     import qtet
     log = qtet.simplify(points, cells, point_data={"Heat": heat}, target_ratio=0.02)  # bytes
+    log = qtet.simplify(grid)  # of PyVista, VTK or meshio
     with qtet.open("part.qtet") as log:  # or a URL
         log.refine(0)
         print(log.counts())
+    qtet.view("part.vtu")  # in the browser of this machine
 
 Opening needs libqtet.so alone, simplify numpy as well, and qtet.vtk VTK's Python modules."""
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
 from .log import Log, QtetError, version
 
-__all__ = ["Cancelled", "Log", "QtetError", "open", "simplify"]
+if TYPE_CHECKING:
+    from .hosting import serve, view
+    from .simplifier import Cancelled, simplify
+
+__all__ = ["Cancelled", "Log", "QtetError", "open", "serve", "simplify", "view"]
 
 
-def open(source):
+def open(source: str | os.PathLike[str]) -> Log:
     """The log in a file or behind a URL (Log); with `with` it is closed again."""
     return Log(source)
 
@@ -23,6 +34,10 @@ def __getattr__(name):
         from . import simplifier
 
         return getattr(simplifier, name)
+    if name in ("serve", "view"):
+        from . import hosting
+
+        return getattr(hosting, name)
     if name == "__version__":
         return version()
     raise AttributeError(f"module 'qtet' has no attribute {name!r}")

@@ -1,12 +1,22 @@
 """qtet.simplify: logs made of numpy arrays (simplify/api/qtet_simplify.h). The same mesh and options
 give the same bytes as the program `qtet simplify`."""
+from __future__ import annotations
+
 import ctypes
 import os
+import pathlib
+import tempfile
 import threading
+from typing import TYPE_CHECKING, Any, Callable, Mapping
 
 import numpy
 
+from . import tool
+from .grids import grid_of
 from .log import QtetError, library
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 __all__ = ["Cancelled", "simplify"]
 
@@ -274,45 +284,80 @@ class _Work:
         self.c.qtet_simplified_destroy(self.made)
 
 
-def simplify(
-    points,
-    cells,
-    point_data=None,
-    cell_data=None,
-    *,
-    path=None,
-    progress=None,
-    source="",
-    target_ratio=None,
-    base_cells=None,
-    base_error=None,
-    boundary_weight=None,
-    shape_weight=None,
-    envelope_tolerance=None,
-    position_bits=None,
-    field_bits=None,
-    algorithm="qtet",
-    placement="auto",
-    measure="levels",
-    value_codec="draco",
-    keep_order=False,
-    lossless=False,
-    original_ids=False,
-    cells_per_packet=0,
-    threads=1,
-    max_boundary_error=None,
-    max_field_errors=None,
-    field_weights=None,
-    regions=None,
-):
-    """Makes the log of a tetrahedral mesh: its bytes, or, with `path`, a file (and the path).
+def _tool_words(options):
+    """The options of simplify() as words of `qtet simplify`."""
+    names = {"value_codec": "geometry-codec", "regions": "preserve-regions"}
+    words = []
+    for key, value in options.items():
+        name = "--" + names.get(key, key.removesuffix("s") if isinstance(value, dict) else key)
+        name = name.replace("_", "-")
+        if value is None or value is False or (key == "cells_per_packet" and value == 0):
+            continue
+        if key == "cells_per_packet":
+            words += ["--layout", "regions"]
+        if value is True:
+            words += [name]
+        elif isinstance(value, dict):
+            words += [word for field, x in value.items() for word in (name, f"{field}={x!r}")]
+        else:
+            words += [name, str(value)]
+    return words
 
-    points      (n, 3) floats, finite, in any unit of length
+
+def _simplify_by_tool(grid, path, progress, source, options):
+    """Cells other than tetrahedra are split by the tool, which reads them from a file."""
+    with tempfile.TemporaryDirectory(prefix="qtet-") as folder:
+        stem = pathlib.PurePath(source).stem or "grid"
+        mesh = pathlib.Path(folder) / (stem + ".vtu")
+        log = pathlib.Path(path) if path is not None else mesh.with_suffix(".qtet")
+        grid.write_vtu(mesh)
+        words = ["simplify", mesh, "-o", log, "--quiet", *_tool_words(options)]
+        if tool.run(words, goes_on=progress and (lambda: progress(_STAGES[2], 0.0))) is None:
+            raise Cancelled("cancelled")
+        return path if path is not None else log.read_bytes()
+
+
+def simplify(
+    points: Any,
+    cells: ArrayLike | None = None,
+    point_data: Mapping[str, ArrayLike] | None = None,
+    cell_data: Mapping[str, ArrayLike] | None = None,
+    *,
+    path: str | os.PathLike[str] | None = None,
+    progress: Callable[[str, float], bool | None] | None = None,
+    source: str = "",
+    target_ratio: float | None = None,
+    base_cells: int | None = None,
+    base_error: float | None = None,
+    boundary_weight: float | None = None,
+    shape_weight: float | None = None,
+    envelope_tolerance: float | None = None,
+    position_bits: int | None = None,
+    field_bits: int | None = None,
+    algorithm: str = "qtet",
+    placement: str = "auto",
+    measure: str = "levels",
+    value_codec: str = "draco",
+    keep_order: bool = False,
+    lossless: bool = False,
+    original_ids: bool = False,
+    cells_per_packet: int = 0,
+    threads: int = 1,
+    max_boundary_error: float | None = None,
+    max_field_errors: Mapping[str, float] | None = None,
+    field_weights: Mapping[str, float] | None = None,
+    regions: str | None = None,
+) -> Any:
+    """Makes the log of a mesh: its bytes, or, with `path`, a file (and the path).
+
+    points      (n, 3) floats, finite, in any unit of length; or a grid: an unstructured grid of VTK
+                or PyVista, or a mesh of meshio, with any volume cells and its own data
     cells       (m, 4) integers: the points of each tetrahedron, counted from 0
     point_data  {name: array}: (n,) or (n, components), float or integer; NaN is a missing value
     cell_data   {name: array}: the same with m
     progress    called about ten times a second with the stage's name and the fraction of it that
-                is done, 0 to 1; the answer False ends the work with Cancelled
+                is done, 0 to 1; the answer False ends the work with Cancelled. The fraction of a
+                grid with cells other than tetrahedra stays 0
     source      what the log calls its input
     target_ratio          of the base mesh's tetrahedra to the input's; without, base_error chooses
     base_cells            tetrahedra of the base mesh, instead of a ratio
@@ -335,6 +380,24 @@ def simplify(
     that cannot be simplified, options out of range, a file that cannot be written), Cancelled,
     MemoryError. Ctrl-C ends the work soon, and KeyboardInterrupt is raised. Other threads of Python
     run meanwhile; the arrays must not change."""
+    words = {
+        name: value
+        for name, value in locals().items()
+        if name not in ("points", "cells", "point_data", "cell_data", "path", "progress", "source")
+    }
+    if cells is None:
+        grid = grid_of(points)
+        if grid is None:
+            raise ValueError(
+                f"{type(points).__name__} is no grid; give points and cells, or an unstructured "
+                "grid of VTK, PyVista or meshio"
+            )
+        grid.point_data.update(point_data or {})
+        grid.cell_data.update(cell_data or {})
+        cells = grid.tetrahedra()
+        if cells is None:
+            return _simplify_by_tool(grid, path, progress, source, words)
+        points, point_data, cell_data = grid.points, grid.point_data, grid.cell_data
     c = _library()
     options = _Options()
     if c.qtet_simplify_defaults(ctypes.c_size_t(ctypes.sizeof(options)), ctypes.byref(options)):

@@ -1,0 +1,172 @@
+"""Builds the wheel (PEP 517) of what CMake made: the package's library, the viewer and the modules.
+
+The wheel fits every Python 3.9 and later on this processor. The modules reach the library by
+ctypes.
+The same sources and build machine give the same bytes."""
+import base64
+import hashlib
+import io
+import os
+import pathlib
+import platform
+import re
+import subprocess
+import sys
+import tarfile
+import time
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build/release"
+NAME = "qtet"
+# Members carry one date: that of the last change, or this one, the earliest that a zip can hold.
+_EARLIEST = 315532800
+# Debian's packages of what is linked statically into the library.
+_LINKED = (
+    "libdraco-dev libboost-program-options-dev libhdf5-dev libaec-dev libexpat1-dev libdeflate-dev "
+    "liblz4-dev liblzma-dev libwebp-dev libbrotli-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev"
+).split()
+
+
+def version():
+    text = (ROOT / "CMakeLists.txt").read_text()
+    return re.search(r"project\(qtet VERSION ([\d.]+)", text).group(1)
+
+
+def _date():
+    """Seconds: SOURCE_DATE_EPOCH, or the last commit's."""
+    told = os.environ.get("SOURCE_DATE_EPOCH")
+    if not told:
+        done = subprocess.run(
+            ["git", "-C", ROOT, "log", "-1", "--format=%ct"], capture_output=True, text=True
+        )
+        told = done.stdout.strip() if done.returncode == 0 else ""
+    return max(int(told or 0), _EARLIEST)
+
+
+def _metadata():
+    return f"""Metadata-Version: 2.1
+Name: {NAME}
+Version: {version()}
+Summary: Tetrahedral meshes as small logs that a browser shows coarse-first
+License: Apache-2.0
+License-File: LICENSE
+License-File: third-party.txt
+Classifier: Operating System :: POSIX :: Linux
+Classifier: Programming Language :: Python :: 3
+Classifier: Topic :: Scientific/Engineering :: Visualization
+Requires-Python: >=3.9
+Requires-Dist: numpy
+Description-Content-Type: text/markdown
+
+""" + (ROOT / "codec/python/PYTHON.md").read_text()
+
+
+def _tag():
+    return f"py3-none-linux_{platform.machine()}"
+
+
+def _notices():
+    """The licences of what the library holds, as the build machine's packages state them."""
+    parts = []
+    for package in _LINKED:
+        path = pathlib.Path("/usr/share/doc") / package / "copyright"
+        if not path.is_file():
+            raise SystemExit(f"{path} is missing; a wheel is made on Debian, after make setup")
+        parts.append(f"==== {package}\n\n{path.read_text(errors='replace')}")
+    return "\n".join(parts)
+
+
+def _members():
+    """(name in the wheel, bytes, whether it may be executed), without the record."""
+    library = BUILD / "package/qtet/libqtet.so"
+    viewer = BUILD / "share/qtet/viewer"
+    for needed in (library, viewer / "index.html"):
+        if not needed.is_file():
+            raise SystemExit(f"{needed} is missing; run make wheel")
+    members = [(f"{NAME}/libqtet.so", library.read_bytes(), True)]
+    for path in sorted((ROOT / "codec/python/qtet").iterdir()):
+        if path.suffix == ".py" or path.name == "py.typed":
+            members.append((f"{NAME}/{path.name}", path.read_bytes(), False))
+    for path in sorted(viewer.rglob("*")):
+        # Compressed copies are made again where the viewer is published.
+        if path.is_file() and path.suffix not in (".gz", ".br", ".zst"):
+            name = path.relative_to(viewer).as_posix()
+            members.append((f"{NAME}/viewer/{name}", path.read_bytes(), False))
+    info = f"{NAME}-{version()}.dist-info"
+    wheel = (
+        f"Wheel-Version: 1.0\nGenerator: qtet {version()}\nRoot-Is-Purelib: false\n"
+        f"Tag: {_tag()}\n"
+    )
+    for name, text in (
+        ("METADATA", _metadata()),
+        ("WHEEL", wheel),
+        ("entry_points.txt", "[console_scripts]\nqtet = qtet.__main__:main\n"),
+        ("licenses/LICENSE", (ROOT / "LICENSE").read_text()),
+        ("licenses/third-party.txt", _notices()),
+    ):
+        members.append((f"{info}/{name}", text.encode(), False))
+    return members, f"{info}/RECORD"
+
+
+def _record(members, own):
+    lines = []
+    for name, content, _ in members:
+        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+        lines.append(f"{name},sha256={digest},{len(content)}")
+    return "\n".join([*lines, f"{own},,", ""]).encode()
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    """Writes the wheel and returns its name."""
+    targets = ["qtet_package_library", "qtet_viewer"]
+    subprocess.run(
+        ["make", "-C", ROOT, "build", f"TARGETS=--target {' '.join(targets)}"],
+        check=True,
+        stdout=sys.stderr,
+    )
+    members, own = _members()
+    members.append((own, _record(members, own), False))
+    name = f"{NAME}-{version()}-{_tag()}.whl"
+    date = time.gmtime(_date())[:6]
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
+        for path, content, executable in members:
+            info = zipfile.ZipInfo(path, date)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.external_attr = (0o100755 if executable else 0o100644) << 16
+            wheel.writestr(info, content)
+    target = pathlib.Path(wheel_directory) / name
+    target.parent.mkdir(parents=True, exist_ok=True)
+    part = target.with_suffix(".part")
+    part.write_bytes(out.getvalue())
+    part.replace(target)
+    return name
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    """The files of the last commit."""
+    name = f"{NAME}-{version()}"
+    files = subprocess.run(
+        ["git", "-C", ROOT, "archive", "--format=tar", f"--prefix={name}/", "HEAD"],
+        check=True,
+        capture_output=True,
+    ).stdout
+    out = io.BytesIO()
+    with tarfile.open(fileobj=io.BytesIO(files)) as given, tarfile.open(
+        fileobj=out, mode="w:gz", format=tarfile.PAX_FORMAT
+    ) as made:
+        for member in given:
+            made.addfile(member, given.extractfile(member) if member.isfile() else None)
+        text = _metadata().encode()
+        info = tarfile.TarInfo(f"{name}/PKG-INFO")
+        info.size, info.mtime = len(text), _date()
+        made.addfile(info, io.BytesIO(text))
+    (pathlib.Path(sdist_directory) / f"{name}.tar.gz").write_bytes(out.getvalue())
+    return f"{name}.tar.gz"
+
+
+if __name__ == "__main__":
+    folder = pathlib.Path(sys.argv[1])
+    path = folder / build_wheel(folder)
+    print(f"{path}: {path.stat().st_size} bytes")

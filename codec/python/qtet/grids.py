@@ -1,0 +1,166 @@
+"""Meshes of other packages as arrays, and as .vtu files for the tool: unstructured grids of VTK and
+PyVista, and meshes of meshio."""
+import json
+import struct
+
+import numpy
+
+__all__ = ["Grid", "grid_of"]
+
+# VTK's numbers of volume cells by meshio's names. Both order the nodes alike.
+_NUMBERS = {
+    "tetra": 10,
+    "voxel": 11,
+    "hexahedron": 12,
+    "wedge": 13,
+    "pyramid": 14,
+    "tetra10": 24,
+    "hexahedron20": 25,
+    "wedge15": 26,
+    "pyramid13": 27,
+    "hexahedron27": 29,
+    "hexahedron24": 33,
+    "wedge12": 31,
+    "wedge18": 32,
+}
+_TETRAHEDRON = 10
+_POLYHEDRON = 42
+_VTU_TYPES = {
+    "float32": "Float32",
+    "float64": "Float64",
+    "int8": "Int8",
+    "int16": "Int16",
+    "int32": "Int32",
+    "int64": "Int64",
+    "uint8": "UInt8",
+    "uint16": "UInt16",
+    "uint32": "UInt32",
+    "uint64": "UInt64",
+}
+
+
+class Grid:
+    """points (n, 3); types (m,), VTK's numbers; connectivity and ends (m,): the nodes of cell i are
+    those before ends[i]; point_data and cell_data {name: (n or m, ...)}."""
+
+    def __init__(self, points, types, connectivity, ends, point_data, cell_data):
+        self.points, self.types = numpy.asarray(points), numpy.asarray(types, "uint8")
+        self.connectivity, self.ends = numpy.asarray(connectivity), numpy.asarray(ends)
+        self.point_data, self.cell_data = dict(point_data), dict(cell_data)
+
+    def tetrahedra(self):
+        """(m, 4) if all cells are tetrahedra, else None."""
+        if (self.types != _TETRAHEDRON).any() or len(self.connectivity) != 4 * len(self.types):
+            return None
+        return self.connectivity.reshape(-1, 4)
+
+    def write_vtu(self, path):
+        """Uncompressed, in the machine's order of bytes, which is little-endian."""
+        blocks, at = [], 0
+
+        def array(name, values):
+            nonlocal at
+            values = numpy.ascontiguousarray(values)
+            if values.dtype == bool:
+                values = values.astype("uint8")
+            if values.dtype == numpy.float16:
+                values = values.astype("float32")
+            if values.dtype.name not in _VTU_TYPES:
+                raise ValueError(f"{name}: no log has numbers of type {values.dtype}")
+            components = int(numpy.prod(values.shape[1:]))
+            text = (
+                f'<DataArray type="{_VTU_TYPES[values.dtype.name]}" Name={_quoted(name)} '
+                f'NumberOfComponents="{components}" format="appended" offset="{at}"/>'
+            )
+            blocks.append(values)
+            at += 8 + values.nbytes
+            return text
+
+        head = "".join(
+            [
+                '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
+                'header_type="UInt64"><UnstructuredGrid>',
+                f'<Piece NumberOfPoints="{len(self.points)}" NumberOfCells="{len(self.types)}">',
+                "<Points>",
+                array("Points", self.points),
+                "</Points><Cells>",
+                array("connectivity", self.connectivity.astype("int64")),
+                array("offsets", self.ends.astype("int64")),
+                array("types", self.types),
+                "</Cells><PointData>",
+                *(array(name, values) for name, values in self.point_data.items()),
+                "</PointData><CellData>",
+                *(array(name, values) for name, values in self.cell_data.items()),
+                '</CellData></Piece></UnstructuredGrid><AppendedData encoding="raw">_',
+            ]
+        )
+        with open(path, "wb") as file:
+            file.write(head.encode())
+            for values in blocks:
+                file.write(struct.pack("<Q", values.nbytes))
+                file.write(memoryview(values).cast("B") if values.size else b"")
+            file.write(b"</AppendedData></VTKFile>")
+
+
+def _quoted(text):
+    from xml.sax.saxutils import quoteattr
+
+    return quoteattr(str(text))
+
+
+def grid_of(source):
+    """The Grid of a VTK, PyVista or meshio object; None for anything else. Raises ValueError for
+    one without volume cells, and for polyhedra."""
+    if not hasattr(source, "GetCellTypesArray") and hasattr(source, "cast_to_unstructured_grid"):
+        source = source.cast_to_unstructured_grid()
+    if hasattr(source, "GetCellTypesArray"):
+        return _of_vtk(source)
+    if hasattr(source, "points") and hasattr(source, "cells") and hasattr(source, "cell_data"):
+        return _of_meshio(source)
+    return None
+
+
+def _of_vtk(source):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    def fields(data):
+        arrays = (data.GetArray(i) for i in range(data.GetNumberOfArrays()))
+        return {a.GetName(): vtk_to_numpy(a) for a in arrays if a is not None and a.GetName()}
+
+    if source.GetNumberOfCells() == 0:
+        raise ValueError("the grid has no cells")
+    types = vtk_to_numpy(source.GetCellTypesArray())
+    if (types == _POLYHEDRON).any():
+        raise ValueError("the grid has polyhedra; save it as .vtu, and give the file's path")
+    cells = source.GetCells()
+    return Grid(
+        vtk_to_numpy(source.GetPoints().GetData()),
+        types,
+        vtk_to_numpy(cells.GetConnectivityArray()),
+        vtk_to_numpy(cells.GetOffsetsArray())[1:],
+        fields(source.GetPointData()),
+        fields(source.GetCellData()),
+    )
+
+
+def _of_meshio(source):
+    kept = [i for i, block in enumerate(source.cells) if block.type in _NUMBERS]
+    if not kept:
+        found = sorted({block.type for block in source.cells})
+        raise ValueError(f"the mesh has no volume cells, only {json.dumps(found)}")
+    blocks = [source.cells[i] for i in kept]
+    sizes = numpy.concatenate([numpy.full(len(b.data), b.data.shape[1]) for b in blocks])
+    points = numpy.asarray(source.points)
+    if points.shape[1] != 3:
+        raise ValueError(f"points have the shape {points.shape}; give (points, 3)")
+    return Grid(
+        points,
+        numpy.concatenate([numpy.full(len(b.data), _NUMBERS[b.type], "uint8") for b in blocks]),
+        numpy.concatenate([numpy.asarray(b.data).ravel() for b in blocks]),
+        numpy.cumsum(sizes),
+        source.point_data,
+        {
+            name: numpy.concatenate([numpy.asarray(values[i]) for i in kept])
+            for name, values in source.cell_data.items()
+        },
+    )

@@ -1,0 +1,91 @@
+"""The program `qtet` from Python: the one in the package's library, or the one that is installed."""
+import ctypes
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+
+from .log import QtetError, library
+
+__all__ = ["call", "run"]
+
+_PACKAGE = pathlib.Path(__file__).resolve().parent
+_FAILED = 1
+_INTERVAL_S = 0.1
+
+
+def _is_in_library():
+    return hasattr(library(), "qtet_main")
+
+
+def call(words):
+    """Runs `qtet WORDS...` in this process and returns its exit code. The process can do nothing
+    else meanwhile: it is for the command `qtet`, and run() for everybody else."""
+    if not _is_in_library():
+        program = shutil.which("qtet")
+        if program is None or _is_this_package(program):
+            sys.stderr.write("qtet: this libqtet.so holds no tool; install the package qtet\n")
+            return _FAILED
+        return subprocess.call([program, *words])
+    # Python's own handlers would wait for the end.
+    for number in (signal.SIGINT, signal.SIGPIPE):
+        signal.signal(number, signal.SIG_DFL)
+    # Formats that meshio reads are read by the Python of this package.
+    os.environ["PATH"] = os.pathsep.join(
+        [str(pathlib.Path(sys.executable).parent), os.environ.get("PATH", os.defpath)]
+    )
+    given = [b"qtet", *(os.fsencode(word) for word in words)]
+    sys.stdout.flush()
+    return library().qtet_main(len(given), (ctypes.c_char_p * (len(given) + 1))(*given, None))
+
+
+def _is_this_package(program):
+    """Whether the program is the script that pip made of this package."""
+    with open(program, "rb") as file:
+        return file.read(2) == b"#!"
+
+
+def run(words, told=False, goes_on=None):
+    """Runs `qtet WORDS...` in a process of its own. Returns what it printed. Raises QtetError with
+    its own text where it fails, KeyboardInterrupt after Ctrl-C. `told`: what it says of a success
+    goes to the standard error. `goes_on` is called about ten times a second; the answer False ends
+    the process, and None is returned."""
+    environment = dict(os.environ)
+    environment["PYTHONPATH"] = os.pathsep.join(
+        filter(None, [str(_PACKAGE.parent), environment.get("PYTHONPATH")])
+    )
+    command = [sys.executable, "-m", "qtet"] if _is_in_library() else [shutil.which("qtet")]
+    if command[0] is None:
+        raise QtetError("the program qtet is not found; install the package qtet")
+    with subprocess.Popen(
+        [*command, *(os.fspath(word) for word in words)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        env=environment,
+    ) as process:
+        try:
+            while True:
+                try:
+                    printed, said = process.communicate(timeout=_INTERVAL_S)
+                    break
+                except subprocess.TimeoutExpired:
+                    if goes_on and goes_on() is False:
+                        process.terminate()
+                        process.communicate()
+                        return None
+        except BaseException:
+            process.kill()
+            raise
+    if process.returncode == -signal.SIGINT:
+        raise KeyboardInterrupt
+    if process.returncode != 0:
+        lines = [line.removeprefix("qtet: ") for line in said.splitlines()]
+        raise QtetError("\n".join(lines) or f"qtet ended with {process.returncode}")
+    if told:
+        sys.stderr.write(said)
+    return printed

@@ -1,0 +1,25 @@
+// Debian's static HDF5 is compiled for programs. It takes the C library's standard streams from a
+// fixed place beside its code, which a shared library does not have. The linker's --wrap leads all
+// uses of `stderr` and `stdout` to these copies, also those of the C++ library.
+#include <cstdio>
+
+extern "C" {
+extern FILE* const kRealError asm("__real_stderr");
+extern FILE* const kRealOutput asm("__real_stdout");
+extern FILE* wrappedError asm("__wrap_stderr");
+extern FILE* wrappedOutput asm("__wrap_stdout");
+FILE* wrappedError = nullptr;
+FILE* wrappedOutput = nullptr;
+}
+
+namespace {
+
+/// Before std::cout is made, which takes its stream then.
+constexpr int kBeforeAll = 101;
+
+__attribute__((constructor(kBeforeAll))) void copyStreams() {
+  wrappedError = kRealError;
+  wrappedOutput = kRealOutput;
+}
+
+}  // namespace

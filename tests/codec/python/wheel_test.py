@@ -1,0 +1,126 @@
+"""The installed package: logs of grids of meshio and VTK with any volume cells, and its own host.
+   wheel_test.py FOLDER-WITH-box.vtu-AND-box.qtet"""
+import http.client
+import os
+import pathlib
+import sys
+
+os.chdir(sys.argv[1])
+import numpy
+import qtet
+
+
+def raised(kind, call):
+    try:
+        call()
+    except kind as error:
+        return str(error)
+    raise AssertionError(f"no {kind.__name__}")
+
+
+class Block:
+    def __init__(self, kind, data):
+        self.type, self.data = kind, data
+
+
+class Mesh:
+    """What a mesh of meshio looks like."""
+
+    def __init__(self, points, cells, point_data=(), cell_data=()):
+        self.points, self.cells = points, [Block(*cell) for cell in cells]
+        self.point_data, self.cell_data = dict(point_data), dict(cell_data)
+
+
+def hexahedra(n):
+    """A cube of n^3 hexahedra, and a triangle beside them, which is left out."""
+    ticks = numpy.arange(n + 1)
+    z, y, x = (a.ravel() for a in numpy.meshgrid(ticks, ticks, ticks, indexing="ij"))
+    row, layer = n + 1, (n + 1) ** 2
+    corner = (x + row * y + layer * z)[(x < n) & (y < n) & (z < n)]
+    steps = numpy.array([0, 1, row + 1, row, layer, layer + 1, layer + row + 1, layer + row])
+    return Mesh(
+        numpy.stack([x, y, z], axis=1).astype(float),
+        [("triangle", numpy.array([[0, 1, row]])), ("hexahedron", corner[:, None] + steps)],
+        {"T": (x * y + z).astype("float32"), "Flag": x > 1},
+        {"Part": [numpy.array([9]), numpy.arange(n**3)]},
+    )
+
+
+def test_hexahedra():
+    mesh, told = hexahedra(6), []
+    log = qtet.simplify(mesh, progress=lambda *step: told.append(step), field_bits=14)
+    pathlib.Path("cube.qtet").write_bytes(log)
+    with qtet.open("cube.qtet") as opened:
+        opened.refine(opened.info.levels - 1)
+        assert opened.counts()[1] in (5 * 216, 6 * 216), opened.counts()
+        assert {field.name for field in opened.fields} == {b"T", b"Flag", b"Part"}
+    assert qtet.simplify(mesh, path="two.qtet", field_bits=14) == "two.qtet"
+    assert pathlib.Path("two.qtet").read_bytes() == log
+    large = hexahedra(30)
+    raised(qtet.Cancelled, lambda: qtet.simplify(large, progress=lambda *_: False))
+    assert "position-bits" in raised(qtet.QtetError, lambda: qtet.simplify(mesh, position_bits=99))
+
+
+def test_refused():
+    assert "int is no grid" in raised(ValueError, lambda: qtet.simplify(3))
+    flat = Mesh(numpy.zeros((3, 3)), [("triangle", numpy.array([[0, 1, 2]]))])
+    assert "no volume cells" in raised(ValueError, lambda: qtet.simplify(flat))
+
+
+def test_meshio_and_vtk():
+    try:
+        import meshio
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    except ImportError as error:
+        return print("skipped:", error)
+    log = qtet.simplify(meshio.read("box.vtu"))
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName("box.vtu")
+    reader.Update()
+    assert qtet.simplify(reader.GetOutput()) == log
+    return None
+
+
+def answer(server, path, method="GET", **headers):
+    connection = http.client.HTTPConnection(server.url.split("/")[2], timeout=20)
+    connection.request(method, path, headers=headers)
+    response = connection.getresponse()
+    body = response.read()
+    connection.close()
+    return response, body
+
+
+def test_host():
+    log = pathlib.Path("box.qtet").read_bytes()
+    with qtet.serve("box.qtet") as server:
+        response, body = answer(server, "/")
+        assert response.status == 200 and b"qtet-src" in body
+        assert answer(server, "/box.qtet")[1] == log
+        for text, first, last in (
+            ("bytes=0-9", 0, 9),
+            (f"bytes={len(log) - 1}-", len(log) - 1, len(log) - 1),
+            ("bytes=5-99999999", 5, len(log) - 1),
+            ("bytes=-3", len(log) - 3, len(log) - 1),
+        ):
+            response, body = answer(server, "/box.qtet", Range=text)
+            assert response.status == 206, text
+            assert body == log[first : last + 1], text
+            assert response.headers["Content-Range"] == f"bytes {first}-{last}/{len(log)}"
+        for text in (f"bytes={len(log)}-", "bytes=9-5", "bytes=-0"):
+            assert answer(server, "/box.qtet", Range=text)[0].status == 416, text
+        response, body = answer(server, "/box.qtet", "HEAD")
+        assert int(response.headers["Content-Length"]) == len(log) and body == b""
+        os.symlink(os.path.abspath("box.vtu"), pathlib.Path(server.folder) / "link")
+        for path in ("/nothing", "/../box.qtet", "/%2e%2e/box.qtet", "/link", "/assets", "/%00"):
+            assert answer(server, path)[0].status == 404, path
+        assert answer(server, "/", Host="example.org")[0].status == 421
+        port = int(server.url.split(":")[2].strip("/"))
+        assert str(port) in raised(qtet.QtetError, lambda: qtet.serve("box.qtet", port=port))
+    assert not os.path.exists(server.folder)
+    assert "nothing.qtet" in raised(qtet.QtetError, lambda: qtet.serve("nothing.qtet"))
+
+
+for name, test in list(globals().items()):
+    if name.startswith("test_"):
+        test()
+        print("ok   ", name)
