@@ -25,7 +25,12 @@ for program in qtet portable; do
 done
 cmp "$scratch/qtet.qtet" "$scratch/portable.qtet" || fail "its log is another one"
 
-! "$portable" check "$meshes/two.e" >"$scratch/words" 2>&1 || fail "it reads Exodus"
+# VTK's own format through meshio, others not at all
+"$qtet" convert "$scratch/box.vtu" -o "$scratch/box.vtk" --quiet
+"$portable" convert "$scratch/box.vtk" -o "$scratch/back.msh" --quiet
+"$qtet" convert "$scratch/box.vtk" -o "$scratch/box.msh" --quiet
+cmp "$scratch/back.msh" "$scratch/box.msh" || fail "box.vtk is read otherwise"
+! "$portable" check "$meshes/ens.0.case" >"$scratch/words" 2>&1 || fail "it reads EnSight"
 grep -q 'built without' "$scratch/words" || fail "it does not say that VTK is missing"
 ! QTET_TOKEN=x "$portable" push "$scratch/qtet.qtet" http://localhost/ 2>"$scratch/words" ||
   fail "it pushes"
