@@ -307,6 +307,13 @@ class Log:
             c.qtet_log_boundary_count(self.handle),
         )
 
+    def arrays(self, fields=None):
+        """The mesh as numpy arrays (arrays.Arrays): points, cells, boundary, point_data, cell_data.
+        `fields`: the names of those that are wanted; None: all."""
+        from .arrays import arrays_of
+
+        return arrays_of(self, fields)
+
     def copy_points(self, target, count, is_double):
         """Writes 3 numbers a vertex to ctypes' `target`."""
         function = (

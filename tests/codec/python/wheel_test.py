@@ -46,6 +46,11 @@ def hexahedra(n):
     )
 
 
+def _order(points, others):
+    """For each point the number of the nearest of the others."""
+    return [numpy.argmin(((others - point) ** 2).sum(axis=1)) for point in points]
+
+
 def test_hexahedra():
     mesh, told = hexahedra(6), []
     log = qtet.simplify(mesh, progress=lambda *step: told.append(step), field_bits=14)
@@ -53,7 +58,17 @@ def test_hexahedra():
     with qtet.open("cube.qtet") as opened:
         opened.refine(opened.info.levels - 1)
         assert opened.counts()[1] in (5 * 216, 6 * 216), opened.counts()
-        assert {field.name for field in opened.fields} == {b"T", b"Flag", b"Part"}
+        arrays = opened.arrays()
+        assert arrays.points.shape == (343, 3) and arrays.boundary.shape == (2 * 6 * 36, 3)
+        assert abs(arrays.points - mesh.points[_order(arrays.points, mesh.points)]).max() < 1e-3
+        assert arrays.point_data["T"].dtype == numpy.float32
+        assert set(arrays.point_data["Flag"]) == {0, 1}
+        assert sorted(set(arrays.cell_data["Part"])) == list(range(216))
+        corners = arrays.points[arrays.cells]
+        edges = corners[:, 1:] - corners[:, :1]
+        assert abs(abs(numpy.linalg.det(edges)).sum() / 6 - 216) < 0.1
+        assert set(opened.arrays(["T"]).point_data) == {"T"}
+        assert "no field" in raised(qtet.QtetError, lambda: opened.arrays(["U"]))
     assert qtet.simplify(mesh, path="two.qtet", field_bits=14) == "two.qtet"
     assert pathlib.Path("two.qtet").read_bytes() == log
     large = hexahedra(30)

@@ -1,0 +1,79 @@
+"""The present mesh of a log as numpy arrays."""
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+
+import numpy
+
+from .log import POINT, Log, QtetError
+
+__all__ = ["Arrays", "arrays_of"]
+
+# The content of a slot whose chunk has not arrived (qtet.h, "Sizes").
+_NO_POINT = 0xFFFFFFFF
+
+
+@dataclass
+class Arrays:
+    """points      (n, 3) float64, in the input's unit
+    cells       (m, 4) int32: the points of each tetrahedron
+    boundary    (k, 3) int32: the points of each triangle, seen from outside against the clock
+    point_data  {name: (n,) or (n, components)} in the input's types; NaN where a value is missing
+    cell_data   {name: (m,) or (m, components)}
+    """
+
+    points: numpy.ndarray
+    cells: numpy.ndarray
+    boundary: numpy.ndarray
+    point_data: dict[str, numpy.ndarray]
+    cell_data: dict[str, numpy.ndarray]
+
+
+def _copied(address, count, width):
+    """Indices out of the library's memory."""
+    if count == 0:
+        return numpy.empty((0, width), "uint32")
+    packed = ctypes.string_at(address, 4 * width * count)
+    return numpy.frombuffer(packed, "uint32").reshape(-1, width)
+
+
+def _field(log, number):
+    info = log.fields[number]
+    kind = info.type.decode()
+    count = log.field_count(number)
+    is_double = kind != "float32"
+    values = numpy.empty(count, "float64" if is_double else "float32")
+    if count:
+        log.copy_field(number, values.ctypes.data_as(ctypes.c_void_p), count, is_double)
+    values = values.astype(kind, copy=False)
+    return values.reshape(-1, info.components) if info.components > 1 else values
+
+
+def arrays_of(log: Log, fields=None) -> Arrays:
+    """The log's present mesh, as refine() made it; `fields`: the names of those that are wanted,
+    None: all. Raises QtetError for a name that the log does not have."""
+    names = [info.name.decode(errors="replace") for info in log.fields]
+    if fields is not None and not set(fields) <= set(names):
+        raise QtetError(f"the log has no field {sorted(set(fields) - set(names))}; it has {names}")
+    vertices, tetrahedra, triangles = log.counts()
+    points = numpy.empty((vertices, 3))
+    if vertices:
+        log.copy_points(points.ctypes.data_as(ctypes.c_void_p), 3 * vertices, True)
+    cells = _copied(log.c.qtet_log_tetrahedra(log.handle), tetrahedra, 4)
+    boundary = _copied(log.c.qtet_log_boundary(log.handle), triangles, 3)
+    # Logs of the layout `regions` have empty slots between their bands.
+    lattice = _copied(log.c.qtet_log_lattice_points(log.handle), vertices, 3)
+    is_point, is_cell = (lattice != _NO_POINT).any(axis=1), cells.any(axis=1)
+    numbers = numpy.cumsum(is_point, dtype="int32") - 1
+    out = Arrays(
+        points[is_point], numbers[cells[is_cell]], numbers[boundary[boundary.any(axis=1)]], {}, {}
+    )
+    for number, (name, info) in enumerate(zip(names, log.fields)):
+        if fields is not None and name not in fields:
+            continue
+        if info.association == POINT:
+            out.point_data[name] = _field(log, number)[is_point]
+        else:
+            out.cell_data[name] = _field(log, number)[is_cell]
+    return out
