@@ -6,14 +6,13 @@
 // others have a published folder: one sends its compressed files, the other knows no coding, as
 // nginx by default.
 
-import {execFileSync} from 'node:child_process';
 import {cpSync, mkdirSync, rmSync} from 'node:fs';
 import {basename, join} from 'node:path';
 import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
-import {makeLog, Server} from './programs.mjs';
+import {makeLog} from './programs.mjs';
 import {SlowLine} from './slow_line.mjs';
-import {hostFolder} from './static_host.mjs';
+import {threeHosts} from './three_hosts.mjs';
 
 const {values: options, positionals} = parseArgs({
   allowPositionals: true,
@@ -62,24 +61,10 @@ function watch() {
 }
 
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
-const server = new Server(options.bin, folder, options.viewer);
-await server.start();
-const site = join(options.out, 'site');
-rmSync(site, {recursive: true, force: true});
-const logs = names.map((name) => join(folder, `${name}.qtet`));
-execFileSync(join(options.bin, 'qtet'), ['publish', site, ...logs, '--viewer', options.viewer]);
-const coded = await hostFolder(site, {nginx: false, codings: true});
-const plain = await hostFolder(site, {nginx: false});
-// The first visitor waits for the server to draw the poster; measured is a later one.
-for (const name of names)
-  await (
-    await fetch(`${server.url}v1/meshes/${encodeURIComponent(name)}/poster.webp`)
-  ).arrayBuffer();
-const hosts = [
-  ['qtet-server', server.port],
-  ['published, compressed', coded.port],
-  ['published, not compressed', plain.port],
-];
+const hosts = await threeHosts({
+  ...options,
+  logs: names.map((name) => join(folder, `${name}.qtet`)),
+});
 
 async function measure(port, path) {
   const line = await SlowLine.open(port, {
@@ -114,7 +99,7 @@ async function measure(port, path) {
 
 console.log('| mesh | host | text | poster | base | bytes before it |\n|---|---|---|---|---|---|');
 for (const name of names)
-  for (const [what, port] of hosts) {
+  for (const {what, port} of hosts) {
     const runs = [];
     for (let i = 0; i < Number(options.times); ++i)
       runs.push(await measure(port, `?mesh=${encodeURIComponent(name)}`));
@@ -134,6 +119,4 @@ for (const name of names)
     console.log(`| ${cells.join(' | ')} |`);
     if (runs.some(({warnings}) => warnings > 0)) console.log('(warnings about preloads)');
   }
-server.kill();
-coded.close();
-plain.close();
+for (const host of hosts) host.close();
