@@ -10,6 +10,7 @@
 
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
+#include "simplify/commands/provided_log.h"
 #include "simplify/commands/tool_main.h"
 #include "simplify/read/process/guarded_folder.h"
 
@@ -17,16 +18,6 @@ namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The mesh's name in the URL: letters that need no quoting there.
-std::string meshName(const fs::path& file) {
-  std::string name = file.stem().string();
-  for (char& c : name)
-    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-          (c == '.' && &c != name.data())))
-      c = '_';
-  return name.empty() ? "mesh" : name;
-}
 
 /// qtet-server beside this program, else what PATH has.
 std::string serverProgram() {
@@ -127,31 +118,6 @@ void followServer(int words, const std::string& name, bool open, Console& consol
   }
 }
 
-/// Puts the log of `input` into the folder. That is the file itself under another name, a copy
-/// where the folder is on another disk, or a log made of a mesh. (A symbolic link would not do: the
-/// server follows none out of its folder.)
-int provideLog(const fs::path& input, const fs::path& log, const ParsedWords& parsed,
-               Console& console) {
-  if (input.extension() == ".qtet") {
-    std::error_code code;
-    fs::create_hard_link(fs::canonical(input, code), log, code);
-    if (code) fs::copy_file(input, log, code);
-    if (!code) return kExitOk;
-    return reportFailure({ErrorCode::kIo,
-                          "cannot put " + input.string() + " into " + log.parent_path().string() +
-                              ": " + code.message(),
-                          Error::kNoOffset},
-                         false, console);
-  }
-  std::ostream nowhere(nullptr);
-  Console quiet = {nowhere, console.err,   console.errIsTerminal,
-                   false,   console.quiet, console.verbose};
-  Words words = readWordsOf(parsed);
-  words.insert(words.end(),
-               {input.string(), "-o", log.string(), "--fields", parsed.get<std::string>("fields")});
-  return runSimplify(words, quiet);
-}
-
 }  // namespace
 
 int runView(const Words& words, Console& console) {
@@ -175,12 +141,6 @@ int runView(const Words& words, Console& console) {
   if (parsed.helped(console)) return kExitOk;
   const fs::path input = parsed.get<std::string>("FILE");
   const std::string port = std::to_string(parsed.integer("port", 0, 65535));
-  std::error_code code;
-  if (!fs::is_regular_file(input, code))
-    return reportFailure(
-        {ErrorCode::kNotFound, "there is no file " + input.string() + "; give a mesh or a log",
-         Error::kNoOffset},
-        false, console);
   const GuardedFolder folder("view");
   if (folder.failure())
     return reportFailure({ErrorCode::kIo,
@@ -188,7 +148,7 @@ int runView(const Words& words, Console& console) {
                               "); let TMPDIR name one with room",
                           Error::kNoOffset},
                          false, console);
-  const std::string name = meshName(input);
+  const std::string name = meshNameOf(input);
   if (const int made = provideLog(input, folder.path() / (name + ".qtet"), parsed, console);
       made != kExitOk)
     return made;

@@ -14,7 +14,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Command, 14> kCommands{{
+constexpr std::array<Command, 15> kCommands{{
     {"sample", "make a mesh to try things with", runSample, true},
     {"check", "say what is wrong with a mesh, and what simplify would do about it", runCheck, false,
      Command::Pipe::kMesh},
@@ -30,6 +30,8 @@ constexpr std::array<Command, 14> kCommands{{
      Command::Pipe::kLog},
     {"push", "send a log to a server", runPush, true},
     {"publish", "make a folder for any web server: the viewer and logs", runPublish, true},
+    {"page", "make one HTML file of the viewer and a mesh or a log", runPage, true,
+     Command::Pipe::kMesh},
     {"view", "show a mesh or a log in the browser", runView, false, Command::Pipe::kMesh},
     {"completion", "print what makes a shell complete qtet's words", runCompletion},
     {"manual", "write the manual pages", runManual, true},
@@ -58,6 +60,7 @@ void printHelp(std::ostream& out) {
          "  qtet verify fin.qtet --against fin.vtu\n"
          "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
          "  qtet publish site fin.qtet\n"
+         "  qtet page fin.qtet -o fin.html\n"
          "\nexit codes: 0 done, 1 an input or a file is at fault, 2 the command line is\n";
 }
 

@@ -77,6 +77,7 @@ int runAddField(const Words& words, Console& console);
 int runRemoveField(const Words& words, Console& console);
 int runPush(const Words& words, Console& console);
 int runPublish(const Words& words, Console& console);
+int runPage(const Words& words, Console& console);
 int runView(const Words& words, Console& console);
 int runCompletion(const Words& words, Console& console);
 int runManual(const Words& words, Console& console);

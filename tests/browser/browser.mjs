@@ -305,14 +305,12 @@ function watchEvents(mark) {
   performance.mark(mark);
   const seen = {pictures: 0, events: []};
   window.qtetSeen = seen;
-  document.addEventListener('DOMContentLoaded', () => {
-    const viewer = document.querySelector('qtet-viewer');
-    for (const type of ['load', 'refine', 'progress', 'complete', 'error']) {
-      viewer.addEventListener(type, (event) => {
-        if (type === 'load' || type === 'refine') ++seen.pictures;
-        if (type !== 'progress')
-          seen.events.push({type, at: performance.now(), bytes: event.detail?.bytes});
-      });
-    }
-  });
+  const listen = (event) => {
+    const {type, target, detail} = event;
+    if (target.localName !== 'qtet-viewer') return;
+    if (type === 'load' || type === 'refine') ++seen.pictures;
+    if (type !== 'progress') seen.events.push({type, at: performance.now(), bytes: detail?.bytes});
+  };
+  for (const type of ['load', 'refine', 'progress', 'complete', 'error'])
+    document.addEventListener(type, listen, true);
 }

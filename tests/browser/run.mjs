@@ -14,6 +14,7 @@ import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {lineChecks} from './line_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
+import {pageChecks} from './page_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
 import {posterChecks} from './poster_checks.mjs';
@@ -45,7 +46,7 @@ const lists = {
   checks,
   element: {...elementChecks, ...lineChecks},
   transport: transportChecks,
-  publish: {...publishChecks, ...posterChecks},
+  publish: {...publishChecks, ...posterChecks, ...pageChecks},
   volume: volumeChecks,
   edge: edgeChecks,
   legend: {

@@ -7,7 +7,7 @@ import {Server} from './programs.mjs';
 import {hostFolder} from './static_host.mjs';
 
 /**
- * [{what, port, close}] of a qtet-server and two hosts of the published folder: one sends its
+ * [{what, port, close}] of a qtet-server and two hosts of the published folder. One sends its
  * compressed files, the other knows no coding, as nginx by default. The logs lie in one folder.
  */
 export async function threeHosts({bin, viewer, out, logs}) {

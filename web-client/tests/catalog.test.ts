@@ -1,5 +1,5 @@
 import {afterEach, expect, test, vi} from 'vitest';
-import {fetchCatalog, isMeshList} from '../viewer/page/catalog';
+import {fetchCatalog, isLogFile, isMeshList, meshOfLog} from '../viewer/page/catalog';
 
 const answer = (meshes: unknown): void => {
   vi.stubGlobal(
@@ -35,4 +35,13 @@ test('aServersListHasNoneBecauseItsAddressesAreKnown', async () => {
     {id: 'fin', tetrahedra: 7, fields: [], firstField: ''},
   ]);
   expect(vi.mocked(fetch).mock.calls[0]![0]).toBe('https://a.org/v1/meshes');
+});
+
+test('a file in memory has its name behind the address', () => {
+  const log = new URL('blob:null/4f5abc87-9397-4bbe#my%20part.qtet');
+  expect(isLogFile(log)).toBe(true);
+  expect(isMeshList(log)).toBe(false);
+  expect(meshOfLog(log)).toBe('my part');
+  expect(isMeshList(new URL('blob:null/4f5abc87-9397-4bbe#index.json'))).toBe(true);
+  expect(isLogFile(new URL('blob:null/4f5abc87-9397-4bbe'))).toBe(false);
 });

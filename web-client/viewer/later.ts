@@ -22,7 +22,11 @@ import type {Pictures} from './picture/pictures';
 
 export interface LaterHost extends ActionsHost, PanelsHost {
   readonly range: ShownRange | null;
-  readonly stream: {readonly state: StreamState; choose(mesh: string): void};
+  readonly stream: {
+    readonly state: StreamState;
+    choose(mesh: string): void;
+    openFile(file: File): void;
+  };
   readonly notices: {end(code: string): void};
 }
 
@@ -129,7 +133,7 @@ export class Later {
     }
   }
 
-  /** A picture that is dropped opens its view. */
+  /** A log that is dropped is shown. A picture opens its view. */
   private takeDrops(): void {
     const {element} = this.page;
     const {signal} = this.ends;
@@ -146,6 +150,7 @@ export class Later {
         const [file] = event.dataTransfer?.files ?? [];
         if (!file) return;
         event.preventDefault();
+        if (file.name.endsWith('.qtet')) return this.host.stream.openFile(file);
         void this.loadPictures().then((pictures) => pictures?.open(file));
       },
       {signal},

@@ -18,7 +18,9 @@ const viewer = document.createElement('qtet-viewer');
 /** `qtet publish` puts it into the page: where the list of the folder's meshes is. */
 const published = document.querySelector<HTMLMetaElement>('meta[name=qtet-src]');
 if (published) viewer.setAttribute('src', published.content);
-const query = new URLSearchParams(location.search);
+/** A page that holds its mesh may hold its first view, too: `qtet page --view`. */
+const view = document.querySelector<HTMLMetaElement>('meta[name=qtet-view]')?.content ?? '';
+const query = new URLSearchParams(location.search || view);
 for (const name of ['src', 'transport', ...kViewAttributes]) {
   const value = query.get(name);
   if (value !== null && value !== '') viewer.setAttribute(name, value);
@@ -27,12 +29,18 @@ viewer.unknown = [...query.keys()];
 /** Browsers allow a few hundred changes of the address in half a minute. A slider makes more. */
 const kRestMs = 300;
 let timer: ReturnType<typeof setTimeout> | undefined;
+const src = viewer.getAttribute('src');
 const remember = (): void => {
-  const view = viewer.view;
+  // No address leads to a file that was dropped.
+  if (viewer.getAttribute('src') !== src) return;
   const origin = ['src', 'transport'].flatMap((name) =>
     query.get(name) ? [[name, query.get(name)!] as const] : [],
   );
-  history.replaceState(null, '', linkTo(location.href, new Map([...origin, ...view])));
+  try {
+    history.replaceState(null, '', linkTo(location.href, new Map([...origin, ...viewer.view])));
+  } catch {
+    // A page within another one (srcdoc) has no address of its own.
+  }
 };
 for (const type of ['camera-change', 'view-change']) {
   viewer.addEventListener(type, () => {

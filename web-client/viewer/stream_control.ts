@@ -102,14 +102,27 @@ export class StreamControl {
 
   /** Opens another mesh. The attributes of this one end. */
   choose(mesh: string): void {
-    this.isChoosing = true;
-    for (const name of kOfOneMesh) this.page.write(name, null);
-    this.page.write('mesh', mesh);
-    this.isChoosing = false;
+    this.leave(mesh);
     // A list that lacks it may be old; otherwise opening says what there is.
     if (!this.catalog.some(({id}) => id === mesh)) return void this.open();
     this.menu.fill(this.catalog, mesh);
     this.openMesh(mesh);
+  }
+
+  /** Opens a log of this machine. It stays here. */
+  openFile(file: File): void {
+    this.leave(null);
+    const {element} = this.page;
+    const before = element.getAttribute('src') ?? '';
+    element.setAttribute('src', `${URL.createObjectURL(file)}#${encodeURIComponent(file.name)}`);
+    if (before.startsWith('blob:')) URL.revokeObjectURL(before.replace(/#.*/, ''));
+  }
+
+  private leave(mesh: string | null): void {
+    this.isChoosing = true;
+    for (const name of kOfOneMesh) this.page.write(name, null);
+    this.page.write('mesh', mesh);
+    this.isChoosing = false;
   }
 
   dispose(): void {
@@ -161,6 +174,7 @@ export class StreamControl {
       url: file === undefined ? streamUrl(base) : '',
       log: file ?? logUrl(base, mesh),
       firstBytes: entry?.firstBytes,
+      chunks: entry?.chunks,
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
       fields,

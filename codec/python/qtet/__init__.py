@@ -7,6 +7,7 @@
         log.refine(0)
         print(log.counts())
     qtet.view("part.vtu")  # in the browser of this machine
+    qtet.show(grid, field="Heat")  # in a notebook's cell
 
 Opening needs libqtet.so alone, simplify numpy as well, and qtet.vtk VTK's Python modules."""
 from __future__ import annotations
@@ -18,9 +19,10 @@ from .log import Log, QtetError, version
 
 if TYPE_CHECKING:
     from .hosting import serve, view
+    from .notebook import page, show
     from .simplifier import Cancelled, simplify
 
-__all__ = ["Cancelled", "Log", "QtetError", "open", "serve", "simplify", "view"]
+__all__ = ["Cancelled", "Log", "QtetError", "open", "page", "serve", "show", "simplify", "view"]
 
 
 def open(source: str | os.PathLike[str]) -> Log:
@@ -38,6 +40,10 @@ def __getattr__(name):
         from . import hosting
 
         return getattr(hosting, name)
+    if name in ("page", "show"):
+        from . import notebook
+
+        return getattr(notebook, name)
     if name == "__version__":
         return version()
     raise AttributeError(f"module 'qtet' has no attribute {name!r}")

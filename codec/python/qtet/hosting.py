@@ -160,7 +160,7 @@ def _log_name(path):
     return re.sub(r"[^A-Za-z0-9.-]", "_", stem).lstrip(".") or "mesh"
 
 
-def _as_log(source, folder, options, told):
+def log_of(source, folder, options=(), told=False):
     """The path of a log: the file itself, or what is made of a mesh or of bytes in `folder`.
     `options`: words for `qtet simplify`; `told`: it may print its notes."""
     if isinstance(source, (bytes, bytearray, memoryview)):
@@ -194,7 +194,7 @@ def serve(
     owned = tempfile.TemporaryDirectory(prefix="qtet-")
     try:
         folder = pathlib.Path(owned.name)
-        logs = [_as_log(source, folder, options, told) for source in sources]
+        logs = [log_of(source, folder, options, told) for source in sources]
         tool.run(["publish", folder / "site", *logs, "--plain"])
         return Server(folder / "site", port, owned)
     except BaseException:

@@ -96,6 +96,19 @@ def test_meshio_and_vtk():
     return None
 
 
+def test_show():
+    shown = qtet.show("box.qtet", field="Scalar", clip="x:0.5", height=300)
+    text = shown._repr_html_()
+    assert text.startswith('<iframe srcdoc="') and "height: 300px" in text
+    assert "field=Scalar&amp;amp;clip=x%3A0.5" in text, "the view"
+    assert "bytes" in repr(shown) and len(shown.page) < 1_000_000
+    cut = qtet.show(hexahedra(24), max_bytes=len(shown.page) + 8000)
+    assert "it holds" in cut.told and len(cut.page) <= len(shown.page) + 8000
+    qtet.page(pathlib.Path("box.vtu"), "box.html")
+    assert pathlib.Path("box.html").read_text().startswith("<!doctype html>")
+    assert "nothing.qtet" in raised(qtet.QtetError, lambda: qtet.show("nothing.qtet"))
+
+
 def answer(server, path, method="GET", **headers):
     connection = http.client.HTTPConnection(server.url.split("/")[2], timeout=20)
     connection.request(method, path, headers=headers)

@@ -44,7 +44,8 @@ qtet=$PWD/alone/bin/qtet
   "$qtet" simplify box.vtu -o box.qtet -q
   "$bin/qtet" simplify box.vtu -o other.qtet -q
   cmp box.qtet other.qtet || fail "its log is another one"
-  "$qtet" info box.qtet | grep -q '3,072 tetrahedra' || fail "info says something else"
+  "$qtet" info box.qtet >words
+  grep -q '3,072 tetrahedra' words || fail "info says something else"
   "$qtet" verify box.qtet --against box.vtu >/dev/null
   "$qtet" extract box.qtet --level 0 -o coarse.vtk -q
   "$qtet" convert box.vtu -o box.msh -q
@@ -60,7 +61,8 @@ qtet=$PWD/alone/bin/qtet
   TMPDIR=$PWD/temporary "$qtet" view box.vtu --no-open >address 2>words &
   view=$!
   for _ in $(seq 200); do [[ -s address ]] && break || sleep 0.1; done
-  curl -fsS --max-time 20 "$(cat address)index.json" | grep -q '"box"' || fail "view shows no box"
+  curl -fsS --max-time 20 "$(cat address)index.json" >words
+  grep -q '"box"' words || fail "view shows no box"
   kill -TERM $view
   wait $view || fail "view ends with $?"
   [[ -z $(ls -A temporary) ]] || fail "view leaves $(ls temporary)"

@@ -23,7 +23,7 @@ TEST_F(Tool, helpAndVersionSucceed) {
   EXPECT_EQ(help.code, 0);
   for (const char* command :
        {"sample", "check", "convert", "simplify", "info", "extract", "add-field", "remove-field",
-        "verify", "push", "publish", "view", "completion", "manual"}) {
+        "verify", "push", "publish", "page", "view", "completion", "manual"}) {
     EXPECT_NE(help.out.find(command), std::string::npos);
     const Ran own = run(std::string(command) + " --help");
     EXPECT_EQ(own.code, 0);

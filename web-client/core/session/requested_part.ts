@@ -19,12 +19,15 @@ export class RequestedPart {
   fields: readonly number[] = [];
   limit: Limit = kFull;
   view: ViewRequest = kNoViewRequest;
+  /** The chunks that the log's copy holds. */
+  private chunks = Infinity;
 
   constructor(private readonly assembler: Assembler) {}
 
-  begin({fields, limit}: Source): void {
+  begin({fields, limit, chunks = Infinity}: Source): void {
     this.names = fields;
     this.limit = limit;
+    this.chunks = chunks;
   }
 
   /** Must be called before another log: its fields and surfaces may be elsewhere. */
@@ -75,12 +78,16 @@ export class RequestedPart {
 
   /** Where the limit lies; null means at the end, or unknown. */
   get target(): Target | null {
-    return this.assembler.target(this.limit, this.fields);
+    const target = this.assembler.target(this.limit, this.fields);
+    const {chunks} = this;
+    if (chunks === Infinity || (target && target.chunks <= chunks)) return target;
+    return {chunks, level: this.assembler.manifest?.levels.at(-1)?.level ?? 0};
   }
 
   /** Only the head says which fields there are or where the limit lies. */
   get needsHead(): boolean {
-    return !this.assembler.manifest && (this.names === null || this.limit.kind !== 'full');
+    const mayEnd = this.limit.kind !== 'full' || this.chunks < Infinity;
+    return !this.assembler.manifest && (this.names === null || mayEnd);
   }
 
   /** The leading chunks, by default all, are here with the fields. */
@@ -100,9 +107,10 @@ export class RequestedPart {
     return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunkCount);
   }
 
-  /** The decoded mesh has reached the limit. Without a limit this is never true. */
+  /** The decoded mesh has reached the limit, or the end of a cut log. */
   get isReached(): boolean {
     const {codec, manifest} = this.assembler;
+    if (manifest && codec.chunksApplied >= this.chunks) return true;
     if (this.limit.kind === 'full' || !manifest || codec.chunksApplied === 0) return false;
     const {statistics, fields} = this;
     const error = errorOfLevel(manifest.levels, statistics.level, fields);

@@ -65,9 +65,9 @@ export class RangeSource implements BlockSource {
 
   async head(signal: AbortSignal): Promise<Uint8Array> {
     const header = await this.file.read(0, kHeaderBytes, signal);
-    if (header.length === 0) throw emptyFile(this.file.url);
+    if (header.length === 0) throw emptyFile(this.file.place);
     if (!kMagic.every((byte, i) => header[i] === byte)) {
-      throw new QtetError('bad-magic', `${this.file.url} is no qtet log. Is the address right?`);
+      throw new QtetError('bad-magic', `${this.file.place} is no qtet log. Is it the right one?`);
     }
     return this.file.read(0, headBytesOf(header), signal);
   }

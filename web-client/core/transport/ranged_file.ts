@@ -65,6 +65,8 @@ export class RangedFile {
   /** All of a file without ranges is here. */
   private ended = false;
   private readonly firstBytes: number;
+  /** Percent-encoded; empty for a file with an address. */
+  private readonly fileName: string;
   private waiting: {to: number; resolve: () => void; reject: (thrown: unknown) => void}[] = [];
 
   /** `firstBytes`: what the first request asks for. */
@@ -74,7 +76,13 @@ export class RangedFile {
     firstBytes = kFirstBytes,
   ) {
     this.url = url;
+    this.fileName = /^blob:.*#(.+)$/.exec(url)?.[1] ?? '';
     this.firstBytes = Math.min(kMaxFirstBytes, Math.max(kMinFirstBytes, firstBytes));
+  }
+
+  /** Its address for people, or its name if it was dropped on the page. */
+  get place(): string {
+    return decodeURIComponent(this.fileName) || this.url;
   }
 
   /**

@@ -19,6 +19,8 @@ export interface LogAddress {
   log: string;
   /** The length of the log's prefix that the first picture takes, where a list says it. */
   firstBytes?: number | undefined;
+  /** So many leading chunks are there, of a log that was cut; without it all. */
+  chunks?: number | undefined;
   /** `auto`: whatever works. */
   transport: 'auto' | TransportKind;
   /**

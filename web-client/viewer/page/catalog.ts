@@ -15,6 +15,8 @@ export interface MeshEntry {
   log?: string;
   /** The length of its prefix that the first picture takes, from a published list. */
   firstBytes?: number;
+  /** So many of its chunks are there, from the list of a page that holds a cut log. */
+  chunks?: number;
 }
 
 /** Throws a QtetError whose text says what to do. `token` is empty if the server asks for none. */
@@ -52,25 +54,35 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
     firstField: typeof mesh.firstField === 'string' ? mesh.firstField : '',
     ...(isList && {log: new URL(String(mesh.links?.log), url).href}),
     ...(isList && Number.isInteger(mesh.firstBytes) && {firstBytes: Number(mesh.firstBytes)}),
+    ...(isList && Number.isInteger(mesh.chunks) && {chunks: Number(mesh.chunks)}),
   }));
 }
 
 /** An entry as it arrives: no member has been checked. */
 type Listed = Partial<Record<keyof MeshEntry, unknown>> & {links?: {log?: unknown}};
 
+/** The path; of something in memory (blob:) the name behind the #. */
+function nameIn({protocol, pathname, hash}: URL): string {
+  return protocol === 'blob:' ? hash : pathname;
+}
+
 /** Whether the address names a list that `qtet publish` made. */
 export function isMeshList(base: URL): boolean {
-  return base.pathname.endsWith('.json');
+  return nameIn(base).endsWith('.json');
 }
 
 /** Whether the address names a log on any web server. */
 export function isLogFile(base: URL): boolean {
-  return base.pathname.endsWith('.qtet');
+  return nameIn(base).endsWith('.qtet');
 }
 
 /** The file's name, as a mesh's id. */
 export function meshOfLog(base: URL): string {
-  return decodeURIComponent(base.pathname.replace(/^.*\//, '').replace(/\.qtet$/, ''));
+  return decodeURIComponent(
+    nameIn(base)
+      .replace(/^.*[/#]/, '')
+      .replace(/\.qtet$/, ''),
+  );
 }
 
 /** The address of a server's log as a file. */

@@ -1,0 +1,127 @@
+// `qtet page`: one HTML file with the viewer and a log in it.
+#include <boost/program_options.hpp>
+#include <charconv>
+#include <iomanip>
+#include <sstream>
+
+#include "codec/files/atomic_file.h"
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/command_read.h"
+#include "simplify/commands/provided_log.h"
+#include "simplify/commands/tool_main.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/publish/publish_site.h"
+#include "simplify/publish/single_page.h"
+#include "simplify/read/process/guarded_folder.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<SinglePage> pageOf(const fs::path& folder, const fs::path& log, const fs::path& viewer,
+                          const SinglePageOptions& options) {
+  const fs::path site = folder / "site";
+  const Result<PublishedSite> made = publishSite(site, viewer, {log}, Codings::kNone);
+  if (!made) return std::unexpected(made.error());
+  return singlePage(site, options);
+}
+
+/// 5000000, 500k or 5M. Throws UsageError.
+std::optional<std::uint64_t> maxBytesOf(const ParsedWords& parsed) {
+  if (!parsed.has("max-bytes")) return std::nullopt;
+  const auto word = parsed.get<std::string>("max-bytes");
+  std::uint64_t number = 0;
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const std::string_view unit(end, word.data() + word.size());
+  const std::uint64_t factor = unit.empty() ? 1 : unit == "k" ? 1000 : unit == "M" ? 1000000 : 0;
+  if (code != std::errc() || factor == 0 || number == 0 || number > kMaxPageBytes)
+    throw UsageError("--max-bytes takes a number of bytes, as 5000000, 500k or 5M, and not '" +
+                     word + "'");
+  return number * factor;
+}
+
+std::string percent(double share) {
+  std::ostringstream out;
+  out << std::setprecision(3) << 100 * share << " %";
+  return out.str();
+}
+
+/// "it holds 20,145 of 212,544 tetrahedra: boundary within 0.3 % of the diagonal, T rms 0.2 %".
+Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
+  const Result<OpenedLog> log = openLog(path);
+  if (!log) return std::unexpected(log.error());
+  const std::vector<ManifestLevel>& levels = log->manifest.levels;
+  const ManifestLevel* held = &levels.front();
+  const LevelError* error = nullptr;
+  for (const ManifestLevel& level : levels) {
+    if (level.chunk >= chunks) break;
+    held = &level;
+    if (level.error) error = &*level.error;
+  }
+  std::string out = "; it holds " + grouped(held->tetrahedra) + " of " +
+                    grouped(levels.back().tetrahedra) + " tetrahedra";
+  if (error == nullptr) return out;
+  out += ": boundary within " + percent(error->boundaryDistance()) + " of the diagonal";
+  for (std::size_t f = 0; f < error->fields.size(); ++f)
+    out += ", " + fieldKey(log->manifest, f) + " rms " + percent(error->fields[f].rms);
+  return out;
+}
+
+}  // namespace
+
+int runPage(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("output,o", po::value<std::string>()->required(),
+                        "required: the page to write, NAME.html")(
+      "viewer", po::value<std::string>(),
+      "the viewer's files; without it those installed with qtet-server")(
+      "view", po::value<std::string>()->default_value(""),
+      "what it shows first, as behind the ? of the viewer's address: 'field=p&clip=x:0.5'")(
+      "max-bytes", po::value<std::string>(),
+      "cut the log so that the page is no larger: 5000000, 500k, 5M")(
+      "fields", po::value<std::string>()->default_value("all"),
+      "of a mesh: all, none, or names between commas, as `qtet simplify --fields` takes them");
+  addReadOptions(options);
+  const ParsedWords parsed(
+      words,
+      {"page", "page FILE -o OUT.html [options]",
+       "Writes one HTML file with the viewer and the log in it, to send by mail or to keep. It "
+       "opens by a double click, on a phone too,\n"
+       "and fetches nothing. A mesh becomes a log first, by the usual settings of qtet simplify.",
+       "  qtet page part.vtu -o part.html\n  qtet page part.qtet -o part.html --max-bytes 5M\n"},
+      options, {"FILE"});
+  if (parsed.helped(console)) return kExitOk;
+  const fs::path input = parsed.get<std::string>("FILE");
+  const fs::path output = parsed.get<std::string>("output");
+  if (Status checked = checkOutput(output, ".html", input); !checked)
+    return reportFailure(checked.error(), false, console);
+  const SinglePageOptions wanted{maxBytesOf(parsed), parsed.get<std::string>("view")};
+  const GuardedFolder folder("page");
+  if (folder.failure())
+    return reportFailure({ErrorCode::kIo,
+                          "no temporary folder can be made (" + folder.failure().message() +
+                              "); let TMPDIR name one with room",
+                          Error::kNoOffset},
+                         false, console);
+  const fs::path log = folder.path() / (meshNameOf(input) + ".qtet");
+  if (const int made = provideLog(input, log, parsed, console); made != kExitOk) return made;
+  const fs::path viewer =
+      parsed.has("viewer") ? fs::path(parsed.get<std::string>("viewer")) : installation().viewer;
+  const Result<SinglePage> page = pageOf(folder.path(), log, viewer, wanted);
+  if (!page) return reportFailure(page.error(), false, console);
+  std::string held;
+  if (page->chunks > 0) {
+    const Result<std::string> part = heldPart(log, page->chunks);
+    if (!part) return reportFailure(part.error(), false, console);
+    held = *part;
+  }
+  if (Status written = writeFileAtomically(output, page->bytes); !written)
+    return reportFailure(written.error(), false, console);
+  console.out << console.shown(output.string()) << ": " << grouped(page->bytes.size()) << " bytes"
+              << console.shown(held) << "\n";
+  return kExitOk;
+}
+
+}  // namespace qtet

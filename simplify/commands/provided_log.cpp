@@ -1,0 +1,45 @@
+#include "simplify/commands/provided_log.h"
+
+#include "simplify/commands/command_read.h"
+
+namespace qtet {
+
+namespace fs = std::filesystem;
+
+std::string meshNameOf(const fs::path& file) {
+  std::string name = file.stem().string();
+  for (char& c : name)
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+          (c == '.' && &c != name.data())))
+      c = '_';
+  return name.empty() ? "mesh" : name;
+}
+
+int provideLog(const fs::path& input, const fs::path& log, const ParsedWords& parsed,
+               Console& console) {
+  std::error_code code;
+  if (!fs::is_regular_file(input, code))
+    return reportFailure(
+        {ErrorCode::kNotFound, "there is no file " + input.string() + "; give a mesh or a log",
+         Error::kNoOffset},
+        false, console);
+  if (input.extension() == ".qtet") {
+    fs::create_hard_link(fs::canonical(input, code), log, code);
+    if (code) fs::copy_file(input, log, code);
+    if (!code) return kExitOk;
+    return reportFailure({ErrorCode::kIo,
+                          "cannot put " + input.string() + " into " + log.parent_path().string() +
+                              ": " + code.message(),
+                          Error::kNoOffset},
+                         false, console);
+  }
+  std::ostream nowhere(nullptr);
+  Console quiet = {nowhere, console.err,   console.errIsTerminal,
+                   false,   console.quiet, console.verbose};
+  Words words = readWordsOf(parsed);
+  words.insert(words.end(),
+               {input.string(), "-o", log.string(), "--fields", parsed.get<std::string>("fields")});
+  return runSimplify(words, quiet);
+}
+
+}  // namespace qtet

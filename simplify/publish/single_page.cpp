@@ -1,0 +1,233 @@
+#include "simplify/publish/single_page.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "codec/log/log_index.h"
+#include "codec/picture/poster_page.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/publish/compressed.h"
+#include "simplify/publish/site_folder.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFirstScript = "single_page.js";
+/// Scripts, workers and WebAssembly from the page itself; no address outside of it.
+constexpr const char* kPolicy =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+    "script-src 'unsafe-inline' blob: 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
+    "img-src data: blob:; connect-src blob:; worker-src blob:\">\n  ";
+/// For the list of meshes and what stands around the parts, in bytes.
+constexpr std::uint64_t kOverhead = 8 << 10;
+
+Result<std::string> readText(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string out{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad())
+    return fail(ErrorCode::kIo, path.string() + " cannot be read; check its permissions");
+  return out;
+}
+
+ByteView viewOf(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// RFC 4648, section 4.
+std::string base64(ByteView bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t here = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < 3; ++i) bits = bits << 8 | (i < here ? bytes[at + i] : 0u);
+    for (std::size_t i = 0; i < 4; ++i) out += i <= here ? kDigits[bits >> (18 - 6 * i) & 63] : '=';
+  }
+  return out;
+}
+
+const char* typeOf(const std::string& ending) {
+  if (ending == ".js") return "text/javascript";
+  if (ending == ".wasm") return "application/wasm";
+  if (ending == ".json") return "application/json";
+  if (ending == ".txt") return "text/plain";
+  return ending == ".qtet" ? "application/octet-stream" : nullptr;
+}
+
+/// A script element that no browser runs: the packed file. (A log is compressed already.)
+Result<std::string> partOf(const std::string& name, const std::string& content) {
+  const bool isPacked = !name.ends_with(".qtet");
+  Result<Bytes> packed = isPacked ? gzipped(viewOf(content)) : Bytes();
+  if (!packed) return std::unexpected(packed.error());
+  return "<script type=\"application/octet-stream\" data-name=\"" + htmlEscaped(name) +
+         "\" data-type=\"" + typeOf(fs::path(name).extension().string()) + "\" data-size=\"" +
+         std::to_string(content.size()) + (isPacked ? "\" data-coding=\"gzip" : "") + "\">" +
+         base64(isPacked ? ByteView(*packed) : viewOf(content)) + "</script>\n";
+}
+
+/// Takes the elements that begin with `tag` out, up to `end`. Returns the first one.
+std::string takeOut(std::string& page, std::string_view tag, std::string_view end) {
+  std::string first;
+  for (std::size_t at = 0; (at = page.find(tag, at)) != page.npos;) {
+    const std::size_t behind = std::min(page.find(end, at), page.size() - end.size()) + end.size();
+    if (first.empty()) first = page.substr(at, behind - at);
+    page.erase(at, behind - at);
+  }
+  return first;
+}
+
+/// The value of an attribute; empty without it.
+std::string attributeOf(const std::string& element, const std::string& name) {
+  const std::size_t at = element.find(name + "=\"");
+  if (at == element.npos) return {};
+  const std::size_t from = at + name.size() + 2;
+  return element.substr(from, element.find('"', from) - from);
+}
+
+void insertBefore(std::string& page, std::string_view tag, const std::string& text) {
+  if (const std::size_t at = page.find(tag); at != page.npos) page.insert(at, text);
+}
+
+/// The poster itself instead of its address.
+Status inlinePoster(std::string& page, const fs::path& site, const std::string& poster) {
+  const std::size_t image = page.find("<img slot=\"poster\"");
+  const std::size_t at = image == page.npos ? image : page.find(" src=\"", image);
+  if (at == page.npos) return {};
+  const Result<std::string> picture = readText(site / poster);
+  if (!picture) return std::unexpected(picture.error());
+  const std::size_t from = at + std::string_view(" src=\"").size();
+  page.replace(from, page.find('"', from) - from,
+               "data:image/webp;base64," + base64(viewOf(*picture)));
+  return {};
+}
+
+Result<nlohmann::json> listOf(const fs::path& site) {
+  const Result<std::string> text = readText(site / kSiteList);
+  if (!text) return std::unexpected(text.error());
+  return nlohmann::json::parse(*text);
+}
+
+/// Whether a file of the folder is of no use in the page, or stands in it otherwise.
+bool isLeftOut(const std::string& name) {
+  const std::string ending = fs::path(name).extension().string();
+  const bool isKnown = ending == ".css" || ending == ".svg" || typeOf(ending) != nullptr;
+  return !isKnown || ending == ".qtet" || name == kSiteList || name == "README.txt" ||
+         name == "first.js" || name == kFirstScript;
+}
+
+/// A page in pieces: what stands in its head, and the packed files.
+struct Pieces {
+  std::string styles, icon, parts;
+  std::size_t count = 0;
+
+  Status add(const std::string& name, const std::string& content) {
+    const std::string ending = fs::path(name).extension().string();
+    if (ending == ".css") {
+      styles += "<style>" + content + "</style>\n  ";
+    } else if (ending == ".svg") {
+      icon = "<link rel=\"icon\" href=\"data:image/svg+xml;base64," + base64(viewOf(content)) +
+             "\">\n  ";
+    } else {
+      const Result<std::string> part = partOf(name, content);
+      if (!part) return std::unexpected(part.error());
+      parts += *part;
+      ++count;
+    }
+    return {};
+  }
+};
+
+/// How many leading chunks end within so many bytes of the log.
+std::uint32_t chunksWithin(const LogIndex& index, std::uint64_t bytes) {
+  std::uint32_t count = 0;
+  for (const ChunkEntry& chunk : index.chunks) {
+    if (chunk.offset + chunk.size() > bytes) break;
+    ++count;
+  }
+  return count;
+}
+
+/// Cuts the log to the chunks with which the page has at most `most` bytes, `other` of them without
+/// it. Returns their number, 0 for all. The list is told.
+Result<std::uint32_t> cutLog(std::string& content, const fs::path& path, std::uint64_t most,
+                             std::uint64_t other, nlohmann::json& list) {
+  const std::uint64_t room = most > other ? (most - other) / 4 * 3 : 0;
+  if (content.size() <= room) return 0;
+  const Result<OpenedLog> log = openLog(path);
+  if (!log) return std::unexpected(log.error());
+  const LogIndex& index = log->file.index();
+  if (index.layout == Layout::kRegions)
+    return fail(ErrorCode::kBadInput,
+                "a log of the layout `regions` cannot be cut; make one of the layout `stream`");
+  const std::uint32_t chunks = chunksWithin(index, room);
+  if (chunks == 0) {
+    const std::uint64_t base = index.chunks.front().offset + index.chunks.front().size();
+    return fail(ErrorCode::kLimitExceeded,
+                "the smallest page of this log, with the base mesh, has " +
+                    std::to_string(other + (base + 3) / 3 * 4) + " bytes; allow so many");
+  }
+  const ChunkEntry& last = index.chunks[chunks - 1];
+  content.resize(last.offset + last.size());
+  list["meshes"][0]["chunks"] = chunks;
+  return chunks;
+}
+
+}  // namespace
+
+Result<SinglePage> singlePage(const fs::path& site, const SinglePageOptions& options) {
+  Result<nlohmann::json> list = listOf(site);
+  Result<std::string> page = readText(site / "index.html");
+  const Result<std::string> first = readText(site / kFirstScript);
+  if (!list) return std::unexpected(list.error());
+  if (!page) return std::unexpected(page.error());
+  if (!first)
+    return fail(ErrorCode::kBadInput,
+                std::string("the viewer has no ") + kFirstScript + "; give that of this version");
+  const std::string entry =
+      fs::path(attributeOf(takeOut(*page, "<script", "</script>"), "src")).filename().string();
+  takeOut(*page, "<link", ">");
+
+  Pieces pieces;
+  std::string logName;
+  for (const std::string name : list->at("files")) {
+    if (name.ends_with(".qtet")) logName = name;
+    std::error_code unknown;
+    if (isLeftOut(name) || !fs::exists(site / name, unknown)) continue;
+    const Result<std::string> content = readText(site / name);
+    if (!content) return std::unexpected(content.error());
+    if (Status added = pieces.add(name, *content); !added) return std::unexpected(added.error());
+  }
+  const std::string poster = list->at("meshes").at(0).at("links").at("poster");
+  if (Status inlined = inlinePoster(*page, site, poster); !inlined)
+    return std::unexpected(inlined.error());
+
+  Result<std::string> log = readText(site / logName);
+  if (!log) return std::unexpected(log.error());
+  const std::uint64_t most = std::min(options.maxBytes.value_or(kMaxPageBytes), kMaxPageBytes);
+  const std::uint64_t other = page->size() + first->size() + pieces.parts.size() +
+                              pieces.styles.size() + pieces.icon.size() +
+                              htmlEscaped(options.view).size() + kOverhead;
+  const Result<std::uint32_t> chunks = cutLog(*log, site / logName, most, other, *list);
+  if (!chunks) return std::unexpected(chunks.error());
+  if (Status added = pieces.add(kSiteList, list->dump()); !added)
+    return std::unexpected(added.error());
+  if (Status added = pieces.add(logName, *log); !added) return std::unexpected(added.error());
+
+  insertBefore(*page, "<meta name", kPolicy);
+  if (!options.view.empty())
+    insertBefore(*page, "</head>",
+                 "<meta name=\"qtet-view\" content=\"" + htmlEscaped(options.view) + "\">\n  ");
+  insertBefore(*page, "</head>",
+               pieces.icon + pieces.styles + "<script data-parts=\"" +
+                   std::to_string(pieces.count) + "\" data-entry=\"" + entry + "\">" + *first +
+                   "</script>\n  ");
+  insertBefore(*page, "</body>", pieces.parts);
+  return SinglePage{Bytes(page->begin(), page->end()), *chunks};
+}
+
+}  // namespace qtet

@@ -1,0 +1,77 @@
+// `qtet page`: one HTML file of the viewer and a log.
+#include "simplify/publish/single_page.h"
+#include "tests/simplify/commands/tool_run.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Page : public Tool {
+ protected:
+  void SetUp() override {
+    makeBoxLog();
+    fs::create_directories(folder_ / "viewer/assets");
+    put("viewer/index.html",
+        "<!doctype html><head><meta name=\"a\"><link rel=\"stylesheet\" href=\"./assets/a.css\">"
+        "<script type=\"module\" src=\"./assets/app-1a2b.js\"></script></head><body>"
+        "<!--mesh-poster--><!--mesh-name--></body>");
+    put("viewer/assets/app-1a2b.js", std::string(2000, 'a') + "()");
+    put("viewer/assets/a.css", "a{b:c}");
+    put("viewer/single_page.js", "first()");
+  }
+  void put(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  Ran page(const std::string& words) { return run("page --viewer viewer " + words); }
+};
+
+TEST_F(Page, holdsTheViewerTheLogAndItsPoster) {
+  ASSERT_EQ(page("box.qtet -o box.html").code, 0);
+  const std::string html = contentOf(folder_ / "box.html");
+  for (const char* part : {"default-src 'none'", "<style>a{b:c}</style>",
+                           "<script data-parts=\"3\" data-entry=\"app-1a2b.js\">first()</script>",
+                           "data-name=\"assets/app-1a2b.js\"", "data-name=\"index.json\"",
+                           "data-name=\"box.qtet\"", "src=\"data:image/webp;base64,UklGR", ">box<"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  for (const char* other : {"<link", "href=", "http:", "https:", " src=\"./"})
+    EXPECT_EQ(html.find(other), std::string::npos) << other;
+  ASSERT_EQ(page("box.qtet -o again.html").code, 0);
+  EXPECT_EQ(contentOf(folder_ / "again.html"), html);
+  ASSERT_EQ(page("box.vtu -o mesh.html --fields none --view 'clip=x:0.5&map=\"'").code, 0);
+  EXPECT_NE(contentOf(folder_ / "mesh.html").find("content=\"clip=x:0.5&amp;map=&quot;\""),
+            std::string::npos);
+}
+
+TEST_F(Page, cutsTheLogToTheBytesThatAreAllowed) {
+  const std::string tooSmall = page("box.qtet -o box.html --max-bytes 1").err;
+  const std::size_t at = tooSmall.find("has ");
+  ASSERT_NE(at, std::string::npos) << tooSmall;
+  const auto least = std::stoull(tooSmall.substr(at + 4));
+  EXPECT_EQ(page("box.qtet -o box.html --max-bytes " + std::to_string(least - 4)).code, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "box.html"));
+  for (const std::uint64_t most : {least, least + 1}) {
+    const Ran ran = page("box.qtet -o box.html --max-bytes " + std::to_string(most));
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("of 3,072 tetrahedra: boundary within"), std::string::npos) << ran.out;
+    EXPECT_LE(fs::file_size(folder_ / "box.html"), most);
+  }
+  EXPECT_EQ(page("box.qtet -o box.html --max-bytes 5M").out.find("tetrahedra"), std::string::npos);
+}
+
+TEST_F(Page, whatItCannotTakeIsToldBeforeAnythingIsWritten) {
+  for (const char* words :
+       {"box.qtet -o box.htm", "box.qtet -o box.html --max-bytes 5x",
+        "box.qtet -o box.html --max-bytes 0", "box.qtet -o box.html --max-bytes -1", "box.qtet"})
+    EXPECT_EQ(page(words).code, 2) << words;
+  put("broken.qtet", "no log");
+  for (const char* words : {"nothing.vtu -o box.html", "broken.qtet -o box.html"})
+    EXPECT_EQ(page(words).code, 1) << words;
+  fs::remove(folder_ / "viewer/single_page.js");
+  const Ran old = page("box.qtet -o box.html");
+  EXPECT_NE(old.err.find("single_page.js; give that of this version"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "box.html"));
+}
+
+}  // namespace
+}  // namespace qtet
