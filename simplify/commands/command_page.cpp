@@ -73,7 +73,7 @@ Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
 int runPage(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("output,o", po::value<std::string>()->required(),
+  options.add_options()("output,o", po::value<std::string>(),
                         "required: the page to write, NAME.html")(
       "viewer", po::value<std::string>(),
       "the viewer's files; without it those installed with qtet-server")(

@@ -12,8 +12,8 @@ namespace qtet {
 /// quoting there.
 [[nodiscard]] std::string meshNameOf(const std::filesystem::path& file);
 
-/// Makes the file `log` of `input`. That is the file itself under another name, a copy where the
-/// folder is on another disk, or a log made of a mesh by `qtet simplify`. `parsed` has --fields and
+/// Makes the file `log` of `input`. A log is the same file under another name, or a copy where the
+/// folder is on another disk. A mesh becomes one by `qtet simplify`. `parsed` has --fields and
 /// the options of addReadOptions. (A symbolic link would not do: the server follows none out of its
 /// folder.) Returns an exit code; what went wrong is reported.
 [[nodiscard]] int provideLog(const std::filesystem::path& input, const std::filesystem::path& log,

@@ -1,5 +1,5 @@
-// One file with the viewer and a log in it, opened from the disk without a network, and a log that
-// is dropped on the page.
+// One file with the viewer and a log in it, opened from the disk without a network. A log that is
+// dropped on the page.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';

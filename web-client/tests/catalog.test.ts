@@ -37,7 +37,7 @@ test('aServersListHasNoneBecauseItsAddressesAreKnown', async () => {
   expect(vi.mocked(fetch).mock.calls[0]![0]).toBe('https://a.org/v1/meshes');
 });
 
-test('a file in memory has its name behind the address', () => {
+test('aFileInMemoryHasItsNameBehindTheAddress', () => {
   const log = new URL('blob:null/4f5abc87-9397-4bbe#my%20part.qtet');
   expect(isLogFile(log)).toBe(true);
   expect(isMeshList(log)).toBe(false);

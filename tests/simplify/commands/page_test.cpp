@@ -29,10 +29,11 @@ class Page : public Tool {
 TEST_F(Page, holdsTheViewerTheLogAndItsPoster) {
   ASSERT_EQ(page("box.qtet -o box.html").code, 0);
   const std::string html = contentOf(folder_ / "box.html");
-  for (const char* part : {"default-src 'none'", "<style>a{b:c}</style>",
-                           "<script data-parts=\"3\" data-entry=\"app-1a2b.js\">first()</script>",
-                           "data-name=\"assets/app-1a2b.js\"", "data-name=\"index.json\"",
-                           "data-name=\"box.qtet\"", "src=\"data:image/webp;base64,UklGR", ">box<"})
+  for (const char* part :
+       {"default-src 'none'", "<style>a{b:c}</style>",
+        "<script data-parts=\"3\" data-entry=\"app-1a2b.js\">first()</script>",
+        "data-name=\"assets/app-1a2b.js\"", "data-name=\"index.json\"", "data-name=\"box.qtet\"",
+        "src=\"data:image/webp;base64,UklGR", "\">box"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
   for (const char* other : {"<link", "href=", "http:", "https:", " src=\"./"})
     EXPECT_EQ(html.find(other), std::string::npos) << other;
