@@ -21,7 +21,7 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .PHONY: help setup build build-checked demo demo-port demo-log test test-units test-system check
 .PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
-.PHONY: bench-server wheel clean
+.PHONY: bench-server wheel release clean
 .DEFAULT_GOAL := help
 
 help:
@@ -40,6 +40,8 @@ help:
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make fresh                 continuous integration in a new Debian 12 (needs root and mmdebstrap)
 	make deb                   Debian packages: build/release/packages/*.deb
+	make release               wheel, Debian packages, npm package, sources, their bill of materials
+	                           and checksums: build/release/dist
 	make wheel                 the Python package: build/release/wheels/*.whl
 	make test-deb              install, use and remove them in a Debian of their own (needs root)
 	make build                 build only: build/release/bin/qtet and qtet-server
@@ -308,6 +310,11 @@ fresh:
 
 wheel:
 	@python3 .packaging/python_backend.py build/release/wheels
+
+release: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging \
+  qtet_package_library
+release: setup build
+	@python3 .packaging/release.py $(BUILD)/dist
 
 deb: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging
 deb: setup build

@@ -4,6 +4,7 @@ The wheel fits every Python 3.9 and later on this processor. The modules reach t
 ctypes.
 The same sources and build machine give the same bytes."""
 import base64
+import gzip
 import hashlib
 import io
 import os
@@ -22,7 +23,7 @@ NAME = "qtet"
 # Members carry one date: that of the last change, or this one, the earliest that a zip can hold.
 _EARLIEST = 315532800
 # Debian's packages of what is linked statically into the library.
-_LINKED = (
+LINKED = (
     "libdraco-dev libboost-program-options-dev libhdf5-dev libaec-dev libexpat1-dev libdeflate-dev "
     "liblz4-dev liblzma-dev libwebp-dev libbrotli-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev"
 ).split()
@@ -33,7 +34,7 @@ def version():
     return re.search(r"project\(qtet VERSION ([\d.]+)", text).group(1)
 
 
-def _date():
+def date():
     """Seconds: SOURCE_DATE_EPOCH, or the last commit's."""
     told = os.environ.get("SOURCE_DATE_EPOCH")
     if not told:
@@ -69,7 +70,7 @@ def _tag():
 def _notices():
     """The licences of what the library holds, as the build machine's packages state them."""
     parts = []
-    for package in _LINKED:
+    for package in LINKED:
         path = pathlib.Path("/usr/share/doc") / package / "copyright"
         if not path.is_file():
             raise SystemExit(f"{path} is missing; a wheel is made on Debian, after make setup")
@@ -128,11 +129,11 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     members, own = _members()
     members.append((own, _record(members, own), False))
     name = f"{NAME}-{version()}-{_tag()}.whl"
-    date = time.gmtime(_date())[:6]
+    day = time.gmtime(date())[:6]
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for path, content, executable in members:
-            info = zipfile.ZipInfo(path, date)
+            info = zipfile.ZipInfo(path, day)
             info.compress_type = zipfile.ZIP_DEFLATED
             info.external_attr = (0o100755 if executable else 0o100644) << 16
             wheel.writestr(info, content)
@@ -153,14 +154,14 @@ def build_sdist(sdist_directory, config_settings=None):
         capture_output=True,
     ).stdout
     out = io.BytesIO()
-    with tarfile.open(fileobj=io.BytesIO(files)) as given, tarfile.open(
-        fileobj=out, mode="w:gz", format=tarfile.PAX_FORMAT
-    ) as made:
+    with tarfile.open(fileobj=io.BytesIO(files)) as given, gzip.GzipFile(
+        fileobj=out, mode="wb", mtime=date()
+    ) as packed, tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as made:
         for member in given:
             made.addfile(member, given.extractfile(member) if member.isfile() else None)
         text = _metadata().encode()
         info = tarfile.TarInfo(f"{name}/PKG-INFO")
-        info.size, info.mtime = len(text), _date()
+        info.size, info.mtime = len(text), date()
         made.addfile(info, io.BytesIO(text))
     (pathlib.Path(sdist_directory) / f"{name}.tar.gz").write_bytes(out.getvalue())
     return f"{name}.tar.gz"

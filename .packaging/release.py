@@ -1,0 +1,122 @@
+"""Everything that a release hands out, in one folder: wheel, Debian packages, npm package, sources,
+a bill of materials (CycloneDX 1.5), and the checksums of all.
+
+   release.py FOLDER      after make build; the same commit and build give the same bytes
+"""
+import hashlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import python_backend as backend
+
+ROOT, BUILD = backend.ROOT, backend.BUILD
+VIEWER_OF_NPM = ("uplot",)
+
+
+def run(*words, cwd=ROOT):
+    subprocess.run([str(word) for word in words], check=True, cwd=cwd, stdout=sys.stderr)
+
+
+def npm_package(folder):
+    """Modules, types and papers, packed by npm."""
+    made = BUILD / "npm-release"
+    shutil.rmtree(made, ignore_errors=True)
+    made.mkdir(parents=True)
+    wasm = BUILD / "web-client/qtet-codec.wasm"
+    run("node", ROOT / "web-client/pack.mjs", wasm, made)
+    run("npm", "pack", "--silent", "--pack-destination", folder, cwd=made)
+    # Sources have the same name with another ending.
+    (folder / f"qtet-{backend.version()}.tgz").rename(folder / f"qtet-npm-{backend.version()}.tgz")
+
+
+def debian_packages(folder):
+    shutil.rmtree(BUILD / "packages", ignore_errors=True)
+    run("cpack", "-G", "DEB", cwd=BUILD)
+    for package in sorted((BUILD / "packages").glob("*.deb")):
+        shutil.copy(package, folder)
+
+
+def _debian_component(package):
+    query = ("dpkg-query", "-W", "-f", "${Version}\t${source:Package}\t${Homepage}", package)
+    done = subprocess.run(query, check=True, capture_output=True, text=True)
+    version, source, homepage = done.stdout.split("\t")
+    component = {
+        "type": "library",
+        "name": source,
+        "version": version,
+        "purl": f"pkg:deb/debian/{package}@{version}?distro=debian-12",
+    }
+    if homepage:
+        component["externalReferences"] = [{"type": "website", "url": homepage}]
+    return component
+
+
+def _npm_component(name):
+    own = json.loads((ROOT / f"web-client/node_modules/{name}/package.json").read_text())
+    return {
+        "type": "library",
+        "name": name,
+        "version": own["version"],
+        "licenses": [{"license": {"id": own["license"]}}],
+        "purl": f"pkg:npm/{name}@{own['version']}",
+    }
+
+
+def bill_of_materials():
+    """What is part of the files beside our own sources: linked statically, or bundled."""
+    linked = [_debian_component(package) for package in backend.LINKED]
+    bundled = [_npm_component(name) for name in VIEWER_OF_NPM]
+    version = backend.version()
+    return {
+        "bomFormat": "CycloneDX",
+        "specVersion": "1.5",
+        "version": 1,
+        "metadata": {
+            "component": {
+                "type": "application",
+                "name": backend.NAME,
+                "version": version,
+                "licenses": [{"license": {"id": "Apache-2.0"}}],
+            }
+        },
+        "components": sorted(linked + bundled, key=lambda part: (part["name"], part["purl"])),
+    }
+
+
+def check_versions(folder):
+    """Every file says the same version."""
+    npm = json.loads((ROOT / "web-client/package.json").read_text())["version"]
+    if npm != backend.version():
+        raise SystemExit(f"web-client/package.json says {npm}, CMakeLists.txt {backend.version()}")
+    others = [path.name for path in folder.iterdir() if backend.version() not in path.name]
+    if others:
+        raise SystemExit(f"{', '.join(others)}: another version than {backend.version()}")
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1]).resolve()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    os.environ["SOURCE_DATE_EPOCH"] = str(backend.date())
+    backend.build_wheel(folder)
+    backend.build_sdist(folder)
+    npm_package(folder)
+    debian_packages(folder)
+    bill = json.dumps(bill_of_materials(), indent=2, ensure_ascii=False)
+    (folder / f"{backend.NAME}-{backend.version()}.cdx.json").write_text(bill + "\n")
+    check_versions(folder)
+    lines = [
+        f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n"
+        for path in sorted(folder.iterdir())
+    ]
+    (folder / "SHA256SUMS").write_text("".join(lines))
+    for path in sorted(folder.iterdir()):
+        print(f"{path.stat().st_size:>10} {path}")
+
+
+main()
