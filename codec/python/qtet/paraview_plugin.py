@@ -1,5 +1,6 @@
 """ParaView plugin: opens qtet logs, files (File > Open) and URLs (Sources > Qtet URL), with a
-slider for the level or the error.
+slider for the level or the error. Saves grids as logs, and as pages for the browser (File > Save
+Data).
 
 Tools > Manage Plugins > Load New... > paraview_plugin.py. It needs the package qtet that it is part
 of, and libqtet.so (QTET_LIBRARY names it where it is not installed)."""
@@ -182,3 +183,57 @@ class QtetUrl(_QtetSource):
     @smproperty.dataarrayselection(name="Fields")
     def GetFields(self):
         return self._arrays
+
+
+class _QtetWriter(VTKPythonAlgorithmBase):
+    """Saves a grid with all of its arrays, by the usual settings of `qtet simplify`."""
+
+    def __init__(self):
+        super().__init__(nInputPorts=1, nOutputPorts=0, inputType="vtkUnstructuredGrid")
+        self._path = ""
+
+    def SetFileName(self, name):
+        self._path = name or ""
+        self.Modified()
+
+    def RequestData(self, request, inInfo, outInfo):
+        try:
+            self._save(vtkUnstructuredGrid.GetData(inInfo[0], 0), self._path)
+        except (qtet_vtk.QtetError, OSError, ValueError) as error:
+            print(f"qtet: {error}", file=sys.stderr)
+            return 0
+        return 1
+
+    def Write(self):
+        self.Modified()
+        self.Update()
+
+
+@smproxy.writer(extensions="qtet", file_description="qtet log", support_reload=False)
+@smproperty.input(name="Input", port_index=0)
+@smdomain.datatype(dataTypes=["vtkUnstructuredGrid"], composite_data_supported=False)
+class QtetLogWriter(_QtetWriter):
+    @smproperty.stringvector(name="FileName", panel_visibility="never")
+    @smdomain.filelist()
+    def SetFileName(self, name):
+        super().SetFileName(name)
+
+    def _save(self, grid, path):
+        from qtet import simplify
+
+        simplify(grid, path=path)
+
+
+@smproxy.writer(extensions="html", file_description="qtet page", support_reload=False)
+@smproperty.input(name="Input", port_index=0)
+@smdomain.datatype(dataTypes=["vtkUnstructuredGrid"], composite_data_supported=False)
+class QtetPageWriter(_QtetWriter):
+    @smproperty.stringvector(name="FileName", panel_visibility="never")
+    @smdomain.filelist()
+    def SetFileName(self, name):
+        super().SetFileName(name)
+
+    def _save(self, grid, path):
+        from qtet import page
+
+        page(grid, path)

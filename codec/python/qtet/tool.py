@@ -56,7 +56,10 @@ def run(words, told=False, goes_on=None):
     environment["PYTHONPATH"] = os.pathsep.join(
         filter(None, [str(_PACKAGE.parent), environment.get("PYTHONPATH")])
     )
-    command = [sys.executable, "-m", "qtet"] if _is_in_library() else [shutil.which("qtet")]
+    # Within ParaView the program is no Python.
+    is_python = pathlib.Path(sys.executable or "").name.startswith("python")
+    python = sys.executable if is_python else shutil.which("python3")
+    command = [python, "-m", "qtet"] if _is_in_library() else [shutil.which("qtet")]
     if command[0] is None:
         raise QtetError("the program qtet is not found; install the package qtet")
     with subprocess.Popen(

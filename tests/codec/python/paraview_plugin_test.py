@@ -89,6 +89,27 @@ def the_slider_begins_at_the_coarsest_level():
         ), "ParaView takes the middle"
 
 
+def a_grid_is_saved_as_a_log_and_as_a_page(module, source, sizes):
+    from qtet import vtk as qtet_vtk
+
+    source.SetLevel(len(sizes) - 1)
+    os.environ["PATH"] = f"{pathlib.Path(program).parent}:{os.environ['PATH']}"
+    OUT.mkdir(parents=True, exist_ok=True)
+    for kind, name in ((module.QtetLogWriter, "saved.qtet"), (module.QtetPageWriter, "saved.html")):
+        writer = kind()
+        writer.SetInputConnection(source.GetOutputPort())
+        writer.SetFileName(str(OUT / name))
+        writer.Write()
+    with qtet_vtk.Log(OUT / "saved.qtet") as log:
+        assert log.level_info(log.last_level).tetrahedra == sizes[-1]
+    assert (OUT / "saved.html").read_text().startswith("<!doctype html>")
+    said = io.StringIO()
+    writer.SetFileName(str(OUT / "no folder" / "saved.html"))
+    with contextlib.redirect_stderr(said):
+        writer.Write()
+    assert "no folder" in said.getvalue(), said.getvalue()
+
+
 def without_its_module_paraview_is_skipped():
     """A pvbatch that says what Debian's says, and ends with 0."""
     pvbatch = OUT / "stand-in" / "pvbatch"
@@ -105,8 +126,10 @@ def without_its_module_paraview_is_skipped():
     assert ran.returncode == 77 and "skipped" in ran.stdout, ran
 
 
-opened = a_log_opens_at_its_coarsest_level(plugin())
+module = plugin()
+opened = a_log_opens_at_its_coarsest_level(module)
 a_level_that_there_is_none_of_is_an_error(*opened)
+a_grid_is_saved_as_a_log_and_as_a_page(module, *opened)
 the_slider_begins_at_the_coarsest_level()
 without_its_module_paraview_is_skipped()
 print("the plugin opens logs at their coarsest level and refuses levels that there are none of")
