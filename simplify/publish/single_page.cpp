@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* kFirstScript = "single_page.js";
 /// Scripts, workers and WebAssembly from the page itself; no address outside of it.
 constexpr const char* kPolicy =
-    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; base-uri 'none'; "
     "script-src 'unsafe-inline' blob: 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
     "img-src data: blob:; connect-src blob:; worker-src blob:\">\n  ";
 /// For the list of meshes and what stands around the parts, in bytes.

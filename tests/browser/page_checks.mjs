@@ -163,7 +163,8 @@ async function showsALogThatIsDropped({server, browser, logs}) {
   await drop('other.qtet', Buffer.from('no log at all, and far too short'));
   const alert = viewer.page.getByRole('alert');
   await alert.waitFor();
-  assert.match(await alert.innerText(), /^other\.qtet is no qtet log/);
+  assert.match(await alert.innerText(), /neither a log nor a PNG picture/);
+  await expectWhole(viewer, logs.box);
 }
 
 export const pageChecks = {

@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {embedSnippet, linkTo} from '../viewer/settings/share';
+import {embedSnippet, linkTo, publicAddress} from '../viewer/settings/share';
 
 test('aLinkHoldsTheViewAndNothingOfWhatStoodThereBefore', () => {
   const link = linkTo(
@@ -14,6 +14,11 @@ test('aLinkHoldsTheViewAndNothingOfWhatStoodThereBefore', () => {
     ['clip', 'x:0.5 -z:1'],
   ]);
   expect(link).toMatch(/^http:\/\/a\.org\/v\/\?/);
+});
+
+test('aPageOnADiskTellsNoFolders', () => {
+  expect(publicAddress('file:///home/me/secret/part.html?mesh=part')).toBe('file:///');
+  expect(publicAddress('http://a.org/v/?mesh=a')).toBe('http://a.org/v/?mesh=a');
 });
 
 test('theLinesForAnotherPageAreOneFrameWhateverTheNames', () => {

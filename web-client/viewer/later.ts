@@ -1,6 +1,7 @@
 // The parts of a viewer that the first picture does not need. They are loaded behind it.
 
 import type {View} from '../webgl/view';
+import {beginsLog} from '../core/protocol/magic';
 import type {StreamState} from '../core/session/worker_messages';
 import styles from './controls.css?inline';
 import {kCards, kControls, kCube, kDialogs} from './controls_template';
@@ -150,11 +151,16 @@ export class Later {
         const [file] = event.dataTransfer?.files ?? [];
         if (!file) return;
         event.preventDefault();
-        if (file.name.endsWith('.qtet')) return this.host.stream.openFile(file);
-        void this.loadPictures().then((pictures) => pictures?.open(file));
+        void this.take(file);
       },
       {signal},
     );
+  }
+
+  private async take(file: File): Promise<void> {
+    const first = new Uint8Array(await file.slice(0, 8).arrayBuffer());
+    if (beginsLog(first)) this.host.stream.openFile(file);
+    else await (await this.loadPictures())?.open(file);
   }
 
   /** Must be called after every frame. */

@@ -114,7 +114,8 @@ export class StreamControl {
     this.leave(null);
     const {element} = this.page;
     const before = element.getAttribute('src') ?? '';
-    element.setAttribute('src', `${URL.createObjectURL(file)}#${encodeURIComponent(file.name)}`);
+    const name = file.name.replace(/(\.qtet)?$/, '.qtet');
+    element.setAttribute('src', `${URL.createObjectURL(file)}#${encodeURIComponent(name)}`);
     if (before.startsWith('blob:')) URL.revokeObjectURL(before.replace(/#.*/, ''));
   }
 

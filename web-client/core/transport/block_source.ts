@@ -3,6 +3,7 @@
 
 import {QtetError} from '../protocol/errors';
 import type {LogTable} from '../protocol/log_table';
+import {beginsLog} from '../protocol/magic';
 import {kFirstFieldPart, kStructurePart} from '../protocol/parts';
 import {emptyFile, fetchChecked, RangedFile, type Fetch} from './ranged_file';
 
@@ -27,8 +28,6 @@ export interface BlockSource {
   readonly digest: string;
 }
 
-/** codec/FORMAT.md, "Header": these bytes survive no transfer that treats the file as text. */
-const kMagic = [0x89, 0x51, 0x54, 0x45, 0x54, 0x0d, 0x0a, 0x1a];
 const kHeaderBytes = 64;
 const kManifestBytesAt = 24;
 const kTableBytesAt = 28;
@@ -66,7 +65,7 @@ export class RangeSource implements BlockSource {
   async head(signal: AbortSignal): Promise<Uint8Array> {
     const header = await this.file.read(0, kHeaderBytes, signal);
     if (header.length === 0) throw emptyFile(this.file.place);
-    if (!kMagic.every((byte, i) => header[i] === byte)) {
+    if (!beginsLog(header)) {
       throw new QtetError('bad-magic', `${this.file.place} is no qtet log. Is it the right one?`);
     }
     return this.file.read(0, headBytesOf(header), signal);

@@ -7,7 +7,7 @@ import {find, onClick} from '../page/find';
 import type {Page} from '../page/page';
 import {save} from '../page/save';
 import {setMarkup} from '../page/trusted';
-import {linkTo} from '../settings/share';
+import {linkTo, publicAddress} from '../settings/share';
 import {draw, frameOf, legendOf, type Figure, type Ground, type Looks} from './figure';
 import {withView} from './png_view';
 
@@ -158,7 +158,7 @@ export class PictureDialog {
     const {page} = this;
     const {view} = this.host;
     if (!view) throw new Error('the graphics have not started');
-    const address = linkTo(location.href, page.view);
+    const address = linkTo(publicAddress(location.href), page.view);
     const legend = legendOf(page.root);
     const tiles = await view.render(frameOf(figure, legend, view.canvas));
     try {

@@ -30,7 +30,8 @@ export async function viewIn(file: Blob): Promise<string> {
   if (file.size > kMaxBytes) refuse('The file is larger than any picture of this viewer.');
   const png = new Uint8Array(await file.arrayBuffer());
   const view = new DataView(png.buffer);
-  if (kSignature.some((byte, i) => png[i] !== byte)) refuse('The file is no PNG picture.');
+  if (kSignature.some((byte, i) => png[i] !== byte))
+    refuse('The file is neither a log nor a PNG picture. qtet simplify makes logs of meshes.');
   const keyword = [...bytesOf(kKeyword), 0];
   let at = kSignature.length;
   while (at + kFrameBytes <= png.length) {

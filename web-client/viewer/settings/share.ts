@@ -8,6 +8,11 @@ export function linkTo(page: string, view: ReadonlyMap<string, string>): string 
   return url.href;
 }
 
+/** The page's address for others. That of a page on a disk would tell the names of its folders. */
+export function publicAddress(page: string): string {
+  return page.startsWith('file:') ? 'file:///' : page;
+}
+
 /**
  * HTML for a page on any host: a frame with this page, which loads its worker and its WebAssembly
  * itself.
