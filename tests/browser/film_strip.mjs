@@ -56,18 +56,16 @@ async function sheet(name, titles, rows, heights = titles.map(() => 188)) {
   const page = await browser.blank({viewport: {width: 100, height: 100}});
   const cell = (picture, i) =>
     `<td>${picture ? `<img src="${picture}" style="height:${heights[i]}px">` : '<i></i>'}</td>`;
+  const row = ([title, pictures]) =>
+    `<tr><th colspan="${titles.length}">${title}</th></tr>` +
+    `<tr>${pictures.map(cell).join('')}</tr>`;
   await page.setContent(`<style>
       body { margin: 0; font: 14px system-ui, sans-serif; width: max-content; background: #fff; }
       th { font-weight: 600; text-align: left; padding: 4px; color: #333; }
       i { display: block; width: ${kWidth}px; height: 188px; background: #f2f2f2; }
       td { padding: 2px 4px; } img { display: block; }
     </style><table><tr>${titles.map((title) => `<th>${title}</th>`).join('')}</tr>
-    ${rows
-      .map(
-        ([title, pictures]) =>
-          `<tr><th colspan="${titles.length}">${title}</th></tr><tr>${pictures.map(cell).join('')}</tr>`,
-      )
-      .join('')}</table>`);
+${rows.map(row).join('')}</table>`);
   await page.waitForFunction(() => [...document.images].every((image) => image.complete));
   const path = join(options.out, `${name}.jpg`);
   await page.locator('table').screenshot({path, type: 'jpeg', quality: 80});

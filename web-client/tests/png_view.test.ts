@@ -68,8 +68,8 @@ describe('the address of a view', () => {
     });
 
   test('isRefusedFromOtherFilesByASentence', async () => {
-    await refused(new Blob([]), /no PNG/);
-    await refused(new Blob(['GIF89a and more']), /no PNG/);
+    await refused(new Blob([]), /nor a PNG/);
+    await refused(new Blob(['GIF89a and more']), /nor a PNG/);
     await refused(png(), /holds no view/);
     await refused(png(chunk('tEXt', text('qtet-view', kAddress))), /holds no view/);
     await refused(png(chunk('iTXt', text('qtet-view', '\x01', '', '', 'x'))), /compressed/);
@@ -82,7 +82,7 @@ describe('the address of a view', () => {
     const whole = await bytesOf(withView(png(), kAddress));
     const end = 33 + 12 + 'qtet-view'.length + 5 + Buffer.byteLength(kAddress);
     for (let length = 0; length < end; ++length)
-      await refused(new Blob([whole.slice(0, length)]), length < 8 ? /no PNG/ : /cut off/);
+      await refused(new Blob([whole.slice(0, length)]), length < 8 ? /nor a PNG/ : /cut off/);
     expect(await viewIn(new Blob([whole.slice(0, end)]))).toBe(kAddress);
   });
 
