@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kMaxPageBytes = 256u << 20;
 
 struct SinglePageOptions {
   std::optional<std::uint64_t> maxBytes = std::nullopt;
-  /// What it shows first, as behind the ? of the viewer's address.
+  /// The first view, as behind the ? of the viewer's address.
   std::string view{};
 };
 
