@@ -308,15 +308,15 @@ sanitize: setup build build-checked
 fresh:
 	@.ci/fresh.sh
 
-wheel:
+wheel: setup
 	@python3 .packaging/python_backend.py build/release/wheels
 
-release: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging \
-  qtet_package_library
+DEB_TARGETS := qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging
+release: TARGETS := --target $(DEB_TARGETS) qtet_package_library
 release: setup build
 	@python3 .packaging/release.py $(BUILD)/dist
 
-deb: TARGETS := --target qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging
+deb: TARGETS := --target $(DEB_TARGETS)
 deb: setup build
 	@rm -rf $(BUILD)/packages
 	cd $(BUILD) && cpack -G DEB

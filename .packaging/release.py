@@ -15,11 +15,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import python_backend as backend
 
 ROOT, BUILD = backend.ROOT, backend.BUILD
-VIEWER_OF_NPM = ("uplot",)
 
 
 def run(*words, cwd=ROOT):
     subprocess.run([str(word) for word in words], check=True, cwd=cwd, stdout=sys.stderr)
+
+
+def _client():
+    return json.loads((ROOT / "web-client/package.json").read_text())
 
 
 def npm_package(folder):
@@ -70,7 +73,7 @@ def _npm_component(name):
 def bill_of_materials():
     """What is part of the files beside our own sources: linked statically, or bundled."""
     linked = [_debian_component(package) for package in backend.LINKED]
-    bundled = [_npm_component(name) for name in VIEWER_OF_NPM]
+    bundled = [_npm_component(name) for name in _client()["dependencies"]]
     version = backend.version()
     return {
         "bomFormat": "CycloneDX",
@@ -90,7 +93,7 @@ def bill_of_materials():
 
 def check_versions(folder):
     """Every file says the same version."""
-    npm = json.loads((ROOT / "web-client/package.json").read_text())["version"]
+    npm = _client()["version"]
     if npm != backend.version():
         raise SystemExit(f"web-client/package.json says {npm}, CMakeLists.txt {backend.version()}")
     others = [path.name for path in folder.iterdir() if backend.version() not in path.name]

@@ -1,11 +1,10 @@
 // `qtet page`: one HTML file with the viewer and a log in it.
 #include <boost/program_options.hpp>
 #include <charconv>
-#include <iomanip>
-#include <sstream>
 
 #include "codec/files/atomic_file.h"
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/provided_log.h"
 #include "simplify/commands/tool_main.h"
@@ -41,12 +40,6 @@ std::optional<std::uint64_t> maxBytesOf(const ParsedWords& parsed) {
   return number * factor;
 }
 
-std::string percent(double share) {
-  std::ostringstream out;
-  out << std::setprecision(3) << 100 * share << " %";
-  return out.str();
-}
-
 /// "it holds 20,145 of 212,544 tetrahedra: boundary within 0.3 % of the diagonal, T rms 0.2 %".
 Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
   const Result<OpenedLog> log = openLog(path);
@@ -62,9 +55,9 @@ Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
   std::string out = "; it holds " + grouped(held->tetrahedra) + " of " +
                     grouped(levels.back().tetrahedra) + " tetrahedra";
   if (error == nullptr) return out;
-  out += ": boundary within " + percent(error->boundaryDistance()) + " of the diagonal";
+  out += ": boundary within " + percentText(error->boundaryDistance()) + " of the diagonal";
   for (std::size_t f = 0; f < error->fields.size(); ++f)
-    out += ", " + fieldKey(log->manifest, f) + " rms " + percent(error->fields[f].rms);
+    out += ", " + fieldKey(log->manifest, f) + " rms " + percentText(error->fields[f].rms);
   return out;
 }
 
@@ -99,12 +92,7 @@ int runPage(const Words& words, Console& console) {
     return reportFailure(checked.error(), false, console);
   const SinglePageOptions wanted{maxBytesOf(parsed), parsed.get<std::string>("view")};
   const GuardedFolder folder("page");
-  if (folder.failure())
-    return reportFailure({ErrorCode::kIo,
-                          "no temporary folder can be made (" + folder.failure().message() +
-                              "); let TMPDIR name one with room",
-                          Error::kNoOffset},
-                         false, console);
+  if (Status made = folder.made(); !made) return reportFailure(made.error(), false, console);
   const fs::path log = folder.path() / (meshNameOf(input) + ".qtet");
   if (const int made = provideLog(input, log, parsed, console); made != kExitOk) return made;
   const fs::path viewer =

@@ -142,12 +142,7 @@ int runView(const Words& words, Console& console) {
   const fs::path input = parsed.get<std::string>("FILE");
   const std::string port = std::to_string(parsed.integer("port", 0, 65535));
   const GuardedFolder folder("view");
-  if (folder.failure())
-    return reportFailure({ErrorCode::kIo,
-                          "no temporary folder can be made (" + folder.failure().message() +
-                              "); let TMPDIR name one with room",
-                          Error::kNoOffset},
-                         false, console);
+  if (Status made = folder.made(); !made) return reportFailure(made.error(), false, console);
   const std::string name = meshNameOf(input);
   if (const int made = provideLog(input, folder.path() / (name + ".qtet"), parsed, console);
       made != kExitOk)

@@ -128,9 +128,7 @@ Result<std::unique_ptr<GuardedFolder>> spoolStandardInput(Words& words, std::str
         ErrorCode::kIo,
         "- is the standard input, which is a terminal; send a file into it: qtet ... - <FILE");
   auto folder = std::make_unique<GuardedFolder>("pipe");
-  if (folder->failure())
-    return fail(ErrorCode::kIo, "no temporary folder can be made (" + folder->failure().message() +
-                                    "); let TMPDIR name one with room");
+  if (Status made = folder->made(); !made) return std::unexpected(made.error());
   std::filesystem::path file = folder->path() / (std::string(kPipedFile) + "." + kind);
   if (Status copied = copyTo(file, input, most); !copied) return std::unexpected(copied.error());
   if (ending.empty() && isGzip(file)) {

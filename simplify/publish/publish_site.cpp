@@ -1,7 +1,6 @@
 #include "simplify/publish/publish_site.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "codec/log/log_index.h"
@@ -38,14 +37,6 @@ std::string percentEncoded(const std::string& name) {
     else
       (out += '%') += {kDigits[byte >> 4], kDigits[byte & 15]};
   }
-  return out;
-}
-
-Result<Bytes> readWhole(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  Bytes out{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad())
-    return fail(ErrorCode::kIo, path.string() + " cannot be read; check its permissions");
   return out;
 }
 

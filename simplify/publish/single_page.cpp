@@ -1,7 +1,6 @@
 #include "simplify/publish/single_page.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "codec/log/log_index.h"
@@ -24,13 +23,7 @@ constexpr const char* kPolicy =
 /// For the list of meshes and what stands around the parts, in bytes.
 constexpr std::uint64_t kOverhead = 8 << 10;
 
-Result<std::string> readText(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string out{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad())
-    return fail(ErrorCode::kIo, path.string() + " cannot be read; check its permissions");
-  return out;
-}
+std::string textOf(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 ByteView viewOf(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -60,14 +53,14 @@ const char* typeOf(const std::string& ending) {
 }
 
 /// A script element that no browser runs: the packed file. (A log is compressed already.)
-Result<std::string> partOf(const std::string& name, const std::string& content) {
+Result<std::string> partOf(const std::string& name, ByteView content) {
   const bool isPacked = !name.ends_with(".qtet");
-  Result<Bytes> packed = isPacked ? gzipped(viewOf(content)) : Bytes();
+  Result<Bytes> packed = isPacked ? gzipped(content) : Bytes();
   if (!packed) return std::unexpected(packed.error());
   return "<script type=\"application/octet-stream\" data-name=\"" + htmlEscaped(name) +
          "\" data-type=\"" + typeOf(fs::path(name).extension().string()) + "\" data-size=\"" +
          std::to_string(content.size()) + (isPacked ? "\" data-coding=\"gzip" : "") + "\">" +
-         base64(isPacked ? ByteView(*packed) : viewOf(content)) + "</script>\n";
+         base64(isPacked ? ByteView(*packed) : content) + "</script>\n";
 }
 
 /// Takes the elements that begin with `tag` out, up to `end`. Returns the first one.
@@ -98,16 +91,15 @@ Status inlinePoster(std::string& page, const fs::path& site, const std::string& 
   const std::size_t image = page.find("<img slot=\"poster\"");
   const std::size_t at = image == page.npos ? image : page.find(" src=\"", image);
   if (at == page.npos) return {};
-  const Result<std::string> picture = readText(site / poster);
+  const Result<Bytes> picture = readWhole(site / poster);
   if (!picture) return std::unexpected(picture.error());
   const std::size_t from = at + std::string_view(" src=\"").size();
-  page.replace(from, page.find('"', from) - from,
-               "data:image/webp;base64," + base64(viewOf(*picture)));
+  page.replace(from, page.find('"', from) - from, "data:image/webp;base64," + base64(*picture));
   return {};
 }
 
 Result<nlohmann::json> listOf(const fs::path& site) {
-  const Result<std::string> text = readText(site / kSiteList);
+  const Result<Bytes> text = readWhole(site / kSiteList);
   if (!text) return std::unexpected(text.error());
   return nlohmann::json::parse(*text);
 }
@@ -125,13 +117,12 @@ struct Pieces {
   std::string styles, icon, parts;
   std::size_t count = 0;
 
-  Status add(const std::string& name, const std::string& content) {
+  Status add(const std::string& name, ByteView content) {
     const std::string ending = fs::path(name).extension().string();
     if (ending == ".css") {
-      styles += "<style>" + content + "</style>\n  ";
+      (styles += "<style>").append(content.begin(), content.end()) += "</style>\n  ";
     } else if (ending == ".svg") {
-      icon = "<link rel=\"icon\" href=\"data:image/svg+xml;base64," + base64(viewOf(content)) +
-             "\">\n  ";
+      icon = "<link rel=\"icon\" href=\"data:image/svg+xml;base64," + base64(content) + "\">\n  ";
     } else {
       const Result<std::string> part = partOf(name, content);
       if (!part) return std::unexpected(part.error());
@@ -154,7 +145,7 @@ std::uint32_t chunksWithin(const LogIndex& index, std::uint64_t bytes) {
 
 /// Cuts the log to the chunks with which the page has at most `most` bytes, `other` of them without
 /// it. Returns their number, 0 for all. The list is told.
-Result<std::uint32_t> cutLog(std::string& content, const fs::path& path, std::uint64_t most,
+Result<std::uint32_t> cutLog(Bytes& content, const fs::path& path, std::uint64_t most,
                              std::uint64_t other, nlohmann::json& list) {
   const std::uint64_t room = most > other ? (most - other) / 4 * 3 : 0;
   if (content.size() <= room) return 0;
@@ -181,16 +172,17 @@ Result<std::uint32_t> cutLog(std::string& content, const fs::path& path, std::ui
 
 Result<SinglePage> singlePage(const fs::path& site, const SinglePageOptions& options) {
   Result<nlohmann::json> list = listOf(site);
-  Result<std::string> page = readText(site / "index.html");
-  const Result<std::string> first = readText(site / kFirstScript);
+  const Result<Bytes> viewer = readWhole(site / "index.html");
+  const Result<Bytes> first = readWhole(site / kFirstScript);
   if (!list) return std::unexpected(list.error());
-  if (!page) return std::unexpected(page.error());
+  if (!viewer) return std::unexpected(viewer.error());
   if (!first)
     return fail(ErrorCode::kBadInput,
                 std::string("the viewer has no ") + kFirstScript + "; give that of this version");
+  std::string page = textOf(*viewer);
   const std::string entry =
-      fs::path(attributeOf(takeOut(*page, "<script", "</script>"), "src")).filename().string();
-  takeOut(*page, "<link", ">");
+      fs::path(attributeOf(takeOut(page, "<script", "</script>"), "src")).filename().string();
+  takeOut(page, "<link", ">");
 
   Pieces pieces;
   std::string logName;
@@ -198,36 +190,36 @@ Result<SinglePage> singlePage(const fs::path& site, const SinglePageOptions& opt
     if (name.ends_with(".qtet")) logName = name;
     std::error_code unknown;
     if (isLeftOut(name) || !fs::exists(site / name, unknown)) continue;
-    const Result<std::string> content = readText(site / name);
+    const Result<Bytes> content = readWhole(site / name);
     if (!content) return std::unexpected(content.error());
     if (Status added = pieces.add(name, *content); !added) return std::unexpected(added.error());
   }
   const std::string poster = list->at("meshes").at(0).at("links").at("poster");
-  if (Status inlined = inlinePoster(*page, site, poster); !inlined)
+  if (Status inlined = inlinePoster(page, site, poster); !inlined)
     return std::unexpected(inlined.error());
 
-  Result<std::string> log = readText(site / logName);
+  Result<Bytes> log = readWhole(site / logName);
   if (!log) return std::unexpected(log.error());
   const std::uint64_t most = std::min(options.maxBytes.value_or(kMaxPageBytes), kMaxPageBytes);
-  const std::uint64_t other = page->size() + first->size() + pieces.parts.size() +
+  const std::uint64_t other = page.size() + first->size() + pieces.parts.size() +
                               pieces.styles.size() + pieces.icon.size() +
                               htmlEscaped(options.view).size() + kOverhead;
   const Result<std::uint32_t> chunks = cutLog(*log, site / logName, most, other, *list);
   if (!chunks) return std::unexpected(chunks.error());
-  if (Status added = pieces.add(kSiteList, list->dump()); !added)
+  if (Status added = pieces.add(kSiteList, viewOf(list->dump())); !added)
     return std::unexpected(added.error());
   if (Status added = pieces.add(logName, *log); !added) return std::unexpected(added.error());
 
-  insertBefore(*page, "<meta name", kPolicy);
+  insertBefore(page, "<meta name", kPolicy);
   if (!options.view.empty())
-    insertBefore(*page, "</head>",
+    insertBefore(page, "</head>",
                  "<meta name=\"qtet-view\" content=\"" + htmlEscaped(options.view) + "\">\n  ");
-  insertBefore(*page, "</head>",
+  insertBefore(page, "</head>",
                pieces.icon + pieces.styles + "<script data-parts=\"" +
-                   std::to_string(pieces.count) + "\" data-entry=\"" + entry + "\">" + *first +
-                   "</script>\n  ");
-  insertBefore(*page, "</body>", pieces.parts);
-  return SinglePage{Bytes(page->begin(), page->end()), *chunks};
+                   std::to_string(pieces.count) + "\" data-entry=\"" + entry + "\">" +
+                   textOf(*first) + "</script>\n  ");
+  insertBefore(page, "</body>", pieces.parts);
+  return SinglePage{Bytes(page.begin(), page.end()), *chunks};
 }
 
 }  // namespace qtet

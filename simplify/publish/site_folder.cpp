@@ -120,6 +120,14 @@ SiteFolder::~SiteFolder() {
   if (!hidden_.empty()) fs::remove_all(hidden_, ignored);
 }
 
+Result<Bytes> readWhole(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  Bytes out{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad())
+    return fail(ErrorCode::kIo, path.string() + " cannot be read; check its permissions");
+  return out;
+}
+
 Result<SiteFolder> SiteFolder::begin(const fs::path& place) {
   std::error_code code;
   const Result<fs::path> behind =

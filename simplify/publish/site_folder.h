@@ -14,6 +14,9 @@ namespace qtet {
 /// The folder's list of files, which publishing makes and a later one asks for.
 inline constexpr const char* kSiteList = "index.json";
 
+/// The file's bytes. Error: io (it cannot be read).
+[[nodiscard]] Result<Bytes> readWhole(const std::filesystem::path& path);
+
 /// Written beside its place under a hidden name, which is removed with the object; a process that
 /// is killed leaves `.NAME.XXXXXX`.
 class SiteFolder {

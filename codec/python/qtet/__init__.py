@@ -12,6 +12,7 @@
 Opening needs libqtet.so alone, simplify numpy as well, and qtet.vtk VTK's Python modules."""
 from __future__ import annotations
 
+import importlib
 import os
 from typing import TYPE_CHECKING
 
@@ -30,20 +31,20 @@ def open(source: str | os.PathLike[str]) -> Log:
     return Log(source)
 
 
+# numpy and the rest are imported once they are needed.
+_MODULES = {
+    "Cancelled": "simplifier",
+    "page": "notebook",
+    "serve": "hosting",
+    "show": "notebook",
+    "simplify": "simplifier",
+    "view": "hosting",
+}
+
+
 def __getattr__(name):
-    """numpy is imported once it is needed."""
-    if name in ("simplify", "Cancelled"):
-        from . import simplifier
-
-        return getattr(simplifier, name)
-    if name in ("serve", "view"):
-        from . import hosting
-
-        return getattr(hosting, name)
-    if name in ("page", "show"):
-        from . import notebook
-
-        return getattr(notebook, name)
+    if name in _MODULES:
+        return getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
     if name == "__version__":
         return version()
     raise AttributeError(f"module 'qtet' has no attribute {name!r}")

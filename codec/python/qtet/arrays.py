@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from .log import POINT, Log, QtetError
+from .log import POINT, Log
 
 __all__ = ["Arrays", "arrays_of"]
 
@@ -53,9 +53,7 @@ def _field(log, number):
 def arrays_of(log: Log, fields=None) -> Arrays:
     """The log's present mesh, as refine() made it; `fields`: the names of those that are wanted,
     None: all. Raises QtetError for a name that the log does not have."""
-    names = [info.name.decode(errors="replace") for info in log.fields]
-    if fields is not None and not set(fields) <= set(names):
-        raise QtetError(f"the log has no field {sorted(set(fields) - set(names))}; it has {names}")
+    wanted = log.fields_of(fields)
     vertices, tetrahedra, triangles = log.counts()
     points = numpy.empty((vertices, 3))
     if vertices:
@@ -69,9 +67,7 @@ def arrays_of(log: Log, fields=None) -> Arrays:
     out = Arrays(
         points[is_point], numbers[cells[is_cell]], numbers[boundary[boundary.any(axis=1)]], {}, {}
     )
-    for number, (name, info) in enumerate(zip(names, log.fields)):
-        if fields is not None and name not in fields:
-            continue
+    for number, name, info in wanted:
         if info.association == POINT:
             out.point_data[name] = _field(log, number)[is_point]
         else:

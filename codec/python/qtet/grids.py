@@ -2,10 +2,11 @@
 PyVista, and meshes of meshio."""
 import json
 import struct
+from xml.sax.saxutils import quoteattr
 
 import numpy
 
-__all__ = ["Grid", "grid_of"]
+__all__ = ["Grid", "grid_of", "packed_array"]
 
 # VTK's numbers of volume cells by meshio's names. Both order the nodes alike.
 _NUMBERS = {
@@ -25,6 +26,7 @@ _NUMBERS = {
 }
 _TETRAHEDRON = 10
 _POLYHEDRON = 42
+# Types of numbers that a log has, by VTK's names in .vtu files.
 _VTU_TYPES = {
     "float32": "Float32",
     "float64": "Float64",
@@ -37,6 +39,21 @@ _VTU_TYPES = {
     "uint32": "UInt32",
     "uint64": "UInt64",
 }
+# Types that are stored as a wider one.
+_WIDENED = {"bool": "uint8", "float16": "float32"}
+
+
+def packed_array(values, what):
+    """A packed array of one of the types that a log has, in the machine's order of bytes."""
+    array = numpy.asarray(values)
+    name = array.dtype.newbyteorder("=").name
+    name = _WIDENED.get(name, name)
+    if name not in _VTU_TYPES:
+        raise ValueError(
+            f"{what}: no log has numbers of type {array.dtype}; give floats of 32 or "
+            "64 bits, or integers"
+        )
+    return numpy.ascontiguousarray(array, dtype=name)
 
 
 class Grid:
@@ -60,16 +77,10 @@ class Grid:
 
         def array(name, values):
             nonlocal at
-            values = numpy.ascontiguousarray(values)
-            if values.dtype == bool:
-                values = values.astype("uint8")
-            if values.dtype == numpy.float16:
-                values = values.astype("float32")
-            if values.dtype.name not in _VTU_TYPES:
-                raise ValueError(f"{name}: no log has numbers of type {values.dtype}")
+            values = packed_array(values, f"field {name!r}")
             components = int(numpy.prod(values.shape[1:]))
             text = (
-                f'<DataArray type="{_VTU_TYPES[values.dtype.name]}" Name={_quoted(name)} '
+                f'<DataArray type="{_VTU_TYPES[values.dtype.name]}" Name={quoteattr(str(name))} '
                 f'NumberOfComponents="{components}" format="appended" offset="{at}"/>'
             )
             blocks.append(values)
@@ -100,12 +111,6 @@ class Grid:
                 file.write(struct.pack("<Q", values.nbytes))
                 file.write(memoryview(values).cast("B") if values.size else b"")
             file.write(b"</AppendedData></VTKFile>")
-
-
-def _quoted(text):
-    from xml.sax.saxutils import quoteattr
-
-    return quoteattr(str(text))
 
 
 def grid_of(source):

@@ -288,6 +288,24 @@ class Log:
         number = self._level(self.c.qtet_log_find_field, field.encode())
         return self._level(self.c.qtet_log_level_of_field_error, _u32(number), _f64(bound))
 
+    @property
+    def field_names(self):
+        return [info.name.decode(errors="replace") for info in self.fields]
+
+    def fields_of(self, names=None):
+        """[(number, name, FieldInfo)] of the fields with these names; None: of all. Raises QtetError
+        for a name that the log does not have."""
+        known = self.field_names
+        if names is not None and not set(names) <= set(known):
+            raise QtetError(
+                f"the log has no field {sorted(set(names) - set(known))}; it has {sorted(known)}"
+            )
+        return [
+            (number, name, info)
+            for number, (name, info) in enumerate(zip(known, self.fields))
+            if names is None or name in names
+        ]
+
     def refine(self, level):
         """Makes the mesh that of a level, after fetching what is missing of it."""
         if not 0 <= level <= self.last_level:

@@ -51,8 +51,9 @@ def page(
 
     Raises QtetError."""
     with tempfile.TemporaryDirectory(prefix="qtet-") as folder:
-        log = log_of(source, pathlib.Path(folder))
-        words = ["page", log, "-o", path]
+        # The tool itself makes a log of a file.
+        is_file = isinstance(source, (str, os.PathLike))
+        words = ["page", source if is_file else log_of(source, pathlib.Path(folder)), "-o", path]
         if max_bytes is not None:
             words += ["--max-bytes", str(max_bytes)]
         if view:

@@ -94,8 +94,8 @@ class _QtetSource(VTKPythonAlgorithmBase):
     def _opened(self):
         if self._log is None and self._source:
             self._log = qtet_vtk.Log(self._source)
-            for field in self._log.fields:
-                self._arrays.AddArray(field.name.decode(errors="replace"))
+            for name in self._log.field_names:
+                self._arrays.AddArray(name)
         return self._log
 
     def _chosen_level(self, log):
@@ -139,10 +139,8 @@ class _QtetSource(VTKPythonAlgorithmBase):
             if log is None:
                 return 1
             log.refine(self._chosen_level(log))
-            wanted = {field.name.decode(errors="replace") for field in log.fields}
-            grid = qtet_vtk.grid_of(
-                log, [name for name in wanted if self._arrays.ArrayIsEnabled(name)]
-            )
+            wanted = [name for name in log.field_names if self._arrays.ArrayIsEnabled(name)]
+            grid = qtet_vtk.grid_of(log, wanted)
         except (qtet_vtk.QtetError, OSError) as error:
             return self._failed(error)
         vtkUnstructuredGrid.GetData(outInfo, 0).ShallowCopy(grid)

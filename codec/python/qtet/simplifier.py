@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping
 import numpy
 
 from . import tool
-from .grids import grid_of
+from .grids import grid_of, packed_array
 from .log import QtetError, library
 
 if TYPE_CHECKING:
@@ -41,8 +41,6 @@ _TYPES = {
     "uint32": 9,
     "uint64": 10,
 }
-# Types that are stored as a wider one.
-_WIDENED = {"bool": "uint8", "float16": "float32"}
 _ALGORITHMS = {"qtet": 0, "paper": 1}
 _PLACEMENTS = {"auto": 0, "optimal": 1, "vertex": 2}
 _MEASURES = {"none": 0, "levels": 1, "all": 2}
@@ -130,28 +128,15 @@ def _library():
     return c
 
 
-def _array(values, what):
-    """A packed array of one of the types that a log has, in the machine's order of bytes."""
-    array = numpy.asarray(values)
-    name = array.dtype.newbyteorder("=").name
-    name = _WIDENED.get(name, name)
-    if name not in _TYPES:
-        raise ValueError(
-            f"{what}: no log has numbers of type {array.dtype}; give floats of 32 or "
-            "64 bits, or integers"
-        )
-    return numpy.ascontiguousarray(array, dtype=name)
-
-
 def _points(points):
-    array = _array(points, "points")
+    array = packed_array(points, "points")
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"points have the shape {array.shape}; give (points, 3)")
     return array if array.dtype.name in ("float32", "float64") else array.astype("float64")
 
 
 def _cells(cells):
-    array = _array(cells, "cells")
+    array = packed_array(cells, "cells")
     if array.ndim != 2 or array.shape[1] != 4 or array.dtype.kind not in "iu":
         raise ValueError(
             f"cells are {array.dtype} of the shape {array.shape}; give integers of "
@@ -190,7 +175,7 @@ class _Input:
         )
 
     def _field(self, name, values, association, tuples):
-        array = _array(values, f"field {name!r}")
+        array = packed_array(values, f"field {name!r}")
         components = int(numpy.prod(array.shape[1:]))
         if array.ndim == 0 or len(array) != tuples or not 1 <= components <= _MAX_COMPONENTS:
             raise ValueError(

@@ -130,19 +130,12 @@ def _field(log, number):
 
 def _add_fields(log, grid, fields, kept):
     """`kept` by association: what of its slots stays."""
-    known = {info.name.decode(errors="replace") for info in log.fields}
-    if fields is not None and not set(fields) <= known:
-        raise QtetError(
-            f"the log has no field {sorted(set(fields) - known)}; it has {sorted(known)}"
-        )
-    for number, info in enumerate(log.fields):
-        if info.association not in kept or (
-            fields is not None and info.name.decode(errors="replace") not in fields
-        ):
+    for number, name, info in log.fields_of(fields):
+        if info.association not in kept:
             continue
         data = grid.GetCellData() if info.association == CELL else grid.GetPointData()
         values = kept[info.association].of(_field(log, number))
-        values.SetName(info.name.decode(errors="replace"))
+        values.SetName(name)
         data.AddArray(values)
         if info.components == 1 and data.GetScalars() is None:
             data.SetActiveScalars(values.GetName())

@@ -39,9 +39,7 @@ Result<std::vector<TimedCells>> readProcessors(const std::vector<std::filesystem
                                                const std::filesystem::path& path,
                                                const ReadOptions& options, ReadReport& report) {
   const GuardedFolder folder("foam");
-  if (folder.failure())
-    return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() +
-                                    "); let TMPDIR name one with room");
+  if (Status made = folder.made(); !made) return std::unexpected(made.error());
   std::vector<std::vector<TimedCells>> pieces;
   for (const std::filesystem::path& processor : processors) {
     const auto marker = caseOfProcessor(processor, folder.path() / processor.filename());

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "codec/files/temporary_folder.h"
+#include "proto/error.h"
 
 namespace qtet {
 
@@ -31,6 +32,8 @@ class GuardedFolder {
   [[nodiscard]] const std::error_code& failure() const {
     return unguarded_ ? unguarded_->failure() : failure_;
   }
+  /// Whether there is one. Error: io, with failure() and what to do.
+  [[nodiscard]] Status made() const;
 
  private:
   [[nodiscard]] bool startGuard(std::string_view purpose);

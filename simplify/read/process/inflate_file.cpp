@@ -103,9 +103,7 @@ std::string withName(std::string text, const std::string& from, const std::strin
 Status inflated(const fs::path& path, const std::function<Status(const fs::path&)>& use,
                 std::uint64_t most) {
   const GuardedFolder folder("inflate");
-  if (folder.failure())
-    return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() +
-                                    "); let TMPDIR name one with room");
+  if (Status made = folder.made(); !made) return std::unexpected(made.error());
   const fs::path file = folder.path() / path.stem();
   if (Status done = inflateTo(file, path, most); !done) return done;
   Status used = use(file);

@@ -159,9 +159,7 @@ std::string lastLineOf(const fs::path& path) {
 
 Status throughMeshio(const MeshioInput& input, const std::function<Status(const fs::path&)>& use) {
   const GuardedFolder folder("meshio");
-  if (folder.failure())
-    return fail(ErrorCode::kIo, "no temporary folder could be made (" + folder.failure().message() +
-                                    "); let TMPDIR name one with room");
+  if (Status made = folder.made(); !made) return std::unexpected(made.error());
   const fs::path words = folder.path() / "words.txt";
   // The first python3 may be one of the user's own; Debian's has Debian's meshio.
   int ended = kNoProgram;

@@ -20,9 +20,6 @@ class Page : public Tool {
     put("viewer/assets/a.css", "a{b:c}");
     put("viewer/single_page.js", "first()");
   }
-  void put(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
   Ran page(const std::string& words) { return run("page --viewer viewer " + words); }
 };
 

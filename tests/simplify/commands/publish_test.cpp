@@ -50,9 +50,6 @@ class Publish : public Tool {
     put("viewer/assets/app-1a2b.js.gz", "old");
     put("viewer/assets/tiny-3c.css", "a{}");
   }
-  void put(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
   Ran publish(const std::string& words) { return run("publish --viewer viewer " + words); }
   /// Names and contents.
   std::map<std::string, std::string> files(const std::string& site) {

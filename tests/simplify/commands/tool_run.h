@@ -59,6 +59,9 @@ class Tool : public ::testing::Test {
   void write(const std::string& name, const TetMesh& mesh) {
     ASSERT_TRUE(writeFileAtomically(folder_ / name, vtuBytes(mesh)));
   }
+  void put(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
   void makeBoxLog() {
     ASSERT_EQ(run("sample box -o box.vtu").code, 0);
     const Ran ran = run("simplify box.vtu -o box.qtet");

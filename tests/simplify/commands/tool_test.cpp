@@ -139,7 +139,7 @@ TEST_F(Tool, whatStrangersNamedReachesNoTerminal) {
     text += "$" + std::string(section) + "\n1\n\"\033[31m\302\2335m" + section +
             "\"\n0\n3\n0\n1\n1\n1 7\n$End" + section + "\n";
   const std::string name = "\033]0;title\007.msh";
-  std::ofstream(folder_ / name, std::ios::binary) << text;
+  put(name, text);
   for (const char* words :
        {"check *.msh", "simplify *.msh -o named.qtet",
         "simplify *.msh -o named.qtet --lossless --verbose", "info named.qtet",
