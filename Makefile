@@ -19,7 +19,8 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup build build-checked demo demo-port demo-log test test-units test-system check
+.PHONY: help setup packages build build-checked demo demo-port demo-log test test-units
+.PHONY: test-system check
 .PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
 .PHONY: bench-server wheel release clean
 .DEFAULT_GOAL := help
@@ -45,7 +46,8 @@ help:
 	make wheel                 the Python package: build/release/wheels/*.whl
 	make test-deb              install, use and remove them in a Debian of their own (needs root)
 	make build                 build only: build/release/bin/qtet and qtet-server
-	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root)
+	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root), and
+	                           fetch the sources that the browser's simplifier is compiled from
 	make bench                 build and run the benchmarks
 	make bench-server          qtet-server beside nginx: the table of tests/bench/SERVER.md made anew
 	make results               compare with VTK's decimation: tests/bench/RESULTS.md
@@ -59,7 +61,10 @@ help:
 	RESULTS="--sets a,b"       options of tests/bench/results.py
 	END
 
-setup:
+setup: packages
+	@.ci/sources.sh
+
+packages:
 	@say() { printf 'setup: %s\n' "$$@"; }
 	mapfile -t wanted < <(sed 's/#.*//' .ci/packages.txt | grep -o '[^[:space:]]*')
 	if ! command -v dpkg-query >/dev/null; then

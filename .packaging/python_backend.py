@@ -90,8 +90,10 @@ def _members():
         if path.suffix == ".py" or path.name == "py.typed":
             members.append((f"{NAME}/{path.name}", path.read_bytes(), False))
     for path in sorted(viewer.rglob("*")):
-        # Compressed copies are made again where the viewer is published.
-        if path.is_file() and path.suffix not in (".gz", ".br", ".zst"):
+        # Compressed copies are made again where the viewer is published. Meshes are simplified by
+        # the library, not in the browser.
+        is_copy = path.suffix in (".gz", ".br", ".zst")
+        if path.is_file() and not is_copy and not path.name.startswith("qtet-simplify"):
             name = path.relative_to(viewer).as_posix()
             members.append((f"{NAME}/viewer/{name}", path.read_bytes(), False))
     info = f"{NAME}-{version()}.dist-info"

@@ -17,6 +17,10 @@ import python_backend as backend
 ROOT, BUILD = backend.ROOT, backend.BUILD
 
 
+# Compiled into the WebAssembly, beside what the wheel's library is linked with.
+IN_BROWSER = ["libc++-19-dev-wasm32", "wasi-libc", "libfast-float-dev", "libboost-dev"]
+
+
 def run(*words, cwd=ROOT):
     subprocess.run([str(word) for word in words], check=True, cwd=cwd, stdout=sys.stderr)
 
@@ -72,7 +76,7 @@ def _npm_component(name):
 
 def bill_of_materials():
     """What is part of the files beside our own sources: linked statically, or bundled."""
-    linked = [_debian_component(package) for package in backend.LINKED]
+    linked = [_debian_component(package) for package in [*backend.LINKED, *IN_BROWSER]]
     bundled = [_npm_component(name) for name in _client()["dependencies"]]
     version = backend.version()
     return {

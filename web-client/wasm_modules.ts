@@ -2,8 +2,9 @@
 
 import {dirname, join} from 'node:path';
 
-/** `codec` is the file of the whole codec. The one for the base mesh lies beside it. */
+/** `codec` is the file of the whole codec. Those for the base mesh and for meshes lie beside it. */
 export const wasmModules = (codec: string): {find: RegExp; replacement: string}[] => [
   {find: /^qtet-codec\.wasm/, replacement: codec},
   {find: /^qtet-base\.wasm/, replacement: join(dirname(codec), 'qtet-base.wasm')},
+  {find: /^qtet-simplify\.wasm/, replacement: join(dirname(codec), 'qtet-simplify.wasm')},
 ];

@@ -1,5 +1,7 @@
 #include "codec/coding/number_type.h"
 
+#include <algorithm>
+#include <span>
 #include <type_traits>
 
 #include "codec/coding/float_bits.h"
@@ -59,9 +61,9 @@ constexpr std::array<NumberType, 10> kNumberTypes{{
 }  // namespace
 
 const NumberType& numberType(std::string_view name) {
-  const auto* found = std::find_if(kNumberTypes.begin(), kNumberTypes.end(),
-                                   [&](const NumberType& type) { return type.name == name; });
-  return found == kNumberTypes.end() ? kNumberTypes.front() : *found;
+  const std::span types(kNumberTypes);
+  const auto found = std::ranges::find(types, name, &NumberType::name);
+  return found == types.end() ? types.front() : *found;
 }
 
 }  // namespace qtet

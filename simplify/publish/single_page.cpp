@@ -107,6 +107,10 @@ Result<nlohmann::json> listOf(const fs::path& site) {
 /// Whether a file of the folder is of no use in the page, or stands in it otherwise.
 bool isLeftOut(const std::string& name) {
   const std::string ending = fs::path(name).extension().string();
+  const std::string file = fs::path(name).filename().string();
+  // A page to mail does without what simplifies the meshes that are dropped on it.
+  for (const std::string_view of : {"qtet-simplify", "simplify_worker", "mesh_drop"})
+    if (file.starts_with(of)) return true;
   const bool isKnown = ending == ".css" || ending == ".svg" || typeOf(ending) != nullptr;
   return !isKnown || ending == ".qtet" || name == kSiteList || name == "README.txt" ||
          name == "first.js" || name == kFirstScript;

@@ -159,6 +159,7 @@ declare -A below=(
   [core/picture]='core/(protocol|decode)'
   [core/layers]='core/(protocol|picture)'
   [core/session]='core/(protocol|transport|decode|picture|layers)'
+  [core/simplify]='core/protocol'
   [core]='core/.*'
   [webgl/gl]=''
   [webgl]='core(/.*)?|webgl/gl'
@@ -167,6 +168,7 @@ declare -A below=(
   [viewer/page]='core(/.*)?|webgl|viewer/settings'
   [viewer/panels]='core(/.*)?|webgl|viewer/(settings|page)'
   [viewer/picture]='core(/.*)?|webgl|viewer/(settings|page|panels)'
+  [viewer/drop]='core(/.*)?|viewer/page'
   [viewer]='core(/.*)?|webgl|viewer/.*'
 )
 while read -r from to; do

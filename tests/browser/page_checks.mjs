@@ -1,5 +1,4 @@
-// One file with the viewer and a log in it, opened from the disk without a network. A log that is
-// dropped on the page.
+// One file with the viewer and a log in it, opened from the disk without a network.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -132,45 +131,9 @@ async function saysThatAFileIsDamaged(context) {
   }
 }
 
-/** A log of the visitor's own, which no server gets. */
-async function showsALogThatIsDropped({server, browser, logs}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&field=Pressure`);
-  await viewer.waitForState('complete');
-  const sent = [];
-  viewer.page.on('request', (request) => sent.push(request));
-  const drop = (name, bytes) =>
-    viewer.page.evaluate(
-      ([its, base64]) => {
-        const content = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-        const dataTransfer = new DataTransfer();
-        dataTransfer.items.add(new File([content], its));
-        const event = {dataTransfer, bubbles: true, cancelable: true};
-        window.qtetViewer.dispatchEvent(new DragEvent('drop', event));
-      },
-      [name, bytes.toString('base64')],
-    );
-  const log = readFileSync(join(logs.box.folder, 'box.qtet'));
-  await drop('my box.qtet', log);
-  await viewer.page.waitForFunction(() => window.qtetViewer.statistics.total.tetrahedra === 3072);
-  await viewer.waitForState('complete');
-  await expectWhole(viewer, logs.box);
-  assert.equal(await viewer.page.locator('qtet-viewer h1').innerText(), 'my box');
-  for (const request of sent) {
-    const url = request.url();
-    assert.equal(request.method(), 'GET', url);
-    assert.ok(/^blob:|\/assets\/[^?]*$/.test(url), `${url} is asked for`);
-  }
-  await drop('other.qtet', Buffer.from('no log at all, and far too short'));
-  const alert = viewer.page.getByRole('alert');
-  await alert.waitFor();
-  assert.match(await alert.innerText(), /neither a log nor a PNG picture/);
-  await expectWhole(viewer, logs.box);
-}
-
 export const pageChecks = {
   opensAFileFromTheDisk,
   holdsAsMuchAsFits,
   showsInAFrame,
   saysThatAFileIsDamaged,
-  showsALogThatIsDropped,
 };

@@ -8,6 +8,7 @@ import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
 import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
+import {dropChecks} from './drop_checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
 import {histogramChecks} from './histogram_checks.mjs';
@@ -46,7 +47,7 @@ const lists = {
   checks,
   element: {...elementChecks, ...lineChecks},
   transport: transportChecks,
-  publish: {...publishChecks, ...posterChecks, ...pageChecks},
+  publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks},
   volume: volumeChecks,
   edge: edgeChecks,
   legend: {

@@ -19,6 +19,7 @@ import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
 import {Panels, type PanelsHost} from './panels/panels';
 import type {Shell} from './panels/shell';
+import type {MeshDrop} from './drop/mesh_drop';
 import type {Pictures} from './picture/pictures';
 
 export interface LaterHost extends ActionsHost, PanelsHost {
@@ -41,6 +42,7 @@ export class Later {
   /** The sentences about attributes that were shown last. */
   private wrong = '';
   private pictures: Promise<Pictures> | null = null;
+  private meshDrop: Promise<MeshDrop> | null = null;
 
   constructor(
     private readonly page: Page,
@@ -134,7 +136,24 @@ export class Later {
     }
   }
 
-  /** A log that is dropped is shown. A picture opens its view. */
+  /** The next call tries again if the server is away. */
+  private async loadMeshDrop(): Promise<MeshDrop | null> {
+    this.meshDrop ??= import('./drop/mesh_drop').then(
+      ({MeshDrop}) => new MeshDrop(this.page, this.host),
+    );
+    try {
+      return await this.meshDrop;
+    } catch {
+      this.meshDrop = null;
+      this.host.failed(
+        'dropped-mesh',
+        'What simplifies meshes cannot be loaded. Make a log by `qtet simplify` and drop that.',
+      );
+      return null;
+    }
+  }
+
+  /** A log that is dropped is shown, a mesh is simplified before. A picture opens its view. */
   private takeDrops(): void {
     const {element} = this.page;
     const {signal} = this.ends;
@@ -148,19 +167,23 @@ export class Later {
     element.addEventListener(
       'drop',
       (event) => {
-        const [file] = event.dataTransfer?.files ?? [];
-        if (!file) return;
+        const files = [...(event.dataTransfer?.files ?? [])];
+        if (files.length === 0) return;
         event.preventDefault();
-        void this.take(file);
+        void this.take(files);
       },
       {signal},
     );
   }
 
-  private async take(file: File): Promise<void> {
+  private async take(files: File[]): Promise<void> {
+    const [file] = files as [File];
     const first = new Uint8Array(await file.slice(0, 8).arrayBuffer());
     if (beginsLog(first)) this.host.stream.openFile(file);
-    else await (await this.loadPictures())?.open(file);
+    else if (file.name.endsWith('.qtet'))
+      this.host.failed('dropped-mesh', `${file.name} is no log, or it is damaged. Copy it again.`);
+    else if (file.type.startsWith('image/')) await (await this.loadPictures())?.open(file);
+    else await (await this.loadMeshDrop())?.take(files);
   }
 
   /** Must be called after every frame. */

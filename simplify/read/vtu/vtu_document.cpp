@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -273,8 +274,9 @@ class DocumentParser {
          {"PointData", Section::kPointData},
          {"CellData", Section::kCellData},
          {"FieldData", Section::kFieldData}}};
-    const auto* at = std::ranges::find(kSections, name, [](const auto& s) { return s.first; });
-    section_ = at == kSections.end() ? Section::kNone : at->second;
+    const std::span sections(kSections);
+    const auto at = std::ranges::find(sections, name, [](const auto& s) { return s.first; });
+    section_ = at == sections.end() ? Section::kNone : at->second;
     sectionName_ = name;
     arrays_.clear();
     VtuFields* fields = fieldsOf(section_);
@@ -322,9 +324,10 @@ class DocumentParser {
     array_->parent = sectionName_;
     array_->line = line();
     array_->isIdType = attributes.text("IdType") == "1";
-    const auto* type = std::ranges::find(kTypes, std::string_view(attributes["type"].value_or("")),
-                                         [](const auto& t) { return t.first; });
-    if (type == kTypes.end())
+    const std::span types(kTypes);
+    const auto type = std::ranges::find(types, std::string_view(attributes["type"].value_or("")),
+                                        [](const auto& t) { return t.first; });
+    if (type == types.end())
       return refuse("type of " + of + " is " + quoted(attributes.text("type")) +
                     ", which is none of VTK's; the file is damaged, export it again");
     array_->type = type->second;

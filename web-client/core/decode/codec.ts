@@ -2,6 +2,7 @@
 // codec reads one log.
 
 import type {Counts} from '../protocol/counts';
+import {kErrorCodes} from '../protocol/error_codes';
 import {QtetError} from '../protocol/errors';
 import type {KnownErrors} from '../protocol/manifest';
 import type {PacketBox} from '../protocol/packet';
@@ -70,22 +71,6 @@ const kOfCells = 1;
 
 /** By the numbers of KnownErrors of codec/coding/level_columns.h. */
 const kKnownErrors: readonly KnownErrors[] = ['none', 'all', 'some'];
-/** Names by ErrorCode of proto/error.h. */
-const kErrorCodes = [
-  'truncated',
-  'bad-magic',
-  'bad-version',
-  'bad-checksum',
-  'bad-value',
-  'limit-exceeded',
-  'bad-codec',
-  'bad-order',
-  'not-found',
-  'bad-input',
-  'io',
-  'cancelled',
-];
-
 interface Exports {
   memory: WebAssembly.Memory;
   _initialize?(): void;

@@ -8,3 +8,8 @@ declare module 'qtet-base.wasm?url' {
   const url: string;
   export default url;
 }
+/** The simplifier, which a page loads when a mesh is dropped. */
+declare module 'qtet-simplify.wasm?url' {
+  const url: string;
+  export default url;
+}

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Unpacks the sources of Debian packages below build/sources, with Debian's patches: libraries that
+# the browser needs as WebAssembly and that Debian builds for processors alone. apt checks their
+# signatures; its own lists and configuration stay as they are.
+#   .ci/sources.sh        does nothing for what is there already
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+folder=build/sources
+# All are those of Debian 12, as the packages that the programs are linked with.
+wanted=(draco expat libdeflate lz4 xz-utils)
+missing=()
+for name in "${wanted[@]}"; do
+  compgen -G "$folder/$name-[0-9]*/" >/dev/null || missing+=("$name")
+done
+[[ ${#missing[@]} == 0 ]] && exit 0
+command -v dpkg-source >/dev/null || {
+  echo "setup: there is no dpkg-source; configure with -DQTET_BROWSER_SIMPLIFIER=OFF," \
+    "and the page takes dropped logs alone" >&2
+  exit 0
+}
+printf 'setup: fetching the sources of %s\n' "${missing[*]}"
+rm -rf $folder/apt
+mkdir -p $folder/apt/lists/partial
+trap 'rm -rf $folder/apt' EXIT
+keys=/usr/share/keyrings/debian-archive-keyring.gpg
+echo "deb-src [signed-by=$keys] http://deb.debian.org/debian bookworm main" \
+  >$folder/apt/sources.list
+of=(-o "Dir::Etc::SourceList=$PWD/$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null
+  -o "Dir::State::Lists=$PWD/$folder/apt/lists" -o Dir::Cache::srcpkgcache= -o Dir::Cache::pkgcache=
+  -o APT::Sandbox::User=root)
+apt-get -qq "${of[@]}" update
+(
+  cd $folder/apt
+  apt-get -qq "${of[@]}" source "${missing[@]}" >/dev/null
+)
+for name in "${missing[@]}"; do
+  rm -rf $folder/apt/"$name"-[0-9]*/testdata # 140 MB of Draco's
+  mv $folder/apt/"$name"-[0-9]*/ $folder/
+done

@@ -1,0 +1,54 @@
+#include "simplify/api/wasm_simplify.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "simplify/pipeline/pipeline.h"
+#include "simplify/read/read_mesh.h"
+
+namespace {
+
+std::string report;
+qtet::Bytes logBytes;
+
+int failed(const qtet::Error& error) {
+  report = error.message;
+  if (error.offset != qtet::Error::kNoOffset)
+    report += " (byte " + std::to_string(error.offset) + ")";
+  return 1 + static_cast<int>(error.code);
+}
+
+}  // namespace
+
+extern "C" {
+
+void* qtet_alloc(std::uint32_t bytes) { return std::malloc(bytes); }
+
+int qtet_simplify_file(const char* name) {
+  const std::filesystem::path path = std::filesystem::path("/") / name;
+  qtet_page_progress(-1, 0);
+  auto read = qtet::readMesh(path, qtet::ReadOptions{});
+  if (!read) return failed(read.error());
+  qtet::PipelineOptions options;
+  options.source = name;
+  options.progress = [](qtet::Stage stage, double fraction) {
+    qtet_page_progress(static_cast<std::int32_t>(stage), fraction);
+  };
+  auto made = qtet::simplifyToLog(std::move(read->mesh), options);
+  if (!made) return failed(made.error());
+  logBytes = std::move(made->log);
+  nlohmann::ordered_json out = {{"notes", read->report.notes},
+                                {"warnings", made->report.warnings},
+                                {"tetrahedra", made->report.tetrahedraIn}};
+  for (const std::string& note : made->report.notes) out["notes"].push_back(note);
+  report = out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return 0;
+}
+
+const char* qtet_report() { return report.c_str(); }
+const std::uint8_t* qtet_log() { return logBytes.data(); }
+std::uint32_t qtet_log_bytes() { return static_cast<std::uint32_t>(logBytes.size()); }
+
+}  // extern "C"

@@ -1,0 +1,73 @@
+// The readers that a browser does without: those of VTK, HDF5, meshio and OpenFOAM.
+#include "simplify/read/foam/read_foam.h"
+#include "simplify/read/hdf/read_vtkhdf.h"
+#include "simplify/read/parts/piece_files.h"
+#include "simplify/read/process/inflate_file.h"
+#include "simplify/read/process/run_meshio.h"
+#include "simplify/read/steps/read_apart.h"
+#include "simplify/read/vtk/run_vtk.h"
+#include "simplify/read/xdmf/read_xdmf.h"
+
+namespace qtet {
+namespace {
+
+std::unexpected<Error> refusal(const std::filesystem::path& path) {
+  return fail(ErrorCode::kBadInput,
+              path.filename().string() +
+                  ": the page does not read this format; make a log by `qtet simplify` and drop "
+                  "that, or save the mesh as .vtu");
+}
+
+}  // namespace
+
+Result<std::vector<TimedCells>> runVtk(const std::filesystem::path& path, MeshFormat,
+                                       const ReadOptions&, ReadReport&) {
+  return refusal(path);
+}
+Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, const ReadOptions&,
+                                          ReadReport&, const StepReader&) {
+  return refusal(path);
+}
+Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path, const ReadOptions&,
+                                         ReadReport&) {
+  return refusal(path);
+}
+Status throughMeshio(const MeshioInput& input,
+                     const std::function<Status(const std::filesystem::path&)>&) {
+  return refusal(input.path);
+}
+
+// The page inflates .gz before it hands the file over.
+std::uint64_t maxInflatedBytes() { return 0; }
+Status inflated(const std::filesystem::path& path,
+                const std::function<Status(const std::filesystem::path&)>&, std::uint64_t) {
+  return refusal(path);
+}
+std::string withName(std::string text, const std::string&, const std::string&) { return text; }
+
+Result<std::vector<std::filesystem::path>> exodusPieces(const std::filesystem::path& path) {
+  return refusal(path);
+}
+Result<std::vector<std::filesystem::path>> processorFolders(const std::filesystem::path& marker) {
+  return refusal(marker);
+}
+Result<std::filesystem::path> caseOfProcessor(const std::filesystem::path& processor,
+                                              const std::filesystem::path&) {
+  return refusal(processor);
+}
+
+// No file is ever opened, so nothing below the functions named open is called.
+Result<HdfFile> HdfFile::open(const std::filesystem::path& path) { return refusal(path); }
+HdfFile::HdfFile(HdfFile&& other) noexcept : path_(std::move(other.path_)), id_(other.id_) {}
+HdfFile::~HdfFile() = default;
+Result<VtkHdfFile> VtkHdfFile::open(const std::filesystem::path& path) { return refusal(path); }
+Result<std::vector<CellMesh>> VtkHdfFile::partitions(std::size_t, const FieldNames&,
+                                                     ReadReport&) const {
+  return refusal({});
+}
+Result<XdmfFile> XdmfFile::open(const std::filesystem::path& path) { return refusal(path); }
+Result<CellMesh> XdmfFile::read(std::size_t, const FieldNames&, ReadReport&) {
+  return refusal(path_);
+}
+
+}  // namespace qtet

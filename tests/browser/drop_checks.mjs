@@ -1,0 +1,125 @@
+// Files of the visitor's own that are dropped on the page: logs, and meshes, which the page
+// simplifies. No server gets them.
+
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {readFileSync} from 'node:fs';
+import {basename, join} from 'node:path';
+import {expectWhole} from './expect.mjs';
+
+/** A viewer that shows a mesh of the server, and what it asks for from now on. */
+async function withMesh({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&field=Pressure`);
+  await viewer.waitForState('complete');
+  const sent = [];
+  viewer.page.on('request', (request) => sent.push(request));
+  const staysHere = () => {
+    for (const request of sent) {
+      const url = request.url();
+      assert.equal(request.method(), 'GET', url);
+      assert.ok(/^blob:|\/assets\/[^?]*$/.test(url), `${url} is asked for`);
+    }
+  };
+  return {viewer, staysHere};
+}
+
+/** `files`: [name, bytes], dropped together. */
+const drop = (viewer, ...files) =>
+  viewer.page.evaluate(
+    (list) => {
+      const dataTransfer = new DataTransfer();
+      for (const [name, base64] of list) {
+        const content = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+        dataTransfer.items.add(new File([content], name));
+      }
+      const event = {dataTransfer, bubbles: true, cancelable: true};
+      window.qtetViewer.dispatchEvent(new DragEvent('drop', event));
+    },
+    files.map(([name, bytes]) => [name, bytes.toString('base64')]),
+  );
+
+const dropFile = (viewer, path) => drop(viewer, [basename(path), readFileSync(path)]);
+
+/** The bytes of the log that is shown from memory. */
+async function shownLog(viewer) {
+  const numbers = await viewer.page.evaluate(async () => {
+    const address = window.qtetViewer.getAttribute('src').replace(/#.*/, '');
+    return [...new Uint8Array(await (await fetch(address)).arrayBuffer())];
+  });
+  return Buffer.from(numbers);
+}
+
+async function notice(viewer) {
+  const alert = viewer.page.getByRole('alert');
+  await alert.waitFor();
+  return alert.innerText();
+}
+
+async function showsALogThatIsDropped(context) {
+  const {logs} = context;
+  const {viewer, staysHere} = await withMesh(context);
+  await drop(viewer, ['my box.qtet', readFileSync(join(logs.box.folder, 'box.qtet'))]);
+  await viewer.page.waitForFunction(() => window.qtetViewer.statistics.total.tetrahedra === 3072);
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, logs.box);
+  assert.equal(await viewer.page.locator('qtet-viewer h1').innerText(), 'my box');
+  staysHere();
+  await drop(viewer, ['other.qtet', Buffer.from('no log at all, and far too short')]);
+  assert.match(await notice(viewer), /other\.qtet is no log/);
+  await expectWhole(viewer, logs.box);
+}
+
+/** The tool's own bytes, of a file that names none and of one whose pieces come along. */
+async function simplifiesAMeshThatIsDropped(context) {
+  const {logs, out, bin} = context;
+  const {viewer, staysHere} = await withMesh(context);
+  await dropFile(viewer, join(out, 'box.vtu'));
+  await viewer.page.waitForFunction(() => window.qtetViewer.statistics.total.tetrahedra === 3072);
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, logs.box);
+  assert.ok((await shownLog(viewer)).equals(readFileSync(join(logs.box.folder, 'box.qtet'))));
+  assert.equal(await viewer.page.locator('qtet-viewer h1').innerText(), 'box');
+
+  const msh = join(out, 'tool.msh');
+  const tool = (...words) => execFileSync(join(bin, 'qtet'), words, {encoding: 'utf8'});
+  tool('convert', join(out, 'fin.vtu'), '-o', msh);
+  const byTool = JSON.parse(tool('simplify', msh, '-o', join(out, 'tool.qtet'), '--json'));
+  const start = Date.now();
+  await dropFile(viewer, msh);
+  await viewer.page.getByText('stays on this machine').waitFor();
+  await viewer.screenshot('dropped_mesh');
+  await viewer.page.waitForFunction(() => window.qtetViewer.statistics.total.tetrahedra > 3072);
+  const seconds = (Date.now() - start) / 1000;
+  assert.ok((await shownLog(viewer)).equals(readFileSync(join(out, 'tool.qtet'))));
+  staysHere();
+  return `fin in ${seconds.toFixed(1)} s, by the tool in ${byTool.seconds.total.toFixed(1)} s`;
+}
+
+async function givesUpADroppedMesh(context) {
+  const {logs, out} = context;
+  const {viewer} = await withMesh(context);
+  await dropFile(viewer, join(out, 'fin.vtu'));
+  await viewer.page.getByText('stays on this machine').waitFor();
+  await viewer.page.getByRole('button', {name: 'Cancel'}).click();
+  await viewer.page.getByText('stays on this machine').waitFor({state: 'hidden'});
+  await expectWhole(viewer, logs.fin);
+
+  const mesh = readFileSync(join(out, 'box.vtu'));
+  for (const [name, bytes, sentence] of [
+    ['cut.vtu', mesh.subarray(0, mesh.length / 2), /^cut\.vtu ends without/],
+    ['plain.txt', Buffer.from('no mesh at all'), /^plain\.txt: the page does not read this format/],
+    ['wing.cgns', Buffer.from('\x89HDF and more'), /does not read this format.*qtet simplify/s],
+    ['empty.vtu', Buffer.alloc(0), /^empty\.vtu is empty/],
+  ]) {
+    await drop(viewer, [name, bytes]);
+    assert.match(await notice(viewer), sentence);
+    await viewer.page.getByRole('button', {name: 'Close'}).click();
+  }
+  await expectWhole(viewer, logs.fin);
+}
+
+export const dropChecks = {
+  showsALogThatIsDropped,
+  simplifiesAMeshThatIsDropped,
+  givesUpADroppedMesh,
+};

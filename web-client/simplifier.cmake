@@ -1,0 +1,145 @@
+# The simplifier as WebAssembly: qtet-simplify.wasm, which the page loads when a mesh is dropped. It
+# is made of the rooms' own sources and of five libraries, whose sources .ci/sources.sh unpacks.
+
+set(sources_of_debian ${PROJECT_SOURCE_DIR}/build/sources)
+foreach(name IN ITEMS draco expat libdeflate lz4 xz-utils)
+  file(GLOB found ${sources_of_debian}/${name}-[0-9]*)
+  if(NOT found)
+    message(FATAL_ERROR "The browser's simplifier needs the sources of ${name}: run "
+                        "`make setup`, or configure with -DQTET_BROWSER_SIMPLIFIER=OFF.")
+  endif()
+  string(MAKE_C_IDENTIFIER ${name} name)
+  set(${name} ${found})
+endforeach()
+find_program(QTET_WASM_CC NAMES clang-19 DOC "clang that compiles for wasm32-wasi")
+
+# Headers without sources, apart from those of this machine's own C library.
+set(portable ${PROJECT_SOURCE_DIR}/simplify/portable)
+set(headers ${CMAKE_CURRENT_BINARY_DIR}/headers)
+file(MAKE_DIRECTORY ${headers}/draco)
+foreach(name IN ITEMS fast_float nlohmann boost)
+  find_path(QTET_HEADERS_${name} ${name} REQUIRED)
+  file(CREATE_LINK ${QTET_HEADERS_${name}}/${name} ${headers}/${name} SYMBOLIC)
+endforeach()
+file(CONFIGURE OUTPUT ${headers}/draco/draco_features.h
+  CONTENT "#define DRACO_POINT_CLOUD_COMPRESSION_SUPPORTED\n")
+file(CONFIGURE OUTPUT ${headers}/expat_config.h CONTENT "")
+
+set(target_flags --target=wasm32-wasi -DNDEBUG -ffp-contract=off)
+set(libraries_flags -isystem ${portable}/wasi -isystem ${headers} -isystem ${draco}/src
+  -isystem ${expat}/expat/lib -isystem ${libdeflate} -isystem ${lz4}/lib
+  -isystem ${xz_utils}/src/liblzma/api)
+set(simplifier_objects "")
+
+# Adds the command that compiles one file. The rest are its flags.
+function(qtet_simplifier_object compiler source)
+  file(RELATIVE_PATH place ${PROJECT_SOURCE_DIR} ${source})
+  string(REPLACE "build/sources/" "" place ${place})
+  set(object ${CMAKE_CURRENT_BINARY_DIR}/simplifier/${place}.o)
+  get_filename_component(folder ${object} DIRECTORY)
+  file(MAKE_DIRECTORY ${folder})
+  add_custom_command(
+    OUTPUT ${object}
+    COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${compiler} ${target_flags} ${ARGN} -c -MD
+            -MF ${object}.d -MT ${object} -o ${object} ${source}
+    DEPENDS ${source}
+    DEPFILE ${object}.d
+    COMMENT "Compiling ${place} to WebAssembly"
+    VERBATIM)
+  set(simplifier_objects ${simplifier_objects} ${object} PARENT_SCOPE)
+endfunction()
+
+# The rooms' own. Exceptions end the module: what throws is stopping, memory that runs out, and the
+# command line, which is not here.
+set(own_flags -std=c++23 -fignore-exceptions -fno-rtti -DBOOST_NO_CXX98_FUNCTION_BASE
+  -DQTET_VERSION="${PROJECT_VERSION}" -Wall -Wextra -Werror -I${PROJECT_SOURCE_DIR}
+  ${libraries_flags})
+set(own ${portable}/in_browser.cpp ${portable}/wasi/filesystem.cpp
+  ${PROJECT_SOURCE_DIR}/simplify/api/wasm_simplify.cpp)
+foreach(room IN ITEMS proto codec simplify read)
+  get_target_property(sources qtet_${room} SOURCES)
+  get_target_property(folder qtet_${room} SOURCE_DIR)
+  # Not those that in_browser.cpp stands for, and those that no log is made with.
+  list(FILTER sources EXCLUDE REGEX
+    "TARGET_OBJECTS|^api/|^files/|^commands/|^samples/|^read/(foam|hdf|process|xdmf)/|piece_files")
+  list(FILTER sources EXCLUDE REGEX
+    "wasm_api|check_mesh|cell_transfer|read_apart|add_fields|match_mesh|opened_log|write_mesh|verify")
+  list(FILTER sources EXCLUDE REGEX "^(messages|stream_request_json)\\.")
+  foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder})
+    list(APPEND own ${source})
+  endforeach()
+endforeach()
+# Loops over records and cells are compiled for speed, the rest for size.
+foreach(source IN LISTS own)
+  set(optimise -Os)
+  if(source MATCHES "/(fuse|legality|cost|measure|mesh|coding|record|clean)/|/vtu_numbers")
+    set(optimise -O3)
+  endif()
+  qtet_simplifier_object(${QTET_WASM_CXX} ${source} ${own_flags} ${optimise})
+endforeach()
+
+# Draco without the decoding of meshes, as the values of a log are point clouds.
+file(GLOB draco_sources
+  ${draco}/src/draco/attributes/*.cc ${draco}/src/draco/compression/*.cc
+  ${draco}/src/draco/compression/attributes/*.cc
+  ${draco}/src/draco/compression/attributes/prediction_schemes/*.cc
+  ${draco}/src/draco/compression/bit_coders/*.cc ${draco}/src/draco/compression/entropy/*.cc
+  ${draco}/src/draco/compression/mesh/*_encoder*.cc
+  ${draco}/src/draco/compression/point_cloud/*.cc
+  ${draco}/src/draco/compression/point_cloud/algorithms/*.cc ${draco}/src/draco/core/*.cc
+  ${draco}/src/draco/mesh/mesh.cc ${draco}/src/draco/mesh/mesh_attribute_corner_table.cc
+  ${draco}/src/draco/mesh/corner_table.cc ${draco}/src/draco/mesh/mesh_misc_functions.cc
+  ${draco}/src/draco/metadata/*.cc
+  ${draco}/src/draco/point_cloud/*.cc)
+list(FILTER draco_sources EXCLUDE REGEX "_test|test_|draco_tests")
+foreach(source IN LISTS draco_sources)
+  qtet_simplifier_object(${QTET_WASM_CXX} ${source} -std=c++17 -O2 -fignore-exceptions -fno-rtti -w
+    ${libraries_flags})
+endforeach()
+
+foreach(name IN ITEMS xmlparse xmlrole xmltok)
+  qtet_simplifier_object(${QTET_WASM_CC} ${expat}/expat/lib/${name}.c -O2 -w -isystem ${headers}
+    -DXML_DTD -DXML_NS -DXML_CONTEXT_BYTES=1024 -DXML_POOR_ENTROPY -DBYTEORDER=1234)
+endforeach()
+foreach(name IN ITEMS utils deflate_decompress zlib_decompress adler32)
+  qtet_simplifier_object(${QTET_WASM_CC} ${libdeflate}/lib/${name}.c -O2 -w -I${libdeflate})
+endforeach()
+qtet_simplifier_object(${QTET_WASM_CC} ${lz4}/lib/lz4.c -O2 -w)
+
+# xz without threads: what masks signals for them does nothing.
+set(lzma ${xz_utils}/src/liblzma)
+set(lzma_flags -O2 -w -DHAVE_DECODERS -DHAVE_DECODER_LZMA1 -DHAVE_DECODER_LZMA2
+  -DHAVE_DECODER_DELTA -DHAVE_CHECK_CRC32 -DHAVE_CHECK_CRC64 -DHAVE_CHECK_SHA256 -DHAVE_STDINT_H
+  -DHAVE_INTTYPES_H -DHAVE_STDBOOL_H -DHAVE_STRING_H -DHAVE_LIMITS_H -DHAVE_VISIBILITY=0
+  -DTUKLIB_SYMBOL_PREFIX=lzma_ -DSIZEOF_SIZE_T=4 -D_WASI_EMULATED_SIGNAL -Dsigset_t=int
+  "-Dsigprocmask(a,b,c)=0" -I${xz_utils}/src/common)
+foreach(folder IN ITEMS api common check lz rangecoder lzma delta simple)
+  list(APPEND lzma_flags -I${lzma}/${folder})
+endforeach()
+foreach(name IN ITEMS common/common common/block_decoder common/block_header_decoder
+    common/block_util common/filter_common common/filter_decoder common/filter_flags_decoder
+    common/index_hash common/stream_decoder common/stream_flags_common
+    common/stream_flags_decoder common/vli_decoder common/vli_size check/check check/crc32_table
+    check/crc32_fast check/crc64_table check/crc64_fast check/sha256 lz/lz_decoder
+    lzma/lzma_decoder lzma/lzma2_decoder delta/delta_common delta/delta_decoder)
+  qtet_simplifier_object(${QTET_WASM_CC} ${lzma}/${name}.c ${lzma_flags})
+endforeach()
+
+file(STRINGS ${PROJECT_SOURCE_DIR}/simplify/api/wasm_simplify.h declarations
+  REGEX "^(int|void|const [a-z0-9_:]+|std::uint32_t)[ *]+qtet_")
+set(simplifier_exports "")
+foreach(declaration IN LISTS declarations)
+  string(REGEX MATCH "qtet_[a-z_]+" name "${declaration}")
+  list(APPEND simplifier_exports -Wl,--export=${name})
+endforeach()
+set(simplifier_wasm ${CMAKE_CURRENT_BINARY_DIR}/qtet-simplify.wasm)
+add_custom_command(
+  OUTPUT ${simplifier_wasm}
+  COMMAND ${QTET_WASM_CXX} --target=wasm32-wasi -O3 -mexec-model=reactor -Wl,--strip-all
+          -Wl,-z,stack-size=8388608 -Wl,--stack-first -Wl,--max-memory=4294967296
+          -lwasi-emulated-getpid ${simplifier_exports} -o ${simplifier_wasm}
+          -Wl,--start-lib ${simplifier_objects} -Wl,--end-lib
+  DEPENDS ${simplifier_objects}
+  COMMENT "Linking qtet-simplify.wasm"
+  VERBATIM)
