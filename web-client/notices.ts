@@ -1,4 +1,4 @@
-// The licences of what is bundled, as a file beside the modules: they want to go where the code
+// The licences of what is bundled, as files beside the modules: they want to go where the code
 // goes.
 
 import {existsSync, readFileSync} from 'node:fs';
@@ -6,10 +6,9 @@ import {fileURLToPath} from 'node:url';
 import type {Plugin} from 'vite';
 
 const kBundled = ['uplot'];
-/** Packages that are compiled into the WebAssembly. Debian states their licences. */
-const kCompiled = [
-  'libc++-19-dev-wasm32',
-  'wasi-libc',
+/** Debian's packages in all WebAssembly, and those in the simplifier beside them. */
+const kCompiled = ['libc++-19-dev-wasm32', 'wasi-libc'];
+const kSimplifier = [
   'libdraco-dev',
   'libexpat1-dev',
   'libdeflate-dev',
@@ -20,26 +19,31 @@ const kCompiled = [
   'libboost-dev',
 ];
 
+const ofPackage = (name: string): string =>
+  fileURLToPath(new URL(`node_modules/${name}/LICENSE`, import.meta.url));
+const ofDebian = (name: string): string => `/usr/share/doc/${name}/copyright`;
+
+/** The texts one behind the other; on other systems than Debian some are missing. */
+const joined = (files: [name: string, path: string][]): string =>
+  files
+    .filter(([, path]) => existsSync(path))
+    .map(([name, path]) => `${name}\n\n${readFileSync(path, 'utf8').trim()}\n`)
+    .join(`\n${'-'.repeat(72)}\n\n`);
+
 export const notices = (): Plugin => ({
   name: 'notices',
   apply: 'build',
   generateBundle() {
-    const files = [
-      ...kBundled.map((name) => [
-        name,
-        fileURLToPath(new URL(`node_modules/${name}/LICENSE`, import.meta.url)),
+    const texts = {
+      'third-party.txt': joined([
+        ...kBundled.map((name): [string, string] => [name, ofPackage(name)]),
+        ...kCompiled.map((name): [string, string] => [name, ofDebian(name)]),
       ]),
-      ...kCompiled
-        .map((name) => [name, `/usr/share/doc/${name}/copyright`])
-        .filter(([, file]) => existsSync(file!)),
-    ];
-    const licences = files.map(
-      ([name, file]) => `${name}\n\n${readFileSync(file!, 'utf8').trim()}\n`,
-    );
-    this.emitFile({
-      type: 'asset',
-      fileName: 'third-party.txt',
-      source: licences.join(`\n${'-'.repeat(72)}\n\n`),
-    });
+      'qtet-simplify.third-party.txt': joined(
+        kSimplifier.map((name): [string, string] => [name, ofDebian(name)]),
+      ),
+    };
+    for (const [fileName, source] of Object.entries(texts))
+      this.emitFile({type: 'asset', fileName, source});
   },
 });

@@ -6,12 +6,13 @@ import {notices} from './notices';
 import {plainDynamicImports} from './plain_imports';
 import {preloads} from './preloads';
 import {smallShaders} from './small_shaders';
+import {viewerFiles} from './viewer_files';
 import {wasmModules} from './wasm_modules';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
 
 export default defineConfig({
-  plugins: [smallShaders(), plainDynamicImports(), notices(), preloads()],
+  plugins: [smallShaders(), plainDynamicImports(), notices(), preloads(), viewerFiles()],
   base: './',
   resolve: {
     alias: wasmModules(wasm),

@@ -113,7 +113,7 @@ bool isLeftOut(const std::string& name) {
     if (file.starts_with(of)) return true;
   const bool isKnown = ending == ".css" || ending == ".svg" || typeOf(ending) != nullptr;
   return !isKnown || ending == ".qtet" || name == kSiteList || name == "README.txt" ||
-         name == "first.js" || name == kFirstScript;
+         name == "viewer.json" || name == "first.js" || name == kFirstScript;
 }
 
 /// A page in pieces: what stands in its head, and the packed files.

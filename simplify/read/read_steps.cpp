@@ -11,6 +11,7 @@
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/read_apart.h"
 #include "simplify/read/steps/step_reports.h"
+#include "simplify/read/text/text_readers.h"
 #include "simplify/read/vtk/run_vtk.h"
 #include "simplify/read/vtu/read_vtu.h"
 #include "simplify/read/xdmf/read_xdmf.h"
@@ -86,6 +87,19 @@ Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& pa
   std::vector<TimedCells> out;
   out.push_back({*time ? timeText(**time) : "", std::move(*cells)});
   return out;
+}
+
+/// Reads a legacy file without VTK, unless it holds what that alone reads.
+Result<std::vector<TimedCells>> readLegacy(const std::filesystem::path& path,
+                                           const ReadOptions& options, ReadReport& report) {
+  ReadReport found;
+  Result<std::optional<CellMesh>> cells = readLegacyVtk(path, options.fields, found);
+  if (!cells) return std::unexpected(cells.error());
+  if (!*cells) return readByVtk(path, MeshFormat::kLegacyVtk, options, report);
+  return readChosen({}, path, options, report, [&](std::size_t, ReadReport& ofStep) {
+    ofStep = std::move(found);
+    return Result<CellMesh>(std::move(**cells));
+  });
 }
 
 /// readSteps of a file that is named by one that is named by one ..., `depth` of them.
@@ -184,6 +198,7 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
                                        const ReadOptions& options, ReadReport& report, int depth) {
   if (isSeries(format)) return readSeries(path, format, options, report);
   if (format == MeshFormat::kVtu) return readUnstructured(path, options, report);
+  if (format == MeshFormat::kLegacyVtk) return readLegacy(path, options, report);
   if (format == MeshFormat::kExodusPieces) return readExodusPieces(path, options, report);
   if (format == MeshFormat::kOpenFoam) return readFoam(path, options, report);
   if (namesPieces(format) || format == MeshFormat::kVtm)

@@ -3,8 +3,10 @@
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
-import {readFileSync} from 'node:fs';
+import {readFileSync, statSync} from 'node:fs';
 import {basename, join} from 'node:path';
+import {pathToFileURL} from 'node:url';
+import {kDesktop} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 
 /** A viewer that shows a mesh of the server, and what it asks for from now on. */
@@ -95,6 +97,42 @@ async function simplifiesAMeshThatIsDropped(context) {
   return `fin in ${seconds.toFixed(1)} s, by the tool in ${byTool.seconds.total.toFixed(1)} s`;
 }
 
+/** The file that a button of the section File saves; its path. */
+async function saved({viewer, out}, button, name) {
+  const {page} = viewer;
+  const summary = page.getByText('File', {exact: true});
+  if (!(await page.getByRole('button', {name: button}).isVisible())) await summary.click();
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', {name: button}).click(),
+  ]);
+  const path = join(out, name);
+  await download.saveAs(path);
+  return path;
+}
+
+/** On a page from the disk as well, which takes another log then. */
+async function savesTheLogAndAPageOfIt(context) {
+  const {logs, out, browser} = context;
+  const {viewer} = await withMesh(context);
+  const log = await saved({viewer, out}, 'Save log', 'saved.qtet');
+  assert.ok(readFileSync(log).equals(readFileSync(join(logs.fin.folder, 'fin.qtet'))));
+  const path = await saved({viewer, out}, 'Save page', 'saved.html');
+  const other = await browser.open(pathToFileURL(path).href, {...kDesktop, offline: true});
+  await other.waitForState('complete');
+  await expectWhole(other, logs.fin);
+  assert.equal(await other.page.locator('qtet-viewer').getAttribute('field'), 'Pressure');
+  await drop(other, ['box.qtet', readFileSync(join(logs.box.folder, 'box.qtet'))]);
+  await other.page.waitForFunction(() => window.qtetViewer.statistics.total.tetrahedra === 3072);
+  await other.waitForState('complete');
+  await expectWhole(other, logs.box);
+  const again = await saved({viewer: other, out}, 'Save log', 'again.qtet');
+  assert.ok(readFileSync(again).equals(readFileSync(join(logs.box.folder, 'box.qtet'))));
+  await dropFile(other, join(out, 'box.vtu'));
+  assert.match(await notice(other), /What simplifies meshes cannot be loaded/);
+  return `the page has ${statSync(path).size} bytes`;
+}
+
 async function givesUpADroppedMesh(context) {
   const {logs, out} = context;
   const {viewer} = await withMesh(context);
@@ -121,5 +159,6 @@ async function givesUpADroppedMesh(context) {
 export const dropChecks = {
   showsALogThatIsDropped,
   simplifiesAMeshThatIsDropped,
+  savesTheLogAndAPageOfIt,
   givesUpADroppedMesh,
 };

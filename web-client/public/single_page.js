@@ -31,6 +31,14 @@
   const inWorker = () => {
     const early = [];
     const wait = (event) => early.push(event.data);
+    /** Files that were dropped on the page: its address of each, and ours. */
+    const dropped = new Map();
+    addEventListener('message', (event) => {
+      const {address, blob} = event.data.qtetBlob ?? {};
+      if (!address) return;
+      dropped.set(address, URL.createObjectURL(blob));
+      event.stopImmediatePropagation();
+    });
     const start = async ({data: {files, entry, known}}) => {
       removeEventListener('message', start);
       addEventListener('message', wait);
@@ -40,7 +48,8 @@
       globalThis.fetch = (address, init) => {
         const [place, behind = ''] = String(address).split('#');
         const name = known.get(place);
-        return fetchNative(name ? `${link(name)}#${behind}` : address, init);
+        const own = name ? link(name) : dropped.get(place);
+        return fetchNative(own ? `${own}#${behind}` : address, init);
       };
       await import(link(entry));
       removeEventListener('message', wait);
@@ -76,10 +85,18 @@
     document.querySelector('meta[name=qtet-src]').content =
       `${keep('index.json', JSON.stringify(list))}#index.json`;
     const first = URL.createObjectURL(new Blob([script], {type: 'text/javascript'}));
+    const workers = new Set();
+    const make = URL.createObjectURL.bind(URL);
+    URL.createObjectURL = (blob) => {
+      const address = make(blob);
+      for (const worker of workers) worker.postMessage({qtetBlob: {address, blob}});
+      return address;
+    };
     const Native = Worker;
     globalThis.Worker = class extends Native {
       constructor(url) {
         super(first);
+        workers.add(this);
         const known = new Map(Object.entries(addresses).map(([name, address]) => [address, name]));
         this.postMessage({files, entry: known.get(String(url)), known});
       }

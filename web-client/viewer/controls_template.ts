@@ -217,6 +217,21 @@ export const kControls = `    ${section(
         <div class="looks" role="group" aria-label="Standard views">${directions}</div>
         ${toggle('parallel', 'Parallel projection')}`,
     )}
+    ${section(
+      'file',
+      'File',
+      false,
+      `
+        <input type="file" class="visually-hidden" name="file" multiple tabindex="-1"
+          aria-label="A log, or a mesh with the files that it names">
+        <div class="buttons">
+          <button type="button" class="open-file">Open</button>
+          <button type="button" class="save-log">Save log</button>
+          <button type="button" class="save-page">Save page</button>
+        </div>
+        <p class="hint">Open a log or a mesh of this machine, or drop it on the page. It stays
+          here.</p>`,
+    )}
     <details class="statistics" data-fold="statistics">
       <summary>Statistics</summary>
       <dl class="sub">

@@ -14,6 +14,7 @@ import type {Page} from './page/page';
 import {adopt, insertMarkup, setMarkup} from './page/trusted';
 import {Undo} from './page/undo';
 import {ErrorCurve} from './panels/error_curve';
+import {FilePanel} from './drop/file_panel';
 import {HistogramPanel} from './panels/histogram_panel';
 import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
@@ -27,6 +28,7 @@ export interface LaterHost extends ActionsHost, PanelsHost {
   readonly stream: {
     readonly state: StreamState;
     choose(mesh: string): void;
+    readonly logAddress: string;
     openFile(file: File): void;
   };
   readonly notices: {end(code: string): void};
@@ -83,6 +85,7 @@ export class Later {
       this.ends.signal,
     );
     new HistogramPanel(page, host, this.ends.signal);
+    new FilePanel(page, host, (files) => void this.take(files));
     this.takeDrops();
     this.panels.showState(host.stream.state);
     if (host.view) this.attach(host.view);
@@ -138,10 +141,10 @@ export class Later {
 
   /** The next call tries again if the server is away. */
   private async loadMeshDrop(): Promise<MeshDrop | null> {
-    this.meshDrop ??= import('./drop/mesh_drop').then(
-      ({MeshDrop}) => new MeshDrop(this.page, this.host),
-    );
     try {
+      this.meshDrop ??= import('./drop/mesh_drop').then(
+        ({MeshDrop}) => new MeshDrop(this.page, this.host),
+      );
       return await this.meshDrop;
     } catch {
       this.meshDrop = null;

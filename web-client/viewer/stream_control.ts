@@ -48,6 +48,7 @@ export class StreamControl {
   private openings = 0;
   /** The mesh that was opened last has a stream. */
   private started = false;
+  private log = '';
 
   constructor(
     private readonly page: Page,
@@ -119,6 +120,11 @@ export class StreamControl {
     if (before.startsWith('blob:')) URL.revokeObjectURL(before.replace(/#.*/, ''));
   }
 
+  /** The address of the log that is open, as a file; empty: there is none. */
+  get logAddress(): string {
+    return this.log;
+  }
+
   private leave(mesh: string | null): void {
     this.isChoosing = true;
     for (const name of kOfOneMesh) this.page.write(name, null);
@@ -171,9 +177,10 @@ export class StreamControl {
     const file = isLogFile(base) ? base.href : entry?.log;
     const transport = page.element.getAttribute('transport');
     const fields = this.firstFields(mesh);
+    this.log = file ?? logUrl(base, mesh);
     client.start({
       url: file === undefined ? streamUrl(base) : '',
-      log: file ?? logUrl(base, mesh),
+      log: this.log,
       firstBytes: entry?.firstBytes,
       chunks: entry?.chunks,
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',

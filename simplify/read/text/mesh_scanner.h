@@ -46,7 +46,7 @@ class MeshScanner {
     }
     if (read.ec == std::errc::result_out_of_range) {
       if constexpr (std::floating_point<T>)
-        value = beyondRange(text);
+        value = static_cast<T>(beyondRange(text));
       else
         refuse(before, text, what);
     }

@@ -1,9 +1,10 @@
-// Our own readers of formats that Debian's VTK does not read. Their results are still to be checked
+// Our own readers of formats of text or plain bytes. Their results are still to be checked
 // (checkCellMesh); counts are held against the bytes that remain before anything is allocated.
 // Errors: io; truncated, bad-input, with the line, in binary files the byte.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "simplify/read/options/read_options.h"
 #include "simplify/split/cell_mesh.h"
@@ -32,6 +33,14 @@ namespace qtet {
 /// 2412 and 780 of elements. Groups and results are skipped.
 /// https://www.ceas3.uc.edu/sdrluff (datasets by number)
 [[nodiscard]] Result<CellMesh> readUnv(const std::filesystem::path& path, ReadReport& report);
+
+/// Legacy VTK files of unstructured grids, text and binary, with both ways to list cells: points,
+/// cells, and the arrays that `fields` means. nullopt: VTK has to read the file. It holds another
+/// data set, polyhedra, or arrays of bits, texts, colours and the like.
+/// https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
+[[nodiscard]] Result<std::optional<CellMesh>> readLegacyVtk(const std::filesystem::path& path,
+                                                            const FieldNames& fields,
+                                                            ReadReport& report);
 
 /// SU2 of three dimensions and one zone; the markers are skipped.
 /// https://su2code.github.io/docs_v7/Mesh-File/

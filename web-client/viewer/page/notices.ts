@@ -8,7 +8,14 @@ import {find, onClick} from './find';
  */
 export type NoticeSource = 'stream' | 'graphics' | 'page';
 
-const kOfPage = ['unknown-field', 'bad-attribute', 'no-fullscreen', 'no-picture', 'dropped-mesh'];
+const kOfPage = [
+  'unknown-field',
+  'bad-attribute',
+  'no-fullscreen',
+  'no-picture',
+  'no-file',
+  'dropped-mesh',
+];
 const kOfGraphics = ['no-view', 'slow-view', 'silent-view', 'drawing', 'graphics-lost'];
 
 function sourceOf(code: string): NoticeSource {

@@ -1,0 +1,53 @@
+// The numbers of legacy VTK files: as text, or as big-endian bytes behind the line that announces
+// them.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "simplify/read/text/mesh_scanner.h"
+
+namespace qtet {
+
+enum class LegacyNumber : std::uint8_t {
+  kInt8,
+  kUInt8,
+  kInt16,
+  kUInt16,
+  kInt32,
+  kUInt32,
+  kInt64,
+  kUInt64,
+  kFloat32,
+  kFloat64
+};
+
+struct LegacyType {
+  std::string_view word;  ///< in the file, in small letters
+  LegacyNumber number;
+  const char* name;  ///< as MeshField's
+  [[nodiscard]] bool isFloat() const { return number >= LegacyNumber::kFloat32; }
+};
+
+/// Null for bits, texts and unknown words. `word` may have capitals.
+[[nodiscard]] const LegacyType* legacyType(std::string_view word);
+
+/// Numbers that follow in the file.
+struct LegacyRun {
+  std::uint64_t count;
+  LegacyNumber type;
+  const char* what;  ///< "cell types", for errors
+};
+
+/// Reads the numbers; nothing is allocated before the bytes that they need are there. Floats become
+/// doubles with every bit of a NaN. The scanner has the error.
+[[nodiscard]] std::vector<double> legacyReals(MeshScanner& in, bool areBytes, const LegacyRun& run);
+/// The same as integers; a float becomes -1.
+[[nodiscard]] std::vector<std::int64_t> legacyIntegers(MeshScanner& in, bool areBytes,
+                                                       const LegacyRun& run);
+
+/// In small letters.
+[[nodiscard]] std::string lowered(std::string_view text);
+
+}  // namespace qtet
