@@ -22,7 +22,7 @@ SHELL := /bin/bash
 .PHONY: help setup packages build build-checked demo demo-port demo-log test test-units
 .PHONY: test-system check
 .PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
-.PHONY: bench-server wheel release clean
+.PHONY: bench-server wheel release gallery clean
 .DEFAULT_GOAL := help
 
 help:
@@ -41,8 +41,10 @@ help:
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make fresh                 continuous integration in a new Debian 12 (needs root and mmdebstrap)
 	make deb                   Debian packages: build/release/packages/*.deb
-	make release               wheel, Debian packages, npm package, sources, their bill of materials
-	                           and checksums: build/release/dist
+	make release               wheel, Debian packages, npm package, gallery, sources, their bill of
+	                           materials and checksums: build/release/dist
+	make gallery               the samples and links to each feature, for any web server:
+	                           build/release/gallery
 	make wheel                 the Python package: build/release/wheels/*.whl
 	make test-deb              install, use and remove them in a Debian of their own (needs root)
 	make build                 build only: build/release/bin/qtet and qtet-server
@@ -320,6 +322,10 @@ DEB_TARGETS := qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packag
 release: TARGETS := --target $(DEB_TARGETS) qtet_package_library
 release: setup build
 	@python3 .packaging/release.py $(BUILD)/dist
+
+gallery: TARGETS := --target qtet qtet_viewer
+gallery: setup build
+	@python3 .packaging/gallery.py $(BUILD)/gallery
 
 deb: TARGETS := --target $(DEB_TARGETS)
 deb: setup build

@@ -1,8 +1,9 @@
-"""Everything that a release hands out, in one folder: wheel, Debian packages, npm package, sources,
-a bill of materials (CycloneDX 1.5), and the checksums of all.
+"""Everything that a release hands out, in one folder: wheel, Debian packages, npm package, gallery,
+sources, a bill of materials (CycloneDX 1.5), and the checksums of all.
 
    release.py FOLDER      after make build; the same commit and build give the same bytes
 """
+import gzip
 import hashlib
 import json
 import os
@@ -10,9 +11,12 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tarfile
+import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import python_backend as backend
+from gallery import build_gallery
 
 ROOT, BUILD = backend.ROOT, backend.BUILD
 
@@ -39,6 +43,24 @@ def npm_package(folder):
     run("npm", "pack", "--silent", "--pack-destination", folder, cwd=made)
     # Sources have the same name with another ending.
     (folder / f"qtet-{backend.version()}.tgz").rename(folder / f"qtet-npm-{backend.version()}.tgz")
+
+
+def gallery(folder):
+    """A folder for static hosting, with the samples and links to each feature."""
+    name = f"{backend.NAME}-gallery-{backend.version()}"
+    with tempfile.TemporaryDirectory(prefix="qtet-release-") as work:
+        made = pathlib.Path(work) / name
+        build_gallery(made, BUILD)
+        with (folder / f"{name}.tar.gz").open("wb") as out, gzip.GzipFile(
+            filename="", fileobj=out, mode="wb", mtime=backend.date()
+        ) as packed, tarfile.open(fileobj=packed, mode="w") as archive:
+            for path in sorted(made.rglob("*")):
+                info = archive.gettarinfo(path, f"{name}/{path.relative_to(made).as_posix()}")
+                info.uid = info.gid = 0
+                info.uname = info.gname = ""
+                info.mtime = backend.date()
+                info.mode = 0o755 if info.isdir() else 0o644
+                archive.addfile(info, path.open("rb") if path.is_file() else None)
 
 
 def debian_packages(folder):
@@ -114,6 +136,7 @@ def main():
     backend.build_sdist(folder)
     npm_package(folder)
     debian_packages(folder)
+    gallery(folder)
     bill = json.dumps(bill_of_materials(), indent=2, ensure_ascii=False)
     (folder / f"{backend.NAME}-{backend.version()}.cdx.json").write_text(bill + "\n")
     check_versions(folder)

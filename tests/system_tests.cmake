@@ -144,6 +144,11 @@ if(QTET_WEB)
       COMMAND ${QTET_NODE} ${here}/browser/run.mjs --list ${list} --bin ${bin}
       --viewer ${QTET_VIEWER_DIR} --out ${CMAKE_BINARY_DIR}/browser-${list})
   endforeach()
+  if(QTET_VTK_PYTHON AND NOT QTET_SANITIZE)
+    qtet_system_test(browser.notebook ROOM browser CHANCE SECONDS 1200 COMMAND ${QTET_NODE}
+      ${here}/browser/notebook.mjs --python ${QTET_VTK_PYTHON} --bin ${bin}
+      --out ${CMAKE_BINARY_DIR}/notebook)
+  endif()
   # The npm package in an empty project of somebody else.
   qtet_system_test(package ROOM browser CHANCE SECONDS 1200 COMMAND ${QTET_NODE}
     ${here}/browser/package.mjs --bin ${bin} --wasm ${wasm} --out ${CMAKE_BINARY_DIR}/npm)

@@ -38,7 +38,7 @@
 /* The version of this header. Below 1.0 a new minor version may break callers, and the library's
  * SOVERSION then grows. */
 #define QTET_VERSION_MAJOR 0
-#define QTET_VERSION_MINOR 2
+#define QTET_VERSION_MINOR 3
 #define QTET_VERSION_PATCH 0
 #define QTET_VERSION_NUMBER \
   (QTET_VERSION_MAJOR * 10000 + QTET_VERSION_MINOR * 100 + QTET_VERSION_PATCH)
@@ -86,7 +86,7 @@ typedef struct qtet_log qtet_log;
 
 /* QTET_VERSION_NUMBER of the library that runs. */
 QTET_API uint32_t qtet_version(void);
-/* "0.2.0"; for ever. */
+/* "0.3.0"; for ever. */
 QTET_API const char* qtet_version_text(void);
 /* "bad-checksum", as in codec/FORMAT.md; "unknown" for a number that is none. For ever. */
 QTET_API const char* qtet_status_name(qtet_status status);
@@ -122,7 +122,7 @@ typedef struct {
   double latticeOrigin[3];
   const char* digest;    /* SHA-256 of the log, 64 lower-case hexadecimal digits */
   const char* source;    /* file name of the mesh that it was made from */
-  const char* generator; /* "qtet 0.2.0" */
+  const char* generator; /* "qtet 0.3.0" */
 } qtet_log_info;
 
 typedef struct {

@@ -33,7 +33,6 @@ OrderedJson infoJson(const OpenedLog& log) {
                       {"minimum", field.minimum},
                       {"range", field.range},
                       {"missingValues", field.hasMissing},
-                      {"gaps", field.hasMissing},  // its name in version 0.1, until 0.3
                       {"bytes", bytes}});
   }
   return {{"digest", log.file.digest()},

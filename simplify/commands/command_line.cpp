@@ -19,17 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Options that had another name in version 0.1, each taken until version 0.3.
-constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
-    {"--hull-weight", "--boundary-weight"}};
-
-Words withNewNames(Words words) {
-  for (std::string& word : words)
-    for (const auto& [old, now] : kRenamed)
-      if (word == old || word.starts_with(std::string(old) + "=")) word.replace(0, old.size(), now);
-  return words;
-}
-
 /// Words without a dash that no place is left for. Boost's own error does not say which they are.
 constexpr const char* kTooMany = "one too many";
 
@@ -77,11 +66,7 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
   all.add(options_).add(hidden);
   try {
     const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(withNewNames(words))
-                  .options(all)
-                  .positional(places)
-                  .style(style)
-                  .run(),
+    po::store(po::command_line_parser(words).options(all).positional(places).style(style).run(),
               values_);
     po::notify(values_);
   } catch (po::error& error) {

@@ -188,10 +188,7 @@ OrderedJson reportOf(const Request& request, const ReadReport& read, const Pipel
       {"levels", manifest.levels.size() - 1},
       {"chunks", from.index.chunks.size()}};
   report["records"] = from.statistics.records;
-  if (from.boundaryWeight) {
-    report["boundaryWeight"] = *from.boundaryWeight;
-    report["hullWeight"] = *from.boundaryWeight;  // its name in version 0.1, until 0.3
-  }
+  if (from.boundaryWeight) report["boundaryWeight"] = *from.boundaryWeight;
   addSizes(made, report);
   if (!from.index.closing.empty()) report["kept"] = closingJson(from.index, manifest);
   report["error"] = measureReport(request.pipeline.measure, manifest.levels.front().error);

@@ -6,13 +6,21 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Sample, 2> kSamples{{
+constexpr std::array<Sample, 6> kSamples{{
     {"box", "the unit cube, 3,072 tetrahedra, one scalar field",
      [](std::uint64_t) { return boxSample(); }, kBoxCells, kBoxCells},
     {"fin",
      "supersonic flow round a swept fin, 212,544 tetrahedra or more, density, pressure and "
      "velocity",
      finSample, kFinCells, kMaxSampleCells},
+    {"beam", "a loaded cantilever, 67,200 tetrahedra, stress and displacement",
+     [](std::uint64_t) { return beamSample(); }, kBeamCells, kBeamCells},
+    {"spring", "a coil spring, 107,520 tetrahedra, stress and displacement",
+     [](std::uint64_t) { return springSample(); }, kSpringCells, kSpringCells},
+    {"ball", "a planet's core, mantle and crust, 82,944 tetrahedra, temperature and layers",
+     [](std::uint64_t) { return ballSample(); }, kBallCells, kBallCells},
+    {"elbow", "flow through a bent pipe, 72,000 tetrahedra, pressure and velocity",
+     [](std::uint64_t) { return elbowSample(); }, kElbowCells, kElbowCells},
 }};
 
 }  // namespace

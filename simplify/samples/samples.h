@@ -13,7 +13,8 @@
 
 namespace qtet {
 
-inline constexpr std::uint64_t kBoxCells = 3072, kFinCells = 212544;
+inline constexpr std::uint64_t kBoxCells = 3072, kFinCells = 212544, kBeamCells = 67200,
+                               kSpringCells = 107520, kBallCells = 82944, kElbowCells = 72000;
 /// A mesh of this many cells takes some 30 GB to simplify.
 inline constexpr std::uint64_t kMaxSampleCells = 100'000'000;
 
@@ -43,5 +44,21 @@ struct Sample {
 /// many as asked for, in layers that grow from the wall; fields Density, Pressure, Velocity (free
 /// stream: 1, 1/1.4, Mach 2.95).
 [[nodiscard]] TetMesh finSample(std::uint64_t cells = kFinCells);
+
+/// A cantilever of 10 x 1 x 1.6, loaded at its free end, by Euler and Bernoulli's formulas: 67,200
+/// tetrahedra; fields VonMises, Displacement.
+[[nodiscard]] TetMesh beamSample();
+
+/// Three and a half coils of a round wire under load: 107,520 tetrahedra; fields ShearStress,
+/// Displacement.
+[[nodiscard]] TetMesh springSample();
+
+/// A ball with hot plumes: 82,944 tetrahedra; field Temperature, and the cell field Layer (1 core,
+/// 2 mantle, 3 crust).
+[[nodiscard]] TetMesh ballSample();
+
+/// A pipe that turns by 90 degrees, and the flow in it: 72,000 tetrahedra; fields Pressure, and
+/// Velocity (0 at the wall).
+[[nodiscard]] TetMesh elbowSample();
 
 }  // namespace qtet

@@ -59,7 +59,7 @@ SETTINGS = [
             "none",
             "--placement",
             "optimal",
-            "--hull-weight",
+            "--boundary-weight",
             "15000",
         ],
     ),

@@ -16,7 +16,7 @@ RESULTS = pathlib.Path(__file__).with_name("results.py")
 TOOL = """
     if sys.argv[1] == "extract":
         pathlib.Path(sys.argv[sys.argv.index("-o") + 1]).write_text("mesh")
-    elif "--hull-weight" in sys.argv:
+    elif "--boundary-weight" in sys.argv:
         sys.exit("qtet: the hull is too heavy\\nqtet: see 'qtet simplify --help'")
     else:
         pathlib.Path(sys.argv[sys.argv.index("-o") + 1]).write_text("log")

@@ -11,6 +11,7 @@ import {checks} from './checks.mjs';
 import {dropChecks} from './drop_checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
+import {galleryChecks} from './gallery_checks.mjs';
 import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {lineChecks} from './line_checks.mjs';
@@ -47,7 +48,7 @@ const lists = {
   checks,
   element: {...elementChecks, ...lineChecks},
   transport: transportChecks,
-  publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks},
+  publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
   edge: edgeChecks,
   legend: {

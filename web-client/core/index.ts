@@ -38,7 +38,4 @@ export {kOpacityPath, transferTables, type TransferTables} from './picture/trans
 export type {TriangleSoup} from './picture/triangle_soup';
 export type {CoarseCells, VolumeCells} from './picture/volume';
 export {kNoViewRequest, type ViewRequest} from './protocol/view_request';
-// Aliases of version 0.1.
-export {kMaxPlanes as kMostPlanes} from './picture/display';
-export {kNoViewRequest as kNoWishes, type ViewRequest as Wishes} from './protocol/view_request';
 export type {FromWorker, Snapshot, Source, StreamState} from './session/worker_messages';

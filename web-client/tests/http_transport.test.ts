@@ -276,6 +276,24 @@ describe('ranges', () => {
     expect(errors()).toEqual(['truncated']);
   });
 
+  test('anAnswerThatIsTooShortIsAskedForAgainPastTheCache', async () => {
+    const log = {...kLog, chunks: 3000};
+    expectLog(log);
+    const it = host(() => file(log));
+    const whole = it.fetch;
+    let cut = 0;
+    it.fetch = async (url, init) => {
+      const response = await whole(url, init);
+      if (init.cache === 'no-store' || it.asked.length === 1) return response;
+      ++cut;
+      const bytes = new Uint8Array(await response.arrayBuffer());
+      return new Response(bytes.slice(0, -100), {status: 206, headers: response.headers});
+    };
+    session(it, 'range');
+    await settle(1000);
+    expect([cut > 0, errors(), states().at(-1)]).toEqual([true, [], 'complete']);
+  });
+
   test('noMoreIsAskedForThanTheCreditAllows', async () => {
     const log = {...kLog, chunks: 5000};
     expectLog(log);

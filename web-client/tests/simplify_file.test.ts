@@ -1,23 +1,25 @@
 import {readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
-import {beforeAll, expect, test} from 'vitest';
+import {beforeAll, expect, test as given} from 'vitest';
 import type {QtetError} from '../core/protocol/errors';
 import {simplifyFile} from '../core/simplify/simplify_file';
 import type {PageFile} from '../core/simplify/page_files';
 
+const bytes = readFileSync(join(dirname(process.env.QTET_WASM!), 'qtet-simplify.wasm'));
+/** Empty: the build did without. */
+const test = given.skipIf(bytes.length === 0);
 let module: WebAssembly.Module;
 beforeAll(() => {
-  const codec = process.env.QTET_WASM!;
-  module = new WebAssembly.Module(readFileSync(join(dirname(codec), 'qtet-simplify.wasm')));
+  if (bytes.length > 0) module = new WebAssembly.Module(bytes);
 });
 
 /** Gives fewer bytes than asked for, as a file may. */
 function fileOf(name: string, text: string, most = 7): PageFile {
-  const bytes = new TextEncoder().encode(text);
+  const content = new TextEncoder().encode(text);
   return {
     name,
-    size: bytes.length,
-    read: (at, length) => bytes.subarray(at, at + Math.min(length, most)),
+    size: content.length,
+    read: (at, length) => content.subarray(at, at + Math.min(length, most)),
   };
 }
 

@@ -129,7 +129,7 @@ def library():
 
 
 def version():
-    """That of libqtet.so: "0.2.0"."""
+    """That of libqtet.so: "0.3.0"."""
     text = library().qtet_version_text
     text.restype = _text
     return text().decode()

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "proto/checksum.h"
@@ -101,6 +102,31 @@ TEST(Samples, areTheSameBitsEverywhere) {
             "e4df8ec512417fbb80e7f26c44df7af55fe99949127dd50bb35376d62b5c5bcf");
   EXPECT_EQ(sha256Hex(vtuBytes(finSample())),
             "0739352e9c6b0468a206b6cd4dbb498cb546b67b18df69897f9c11c5f0e4c7ee");
+  EXPECT_EQ(sha256Hex(vtuBytes(beamSample())),
+            "2cd33d52b33cea0787cde7e1d10a0b196592fb38288d41b71e0a2bd8201e9e25");
+  EXPECT_EQ(sha256Hex(vtuBytes(springSample())),
+            "a9f51e116c1ff5b713ad0ae885750ac52250967326cdf9854a7741264345306b");
+  EXPECT_EQ(sha256Hex(vtuBytes(ballSample())),
+            "c973fc8d34be64d69a7b41b48cc6353d749a7cbb0c7e6999e8fe17bd8b1dbc02");
+  EXPECT_EQ(sha256Hex(vtuBytes(elbowSample())),
+            "44a12ba93dee376fa670523297f0c01466247d2ab735cd3c706a5fd74e3d8b54");
+}
+
+TEST(Samples, solidsAreRoundAndTheirFieldsAreAsTheFormulasSay) {
+  const TetMesh beam = beamSample(), ball = ballSample(), elbow = elbowSample();
+  double sag = 0, farthest = 0;
+  for (std::size_t v = 0; v < beam.points.size(); ++v)
+    if (beam.points[v][0] == 10) sag = std::min(sag, beam.fields[1].values[3 * v + 2]);
+  EXPECT_NEAR(sag, -40.0 * 1000 / (3 * 2e5 * 1.6 * 1.6 * 1.6 / 12), 1e-4);  // P L^3 / 3 E I
+  for (const Position& p : ball.points)
+    farthest = std::max(farthest, std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]));
+  EXPECT_NEAR(farthest, 1, 1e-6);
+  std::array<std::size_t, 4> layers{};
+  for (const double layer : ball.fields[1].values) ++layers[static_cast<std::size_t>(layer)];
+  EXPECT_EQ(layers, (std::array<std::size_t, 4>{0, 6000, 42000, 34944}));
+  double fastest = 0;
+  for (const double v : elbow.fields[1].values) fastest = std::max(fastest, v);
+  EXPECT_GT(fastest, 1.9);
 }
 
 TEST(Samples, theFinComesInSizes) {

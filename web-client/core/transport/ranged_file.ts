@@ -129,10 +129,20 @@ export class RangedFile {
     else if (this.frontSize < this.firstBytes) this.size = this.frontSize;
   }
 
+  /**
+   * Chromium keeps parts of files. Where a request meets several of them, it may give fewer bytes
+   * than asked for, without an error. Then they come past its cache.
+   */
   private async range(from: number, to: number, signal: AbortSignal): Promise<Uint8Array> {
+    const bytes = await this.rangeBy(from, to, {signal});
+    if (bytes.length >= to - from) return bytes;
+    return this.rangeBy(from, to, {signal, cache: 'no-store'});
+  }
+
+  private async rangeBy(from: number, to: number, init: RequestInit): Promise<Uint8Array> {
     const response = await fetchChecked(this.fetch, this.url, {
+      ...init,
       headers: {Range: `bytes=${from}-${to - 1}`},
-      signal,
     });
     const tag = response.headers.get('etag') ?? '';
     if (tag !== this.tag)
