@@ -13,11 +13,11 @@ for name in "${wanted[@]}"; do
   compgen -G "$folder/$name-[0-9]*/" >/dev/null || missing+=("$name")
 done
 [[ ${#missing[@]} == 0 ]] && exit 0
-command -v dpkg-source >/dev/null || {
-  echo "setup: there is no dpkg-source; configure with -DQTET_BROWSER_SIMPLIFIER=OFF," \
-    "and the page takes dropped logs alone" >&2
+without() {
+  echo "setup: $1; the browser's simplifier is left out, and the page takes dropped logs alone" >&2
   exit 0
 }
+command -v dpkg-source >/dev/null || without "there is no dpkg-source"
 printf 'setup: fetching the sources of %s\n' "${missing[*]}"
 rm -rf $folder/apt
 mkdir -p $folder/apt/lists/partial
@@ -28,11 +28,11 @@ echo "deb-src [signed-by=$keys] http://deb.debian.org/debian bookworm main" \
 of=(-o "Dir::Etc::SourceList=$PWD/$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null
   -o "Dir::State::Lists=$PWD/$folder/apt/lists" -o Dir::Cache::srcpkgcache= -o Dir::Cache::pkgcache=
   -o APT::Sandbox::User=root)
-apt-get -qq "${of[@]}" update
-(
-  cd $folder/apt
-  apt-get -qq "${of[@]}" source "${missing[@]}" >/dev/null
-)
+fetch() {
+  apt-get -qq "${of[@]}" update && cd $folder/apt &&
+    apt-get -qq "${of[@]}" source "${missing[@]}" >/dev/null
+}
+(fetch) || without "Debian's sources cannot be fetched (the reason stands above)"
 for name in "${missing[@]}"; do
   rm -rf $folder/apt/"$name"-[0-9]*/testdata # 140 MB of Draco's
   mv $folder/apt/"$name"-[0-9]*/ $folder/

@@ -117,6 +117,12 @@ def bill_of_materials():
     }
 
 
+def check_viewer():
+    """The browser's simplifier is there: a build without Debian's sources leaves it out."""
+    if not (BUILD / "web-client/qtet-simplify.wasm").stat().st_size:
+        raise SystemExit("the browser's simplifier was left out; run make setup, and build again")
+
+
 def check_versions(folder):
     """Every file says the same version."""
     npm = _client()["version"]
@@ -132,6 +138,7 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     os.environ["SOURCE_DATE_EPOCH"] = str(backend.date())
+    check_viewer()
     backend.build_wheel(folder)
     backend.build_sdist(folder)
     npm_package(folder)

@@ -230,7 +230,7 @@ def ctrl_c_ends_the_work(mesh):
 logs_are_the_tools()
 shapes_and_types_do_not_matter()
 what_is_wrong_is_an_exception()
-large = grid(20)
+large = grid(32)  # a second and a half: reports come every 0.1 s
 progress_is_told_and_may_end_the_work(large)
 ctrl_c_ends_the_work(large)
 print("qtet.simplify makes the tool's logs")
