@@ -45,7 +45,7 @@ struct LatticeFileMesh {
 [[nodiscard]] LatticeFileMesh fileMesh(const LatticeMesh& mesh);
 
 /// Errors: bad-input (a coordinate that float32 does not hold, for formats of nothing else;
-/// `format` is ".stl").
+/// `format` is ".glb").
 [[nodiscard]] Status fitsFloats(std::span<const std::array<double, 3>> points, const char* format);
 
 /// The boundary of a mesh with the points that it uses, renumbered in their order, and its point

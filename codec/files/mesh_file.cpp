@@ -12,20 +12,17 @@ namespace qtet {
 bool needsLattice(std::string_view ending) { return ending == ".glb" || ending == ".drc"; }
 
 bool holdsFields(std::string_view ending, std::string_view association) {
-  if (ending == ".stl" || ending == ".obj") return false;
-  return association != "cell" || !(ending == ".ply" || needsLattice(ending));
+  if (ending == ".obj") return false;
+  return association != "cell" || !needsLattice(ending);
 }
 
 Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending) {
   if (ending == ".vtu") return vtuBytes(mesh);
   if (ending == ".vtk") return legacyVtkBytes(mesh);
   if (ending == ".msh") return gmshBytes(mesh);
-  if (ending == ".stl") return stlBytes(surfaceOf(mesh));
-  if (ending == ".ply") return plyBytes(surfaceOf(mesh), mesh.doublePoints);
   if (ending == ".obj") return objBytes(surfaceOf(mesh));
-  if (ending == ".usda") return usdaBytes(mesh);
-  assert(ending == ".npz");
-  return npzBytes(mesh);
+  assert(ending == ".usda");
+  return usdaBytes(mesh);
 }
 
 Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending,

@@ -11,7 +11,7 @@
 namespace qtet {
 
 /// Every ending that a mesh can be written with, between blanks.
-inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .stl .ply .obj .glb .drc .usda .npz";
+inline constexpr const char* kWrittenEndings = ".vtu .vtk .msh .obj .glb .drc .usda";
 
 /// Whether this kind of file is made of a mesh on the lattice alone.
 [[nodiscard]] bool needsLattice(std::string_view ending);
@@ -41,26 +41,16 @@ struct MeshFileOptions {
 /// cells).
 [[nodiscard]] Result<Bytes> gmshBytes(const FileMesh& mesh);
 
-/// The boundary's triangles. STL has neither fields nor shared vertices, and floats; PLY, binary
-/// and little-endian, has point fields as properties of the vertices (NAME, or NAME_0, NAME_1, ...
-/// of vectors; letters, digits and _ stay, everything else becomes _); OBJ is text without fields.
-/// Errors: bad-input (more triangles than the format's 32 bits can count; coordinates that .stl's
-/// floats do not hold).
-[[nodiscard]] Result<Bytes> stlBytes(const FileSurface& surface);
-[[nodiscard]] Result<Bytes> plyBytes(const FileSurface& surface, bool doublePoints);
+/// The boundary's triangles as text, without fields.
 [[nodiscard]] Bytes objBytes(const FileSurface& surface);
 
 /// OpenUSD text: an Xform `mesh` of two prims. `tetrahedra` is a TetMesh with its surface faces;
 /// fields are primvars, of points `vertex`, of cells `uniform`. Its purpose is `guide`, because
 /// programs draw `boundary`. That is a Mesh of the boundary's points alone, with their fields, and
 /// the first of these as displayColor (viridis over its range, grey where it is missing). Names
-/// become USD identifiers as in PLY; displayName has them in full. Errors: bad-input (coordinates
+/// become USD identifiers (letters, digits and _ stay, everything else becomes _); displayName has
+/// them in full. Errors: bad-input (coordinates
 /// that its floats do not hold).
 [[nodiscard]] Result<Bytes> usdaBytes(const FileMesh& mesh);
-
-/// numpy's archive: `points` (n, 3), `tetrahedra` (m, 4), `boundary` (k, 3) and each field as
-/// `point_NAME` or `cell_NAME`, (n) or (n, components), in its own type. Not compressed, so that
-/// numpy maps it into memory. Errors: bad-input (4 GiB or more in all: ZIP without extensions).
-[[nodiscard]] Result<Bytes> npzBytes(const FileMesh& mesh);
 
 }  // namespace qtet

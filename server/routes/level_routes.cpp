@@ -39,7 +39,6 @@ std::string_view mediaType(LevelForm form) {
   switch (form) {
     case LevelForm::kVtu: return "application/vnd.vtk.vtu+xml";
     case LevelForm::kGlb: return "model/gltf-binary";
-    case LevelForm::kStl: return "model/stl";
     case LevelForm::kObj: return "model/obj";
     case LevelForm::kUsda: return "model/vnd.usda";
     case LevelForm::kPng: return "image/png";
@@ -156,8 +155,8 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
   if (!form || isPicture(*form) || form == LevelForm::kIntervals)
     return problem(404, "not-found",
-                   "a level is to be had as {k}.vtu, .vtk, .msh, .usda, .npz, and its boundary as "
-                   "{k}.glb, .drc, .stl, .ply, .obj");
+                   "a level is to be had as {k}.vtu, .vtk, .msh, .usda, and its boundary as "
+                   "{k}.glb, .drc, .obj");
   const OrRefusal<std::uint32_t> level = levelOfName(name.substr(0, dot), target, *mesh);
   if (!level) return level.error();
   const OrRefusal<std::vector<std::uint32_t>> fields = wantedFields(target, *mesh);

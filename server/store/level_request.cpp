@@ -9,17 +9,14 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<std::pair<LevelForm, std::string_view>, 13> kForms = {{
+constexpr std::array<std::pair<LevelForm, std::string_view>, 10> kForms = {{
     {LevelForm::kVtu, "vtu"},
     {LevelForm::kVtk, "vtk"},
     {LevelForm::kMsh, "msh"},
-    {LevelForm::kStl, "stl"},
-    {LevelForm::kPly, "ply"},
     {LevelForm::kObj, "obj"},
     {LevelForm::kGlb, "glb"},
     {LevelForm::kDrc, "drc"},
     {LevelForm::kUsda, "usda"},
-    {LevelForm::kNpz, "npz"},
     {LevelForm::kPng, "png"},
     {LevelForm::kWebp, "webp"},
     {LevelForm::kIntervals, "intervals"},

@@ -17,13 +17,10 @@ enum class LevelForm : std::uint8_t {
   kVtu,
   kVtk,
   kMsh,
-  kStl,
-  kPly,
   kObj,
   kGlb,
   kDrc,
   kUsda,
-  kNpz,
   kPng,
   kWebp,
   kIntervals

@@ -40,7 +40,7 @@ int runConvert(const Words& words, Console& console) {
        "extract; .qtet files are made by simplify.\n"
        "--json: output, kind, bytes, tetrahedra, vertices, fields [{name, association, components, "
        "type}] that the file holds, input, notes; of a log what extract says.",
-       "  qtet convert part.msh -o part.vtu\n  qtet convert part.vtu -o skin.stl\n  qtet convert "
+       "  qtet convert part.msh -o part.vtu\n  qtet convert part.vtu -o skin.obj\n  qtet convert "
        "part.qtet -o part.usda\n  qtet convert - --format msh --to vtu -o - <part.msh >part.vtu\n  "
        "qtet convert ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.vtu\n"},
       options, {"IN"});

@@ -174,9 +174,9 @@ int runExtract(const Words& words, Console& console) {
        "extract LOG.qtet (--level K | --tets N | --ratio R | --error NAME=E | --boundary-error E) "
        "-o OUT",
        "Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk, .msh (Gmsh "
-       "2.2), .usda (OpenUSD) or .npz (numpy), its boundary as\n"
-       ".stl, .ply, .obj, .glb (glTF with Draco) or .drc. .stl and .obj hold no fields, .ply, .glb "
-       "and .drc those of points. Where no level is small enough it is level 0.\n"
+       "2.2) or .usda (OpenUSD), its boundary as\n"
+       ".obj, .glb (glTF with Draco) or .drc. .obj holds no fields, .glb and .drc hold those of "
+       "points. Where no level is small enough it is level 0.\n"
        "The last level is the input's mesh, with its own numbering and numbers where the log was "
        "made with --keep-order and --lossless.\n"
        "Errors are those that the log tells, measured when it was made (qtet info shows them).\n"

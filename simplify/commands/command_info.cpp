@@ -3,13 +3,11 @@
 #include <iomanip>
 #include <sstream>
 
-#include "codec/files/atomic_file.h"
 #include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "simplify/commands/closing_report.h"
 #include "simplify/commands/columns.h"
 #include "simplify/commands/command_line.h"
-#include "simplify/commands/error_plot.h"
 #include "simplify/commands/error_table.h"
 #include "simplify/log/opened_log.h"
 
@@ -131,28 +129,16 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
     console.out << moreFields(info["fields"].size(), "--all shows them");
 }
 
-Status writePlot(const OpenedLog& log, const std::filesystem::path& file,
-                 const std::string& title) {
-  std::vector<std::uint64_t> bytes;
-  for (std::size_t level = 0; level < log.manifest.levels.size(); ++level)
-    bytes.push_back(log.prefixBytes(level));
-  const Result<std::vector<ErrorCurve>> curves = errorCurves(log.manifest, bytes);
-  if (!curves) return std::unexpected(curves.error());
-  const std::string svg = errorPlotSvg(title, *curves);
-  return writeFileAtomically(file, Bytes(svg.begin(), svg.end()));
-}
-
 }  // namespace
 
 int runInfo(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("json", "print one JSON object")(
-      "all", "show every level and field, not 20 and 10 of them")(
-      "plot", po::value<std::string>(), "draw error against bytes into this file, NAME.svg");
+      "all", "show every level and field, not 20 and 10 of them");
   const ParsedWords parsed(
       words,
-      {"info", "info LOG.qtet [--all] [--plot FILE.svg] [--json]",
+      {"info", "info LOG.qtet [--all] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. "
        "Level 0 is the base mesh,\n"
        "the last level the input's mesh; `cumulative` is the length of the file's prefix that "
@@ -167,22 +153,14 @@ int runInfo(const Words& words, Console& console) {
        "vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
        "fractions and of some levels only: boundary {toLevel {mean, max}, toOriginal {mean, max}}, "
        "volumeLost, volumeGained, fields [{rms, max}] in the order of the fields above.",
-       "  qtet info fin.qtet\n  qtet info fin.qtet --plot fin.svg\n  qtet info fin.qtet --json | "
-       "jq '.levels[0]'\n"},
+       "  qtet info fin.qtet\n  qtet info fin.qtet --json | jq '.levels[0]'\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const bool asJson = parsed.has("json");
   const auto input = parsed.get<std::string>("LOG");
-  const auto plot = parsed.has("plot") ? parsed.get<std::string>("plot") : "";
-  if (parsed.has("plot"))
-    if (Status checked = checkOutput(plot, ".svg", input); !checked)
-      return reportFailure(checked.error(), asJson, console);
 
   const Result<OpenedLog> log = openLog(input);
   if (!log) return reportFailure(log.error(), asJson, console);
-  if (parsed.has("plot"))
-    if (Status written = writePlot(*log, plot, log->manifest.source); !written)
-      return reportFailure(written.error(), asJson, console);
   const OrderedJson info = infoJson(*log);
   if (asJson) {
     printJson(info, console);

@@ -19,7 +19,7 @@
 #include <stdexcept>
 
 #include "codec/files/atomic_file.h"
-#include "simplify/commands/error_plot.h"
+#include "tests/bench/parts/error_plot.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/samples/samples.h"
 #include "tests/bench/parts/default_vtu.h"

@@ -35,7 +35,7 @@ const kUnasked = new Set([
   'readViewer 404',
 ]);
 
-const kForms = ['vtu', 'vtk', 'msh', 'usda', 'npz', 'glb', 'drc', 'stl', 'ply', 'obj'];
+const kForms = ['vtu', 'vtk', 'msh', 'usda', 'glb', 'drc', 'obj'];
 
 const complaints = [];
 const seen = new Set();

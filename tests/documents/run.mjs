@@ -5,7 +5,7 @@
 // A document's blocks run in their order, in one folder that has meshes and logs (scratch.mjs). Its
 // fences say the language, or `text` where there is nothing to run. If a block cannot run in a
 // test, its fence gives the reason, ```sh no-run: needs root. It is checked all the same: its
-// syntax, and the options that it names. Commands in sentences (`qtet info --plot`) are checked
+// syntax, and the options that it names. Commands in sentences (`qtet info --all`) are checked
 // likewise.
 
 import {resolve} from 'node:path';

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "simplify/commands/error_plot.h"
 #include "simplify/log/opened_log.h"
+#include "tests/bench/parts/error_plot.h"
 
 namespace qtet::bench {
 

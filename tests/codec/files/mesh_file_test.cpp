@@ -18,17 +18,15 @@ Result<Bytes> tetrahedronFile(double size, std::string_view ending) {
 
 TEST(MeshFile, coordinatesBeyondFloatsAreRefusedWhereAFormatKnowsNoOther) {
   constexpr double kMax = std::numeric_limits<float>::max();
-  for (const char* ending : {".stl", ".usda"}) {
-    EXPECT_TRUE(tetrahedronFile(kMax, ending)) << ending;
-    EXPECT_TRUE(tetrahedronFile(-kMax, ending)) << ending;
-    for (const double size : {1.01 * kMax, -1e308}) {
-      const Result<Bytes> refused = tetrahedronFile(size, ending);
-      ASSERT_FALSE(refused) << ending << size;
-      EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
-      EXPECT_NE(refused.error().message.find(ending), std::string::npos) << refused.error().message;
-    }
+  EXPECT_TRUE(tetrahedronFile(kMax, ".usda"));
+  EXPECT_TRUE(tetrahedronFile(-kMax, ".usda"));
+  for (const double size : {1.01 * kMax, -1e308}) {
+    const Result<Bytes> refused = tetrahedronFile(size, ".usda");
+    ASSERT_FALSE(refused) << size;
+    EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(refused.error().message.find(".usda"), std::string::npos) << refused.error().message;
   }
-  for (const char* ending : {".vtu", ".vtk", ".msh", ".ply", ".obj", ".npz"})
+  for (const char* ending : {".vtu", ".vtk", ".msh", ".obj"})
     EXPECT_TRUE(tetrahedronFile(1e308, ending)) << ending;
 }
 

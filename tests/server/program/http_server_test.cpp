@@ -316,7 +316,7 @@ TEST_F(LevelsTest, whileALevelIsMadeOthersAreServed) {
 
 TEST_F(LevelsTest, beyondTheBoundTheAnswerIsToComeBack) {
   constexpr std::size_t kLevels = 11;  // the maker breaks the last one of 12
-  const std::vector<std::string> forms = {"drc", "glb", "stl", "ply", "obj", "vtu", "vtk"};
+  const std::vector<std::string> forms = {"drc", "glb", "obj", "vtu", "vtk", "msh"};
   std::vector<std::unique_ptr<RawClient>> waiting;
   for (std::size_t i = 0; i < limits::kMaxLevelJobs; ++i) {
     waiting.push_back(std::make_unique<RawClient>(server_.port()));
@@ -327,12 +327,12 @@ TEST_F(LevelsTest, beyondTheBoundTheAnswerIsToComeBack) {
   }
   EXPECT_TRUE(server_.comesTo("levels_wanted", limits::kMaxLevelJobs));
   RawClient late(server_.port());
-  const HttpResponse refused = late.get(folder_.log("levels/10.npz"));
+  const HttpResponse refused = late.get(folder_.log("levels/10.usda"));
   EXPECT_EQ(refused.status, 503u);
   EXPECT_EQ(refused.header("retry-after"), "2");
   maker_.release();
   for (auto& client : waiting) EXPECT_EQ(client->receive().status, 200u);
-  EXPECT_EQ(late.get(folder_.log("levels/10.npz")).status, 200u);
+  EXPECT_EQ(late.get(folder_.log("levels/10.usda")).status, 200u);
 }
 
 TEST_F(LevelsTest, oneAddressLeavesPlacesToOthers) {

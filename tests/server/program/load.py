@@ -343,7 +343,7 @@ def levels(life, rng):
     mesh = life.mesh(rng)
     if mesh is None:
         return
-    form = rng.choice(["vtu", "vtk", "msh", "usda", "npz", "glb", "drc", "stl", "ply", "obj"])
+    form = rng.choice(["vtu", "vtk", "msh", "usda", "glb", "drc", "obj"])
     path = f"/v1/logs/{mesh['digest']}/levels/" + rng.choice(
         [f"{rng.randrange(len(mesh['levels']))}.{form}", f"fit.{form}?tets={rng.randrange(20000)}"]
     )

@@ -381,8 +381,6 @@ TEST_F(Tool, measuringCanBeLeftOut) {
   EXPECT_FALSE(run("info bare.qtet --json").json()["levels"][0].contains("error"));
   EXPECT_EQ(run("info bare.qtet").out.find("boundary, %"), std::string::npos);
   expectFailure("extract bare.qtet -o level.vtu --boundary-error 0.1", 1, "--measure levels");
-  expectFailure("info bare.qtet --plot bare.svg", 1, "--measure levels");
-  EXPECT_FALSE(fs::exists(folder_ / "bare.svg"));
   expectFailure("simplify box.vtu -o x.qtet --measure some", 2, "none, levels, all");
   expectFailure("simplify box.vtu -o x.qtet --measure none --max-boundary-error 0.1", 2,
                 "leave out --measure none");
@@ -474,22 +472,6 @@ TEST_F(Tool, extractDecodesTheFieldsThatAreAskedForAlone) {
   expectFailure("extract damaged.qtet --ratio 1 -o level.vtu", 1, "CRC-32C");
   const Ran ran = run("extract damaged.qtet --ratio 1 --fields none -o level.vtu");
   EXPECT_EQ(ran.code, 0) << ran.err;
-}
-
-TEST_F(Tool, theErrorsAreDrawn) {
-  makeBoxLog();
-  ASSERT_EQ(run("info box.qtet --plot box.svg").code, 0);
-  const std::string svg = contentOf(folder_ / "box.svg");
-  EXPECT_TRUE(svg.starts_with("<svg ")) << svg.substr(0, 80);
-  EXPECT_TRUE(svg.ends_with("</svg>\n"));
-  for (const char* words : {"boundary, max", "boundary, mean", "Scalar, rms", "box.vtu",
-                            "bytes read", "prefers-color-scheme: dark", " kB<"})
-    EXPECT_NE(svg.find(words), std::string::npos) << words;
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_EQ(svg.find("inf"), std::string::npos);
-  expectFailure("info box.qtet --plot box.png", 2, ".svg");
-  expectFailure("info box.qtet --plot box.jpg", 2, ".svg");
-  expectFailure("info box.qtet --plot nowhere/box.svg", 1, "nowhere");
 }
 
 TEST_F(Tool, verifyProvesTheMesh) {

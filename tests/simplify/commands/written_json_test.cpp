@@ -65,11 +65,11 @@ TEST_F(WrittenJson, onlyFieldsThatTheFileHoldsAreNamed) {
   const Json chosen = run("extract box.qtet --level 0 --fields Part -o a.vtu --json").json();
   EXPECT_THAT(namesOf(chosen["fields"]), ElementsAre("Part"));
   EXPECT_EQ(chosen["error"]["fields"], Json::array({errors[1]}));
-  const Json surface = run("extract box.qtet --level 0 -o a.ply --json").json();
+  const Json surface = run("extract box.qtet --level 0 -o a.glb --json").json();
   EXPECT_THAT(namesOf(surface["fields"]), ElementsAre("Scalar"));
   EXPECT_EQ(surface["error"]["fields"], Json::array({errors[0]}));
-  EXPECT_TRUE(run("convert box.vtu -o a.stl --json").json()["fields"].empty());
-  EXPECT_EQ(run("convert box.vtu -o a.npz --json").json()["fields"].size(), 2u);
+  EXPECT_TRUE(run("convert box.vtu -o a.obj --json").json()["fields"].empty());
+  EXPECT_EQ(run("convert box.vtu -o a.vtk --json").json()["fields"].size(), 2u);
 }
 
 TEST_F(WrittenJson, convertTellsWhatItWroteAlsoOfALog) {

@@ -1,4 +1,4 @@
-#include "simplify/commands/error_plot.h"
+#include "tests/bench/parts/error_plot.h"
 
 #include <algorithm>
 #include <array>
@@ -185,29 +185,6 @@ class ErrorPlot {
 };
 
 }  // namespace
-
-Result<std::vector<ErrorCurve>> errorCurves(const Manifest& manifest,
-                                            const std::vector<std::uint64_t>& bytes) {
-  std::vector<ErrorCurve> out{{"boundary, max", true, {}}, {"boundary, mean", true, {}}};
-  for (const ManifestField& field : manifest.fields)
-    out.push_back({field.name + ", rms", false, {}});
-  bool any = false;
-  for (const ManifestLevel& level : manifest.levels) {
-    if (!level.error) continue;
-    any = true;
-    if (level.level + 1 < bytes.size() && bytes[level.level + 1] == bytes[level.level]) continue;
-    const auto at = static_cast<double>(bytes[level.level]);
-    out[0].points.push_back({at, level.error->boundaryDistance()});
-    out[1].points.push_back({at, level.error->boundaryMean()});
-    for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-      out[f + 2].points.push_back({at, level.error->fields[f].rms});
-  }
-  if (!any)
-    return fail(ErrorCode::kNotFound,
-                "the log does not have its levels' errors; make it again with qtet simplify "
-                "--measure levels");
-  return out;
-}
 
 std::string errorPlotSvg(const std::string& title, const std::vector<ErrorCurve>& curves) {
   assert(!curves.empty());
