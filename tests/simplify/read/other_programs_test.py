@@ -23,8 +23,10 @@ except ImportError:
     h5py = None
 try:
     import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
 except ImportError:
-    vtk = None
+    print("skipped: VTK's Python modules are not installed")
+    sys.exit(77)
 
 qtet, meshes, out = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
 shutil.rmtree(out, ignore_errors=True)
@@ -50,13 +52,29 @@ def refused(*words):
     return done.stdout + done.stderr
 
 
+def arrays_of(path):
+    """points, tetrahedra, point_NAME and cell_NAME of a .vtu."""
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    grid = reader.GetOutput()
+    found = {
+        "points": vtk_to_numpy(grid.GetPoints().GetData()),
+        "tetrahedra": vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4),
+    }
+    for kind, data in (("point", grid.GetPointData()), ("cell", grid.GetCellData())):
+        for i in range(data.GetNumberOfArrays()):
+            found[f"{kind}_{data.GetArrayName(i)}"] = vtk_to_numpy(data.GetArray(i))
+    return {name: array.copy() for name, array in found.items()}
+
+
 def read(path, *words):
     """The mesh as numpy arrays, and the tool's notes."""
-    made = out / "read.npz"
+    made = out / "read.vtu"
     made.unlink(missing_ok=True)
     done = run("convert", path, *words, "-o", made)
     assert done.returncode == 0, (path, done.stderr)
-    return np.load(made), done.stderr
+    return arrays_of(made), done.stderr
 
 
 def volume(mesh):
@@ -164,7 +182,7 @@ def a_list_of_files_is_a_series():
     mesh, _ = read(listed, "--time", "0.5")
     assert (mesh["point_T"] == mesh["points"][:, 0] + 1).all()
     mesh, _ = read(listed, "--time", "all")
-    assert {"point_T@0", "point_T@0.5", "point_T@1"} <= set(mesh.files), mesh.files
+    assert {"point_T@0", "point_T@0.5", "point_T@1"} <= set(mesh), set(mesh)
     assert "it has 0, 0.5, 1" in refused("check", listed, "--time", "7")
     for text in ("no JSON", "{}", '{"file-series-version": "1.0", "files": [{"name": "at0.vtu"}]}'):
         listed.write_text(text)
@@ -350,7 +368,7 @@ def a_series_of_xdmf_is_read():
         mesh, _ = read(path, "--time", "0.25")
         assert (mesh["point_T"] == mesh["points"][:, 0] + 1).all()
         mesh, _ = read(path, "--time", "all")
-        assert {"point_T@0", "point_T@0.25", "point_T@0.5"} <= set(mesh.files), mesh.files
+        assert {"point_T@0", "point_T@0.25", "point_T@0.5"} <= set(mesh), set(mesh)
         assert "it has 0, 0.25, 0.5" in refused("check", path, "--time", "9")
 
 
@@ -395,7 +413,7 @@ def xdmf_of_fenics_is_read_here():
     assert (got["point_u"] == got["points"][:, 0] + 2).all()
     assert (got["point_p"].ravel() == got["points"][:, 1] + 2).all()
     got, _ = read(path, "--time", "all")
-    assert {"point_u@0.5", "point_p@1"} <= set(got.files), got.files
+    assert {"point_u@0.5", "point_p@1"} <= set(got), set(got)
     # dolfin: the first step has the mesh itself
     path_x = "//Grid[@Name=&quot;u&quot;]/Grid[1]"
     xdmf(path, series("u", path_x, x, mesh))
@@ -799,9 +817,9 @@ TESTS = [
     meshes_of_openfoam_are_checked,
     an_interrupt_ends_a_reader_that_hangs,
     pipes_are_read_like_files,
+    a_list_of_files_is_a_series,
+    pieces_of_exodus_are_read_together,
 ]
-if vtk:
-    TESTS += [a_list_of_files_is_a_series, pieces_of_exodus_are_read_together]
 chosen = sys.argv[4:]
 failed = 0
 for test in TESTS:
