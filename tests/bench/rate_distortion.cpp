@@ -19,11 +19,11 @@
 #include <stdexcept>
 
 #include "codec/files/atomic_file.h"
-#include "tests/bench/parts/error_plot.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/samples/samples.h"
 #include "tests/bench/parts/default_vtu.h"
 #include "tests/bench/parts/direct_error.h"
+#include "tests/bench/parts/error_plot.h"
 #include "tests/bench/parts/rate_curves.h"
 #include "tests/support/meshes.h"
 #include "tests/support/paths/test_paths.h"
