@@ -22,8 +22,11 @@ printf 'setup: fetching the sources of %s\n' "${missing[*]}"
 rm -rf $folder/apt
 mkdir -p $folder/apt/lists/partial
 trap 'rm -rf $folder/apt' EXIT
-keys=/usr/share/keyrings/debian-archive-keyring.gpg
-echo "deb-src [signed-by=$keys] http://deb.debian.org/debian bookworm main" \
+# From the mirror that this machine's packages come from.
+mirror=$(apt-get indextargets --format '$(SITE) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
+  awk '$2 ~ /^(bookworm|stable|oldstable)$/ && $3 == "main" && !found++')
+[[ -n $mirror ]] || without "apt knows no Debian 12"
+echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror" \
   >$folder/apt/sources.list
 of=(-o "Dir::Etc::SourceList=$PWD/$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null
   -o "Dir::State::Lists=$PWD/$folder/apt/lists" -o Dir::Cache::srcpkgcache= -o Dir::Cache::pkgcache=

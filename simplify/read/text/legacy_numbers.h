@@ -7,27 +7,17 @@
 #include <vector>
 
 #include "simplify/read/text/mesh_scanner.h"
+#include "simplify/read/vtu/vtu_document.h"
 
 namespace qtet {
 
-enum class LegacyNumber : std::uint8_t {
-  kInt8,
-  kUInt8,
-  kInt16,
-  kUInt16,
-  kInt32,
-  kUInt32,
-  kInt64,
-  kUInt64,
-  kFloat32,
-  kFloat64
-};
-
 struct LegacyType {
   std::string_view word;  ///< in the file, in small letters
-  LegacyNumber number;
-  const char* name;  ///< as MeshField's
-  [[nodiscard]] bool isFloat() const { return number >= LegacyNumber::kFloat32; }
+  NumberType number;      ///< one with numbers
+  const char* name;       ///< as MeshField's
+  [[nodiscard]] bool isFloat() const {
+    return number == NumberType::kFloat32 || number == NumberType::kFloat64;
+  }
 };
 
 /// Null for bits, texts and unknown words. `word` may have capitals.
@@ -36,7 +26,7 @@ struct LegacyType {
 /// Numbers that follow in the file.
 struct LegacyRun {
   std::uint64_t count;
-  LegacyNumber type;
+  NumberType type;
   const char* what;  ///< "cell types", for errors
 };
 
