@@ -34,6 +34,27 @@ export interface LaterHost extends ActionsHost, PanelsHost {
   readonly notices: {end(code: string): void};
 }
 
+/** A part that is loaded when it is wanted. The next call tries again if the server is away. */
+class Wanted<T> {
+  private loading: Promise<T> | null = null;
+
+  constructor(
+    private readonly load: () => Promise<T>,
+    private readonly failed: () => void,
+  ) {}
+
+  async get(): Promise<T | null> {
+    try {
+      this.loading ??= this.load();
+      return await this.loading;
+    } catch {
+      this.loading = null;
+      this.failed();
+      return null;
+    }
+  }
+}
+
 export class Later {
   readonly panels: Panels;
   readonly actions: Actions;
@@ -43,8 +64,8 @@ export class Later {
   private seen = '';
   /** The sentences about attributes that were shown last. */
   private wrong = '';
-  private pictures: Promise<Pictures> | null = null;
-  private meshDrop: Promise<MeshDrop> | null = null;
+  private readonly pictures: Wanted<Pictures>;
+  private readonly meshDrop: Wanted<MeshDrop>;
 
   constructor(
     private readonly page: Page,
@@ -58,6 +79,18 @@ export class Later {
     insertMarkup(find(root, '.notice'), kCube);
     insertMarkup(find(root, '.notice'), kDialogs);
     find(root, '.actions').inert = false;
+    this.pictures = new Wanted(
+      () => import('./picture/pictures').then(({Pictures}) => new Pictures(page, host)),
+      () => host.failed('no-picture', 'What makes pictures cannot be loaded. Try again later.'),
+    );
+    this.meshDrop = new Wanted(
+      () => import('./drop/mesh_drop').then(({MeshDrop}) => new MeshDrop(page, host)),
+      () =>
+        host.failed(
+          'dropped-mesh',
+          'What simplifies meshes cannot be loaded. Make a log by `qtet simplify` and drop that.',
+        ),
+    );
     this.actions = new Actions(page, host);
     this.panels = new Panels(page, host, this.actions, shell.cards);
     shell.progress.attach(new ErrorCurve(find(root, '.curve')));
@@ -122,38 +155,7 @@ export class Later {
 
   /** Opens the dialog that makes a picture. */
   async picture(): Promise<void> {
-    (await this.loadPictures())?.picture();
-  }
-
-  /** The next call tries again if the server is away. */
-  private async loadPictures(): Promise<Pictures | null> {
-    this.pictures ??= import('./picture/pictures').then(
-      ({Pictures}) => new Pictures(this.page, this.host),
-    );
-    try {
-      return await this.pictures;
-    } catch {
-      this.pictures = null;
-      this.host.failed('no-picture', 'What makes pictures cannot be loaded. Try again later.');
-      return null;
-    }
-  }
-
-  /** The next call tries again if the server is away. */
-  private async loadMeshDrop(): Promise<MeshDrop | null> {
-    try {
-      this.meshDrop ??= import('./drop/mesh_drop').then(
-        ({MeshDrop}) => new MeshDrop(this.page, this.host),
-      );
-      return await this.meshDrop;
-    } catch {
-      this.meshDrop = null;
-      this.host.failed(
-        'dropped-mesh',
-        'What simplifies meshes cannot be loaded. Make a log by `qtet simplify` and drop that.',
-      );
-      return null;
-    }
+    (await this.pictures.get())?.picture();
   }
 
   /** A log that is dropped is shown, a mesh is simplified before. A picture opens its view. */
@@ -185,8 +187,8 @@ export class Later {
     if (beginsLog(first)) this.host.stream.openFile(file);
     else if (file.name.endsWith('.qtet'))
       this.host.failed('dropped-mesh', `${file.name} is no log, or it is damaged. Copy it again.`);
-    else if (file.type.startsWith('image/')) await (await this.loadPictures())?.open(file);
-    else await (await this.loadMeshDrop())?.take(files);
+    else if (file.type.startsWith('image/')) await (await this.pictures.get())?.open(file);
+    else await (await this.meshDrop.get())?.take(files);
   }
 
   /** Must be called after every frame. */

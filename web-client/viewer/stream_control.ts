@@ -48,7 +48,8 @@ export class StreamControl {
   private openings = 0;
   /** The mesh that was opened last has a stream. */
   private started = false;
-  private log = '';
+  /** The address of the log that is open, as a file; empty: there is none. */
+  logAddress = '';
 
   constructor(
     private readonly page: Page,
@@ -120,11 +121,6 @@ export class StreamControl {
     if (before.startsWith('blob:')) URL.revokeObjectURL(before.replace(/#.*/, ''));
   }
 
-  /** The address of the log that is open, as a file; empty: there is none. */
-  get logAddress(): string {
-    return this.log;
-  }
-
   private leave(mesh: string | null): void {
     this.isChoosing = true;
     for (const name of kOfOneMesh) this.page.write(name, null);
@@ -177,10 +173,10 @@ export class StreamControl {
     const file = isLogFile(base) ? base.href : entry?.log;
     const transport = page.element.getAttribute('transport');
     const fields = this.firstFields(mesh);
-    this.log = file ?? logUrl(base, mesh);
+    this.logAddress = file ?? logUrl(base, mesh);
     client.start({
       url: file === undefined ? streamUrl(base) : '',
-      log: this.log,
+      log: this.logAddress,
       firstBytes: entry?.firstBytes,
       chunks: entry?.chunks,
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',

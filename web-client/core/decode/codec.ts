@@ -71,6 +71,7 @@ const kOfCells = 1;
 
 /** By the numbers of KnownErrors of codec/coding/level_columns.h. */
 const kKnownErrors: readonly KnownErrors[] = ['none', 'all', 'some'];
+
 interface Exports {
   memory: WebAssembly.Memory;
   _initialize?(): void;

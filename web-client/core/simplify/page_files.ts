@@ -20,7 +20,7 @@ const kNanosecondsAMs = 1e6;
 /** The descriptor of the folder, behind those of input, output and errors. */
 const kFolder = 3;
 const kWhence = {set: 0, current: 1, end: 2};
-/** Reading is all that the module may do. */
+/** All rights: what is not answered for here is refused. */
 const kRights = (1n << 64n) - 1n;
 
 interface OpenFile {

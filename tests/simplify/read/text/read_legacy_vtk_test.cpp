@@ -17,7 +17,6 @@
 #include <vtkUnstructuredGridWriter.h>
 
 #include <array>
-#include <random>
 
 #include "simplify/read/text/text_readers.h"
 #include "simplify/read/vtk/run_vtk.h"
@@ -27,36 +26,18 @@ namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::addArray;
 using testing::expectSame;
 using testing::fileWith;
+using testing::scatteredPoints;
 using testing::Way;
-
-template <class Array>
-Array* addArray(vtkDataSetAttributes& to, const char* name, int components, vtkIdType tuples) {
-  std::mt19937 random(7);
-  vtkNew<Array> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
-  for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
-    array->SetComponent(i / components, static_cast<int>(i % components),
-                        static_cast<double>(random() % 120) / 3);
-  to.AddArray(array);
-  return array;
-}
 
 /// Cells of every dimension, ghosts, and arrays of every kind that is read here. The attributes are
 /// what files name SCALARS, VECTORS and so on.
 vtkNew<vtkUnstructuredGrid> manyKinds() {
-  std::mt19937 random(5);
   vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
   constexpr vtkIdType kPoints = 151;
-  for (vtkIdType i = 0; i < kPoints; ++i)
-    points->InsertNextPoint(static_cast<double>(random() % 9000) / 7,
-                            static_cast<double>(random() % 9000) / 7,
-                            static_cast<double>(random() % 9000) / 7);
-  grid->SetPoints(points);
+  grid->SetPoints(scatteredPoints(kPoints));
   constexpr std::array<std::pair<int, int>, 6> kKinds{{{VTK_TETRA, 4},
                                                        {VTK_TRIANGLE, 3},
                                                        {VTK_HEXAHEDRON, 8},

@@ -46,31 +46,17 @@ using testing::readByVtk;
 
 template <class Array>
 void addArray(vtkFieldData& to, const char* name, int components, vtkIdType tuples, bool isText) {
-  std::mt19937 random(7);
-  vtkNew<Array> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
-  for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
-    array->SetComponent(i / components, static_cast<int>(i % components),
-                        static_cast<double>(random() % 120) / 3);
+  auto* array = testing::addArray<Array>(to, name, components, tuples);
   if (array->GetDataType() == VTK_FLOAT && !isText && tuples > 3)
     array->SetComponent(3, 0, std::numeric_limits<double>::quiet_NaN());
-  to.AddArray(array);
 }
 
 /// Cells of every dimension, a polyhedron, ghosts, and fields of every kind. VTK reads no NaN from
 /// text.
 vtkNew<vtkUnstructuredGrid> everything(bool isText) {
-  std::mt19937 random(5);
   vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
   constexpr vtkIdType kPoints = 151;
-  for (vtkIdType i = 0; i < kPoints; ++i)
-    points->InsertNextPoint(static_cast<double>(random() % 9000) / 7,
-                            static_cast<double>(random() % 9000) / 7,
-                            static_cast<double>(random() % 9000) / 7);
-  grid->SetPoints(points);
+  grid->SetPoints(testing::scatteredPoints(kPoints));
   constexpr std::array<std::pair<int, int>, 8> kKinds{{{VTK_TETRA, 4},
                                                        {VTK_TRIANGLE, 3},
                                                        {VTK_HEXAHEDRON, 8},

@@ -2,14 +2,17 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <vtkFieldData.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "simplify/read/vtk/vtk_cells.h"
@@ -17,6 +20,33 @@
 #include "tests/simplify/mesh/tet_meshes.h"
 
 namespace qtet::testing {
+
+/// Adds an array of numbers that are the same each time.
+template <class Array>
+Array* addArray(vtkFieldData& to, const char* name, int components, vtkIdType tuples) {
+  std::mt19937 random(7);
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
+    array->SetComponent(i / components, static_cast<int>(i % components),
+                        static_cast<double>(random() % 120) / 3);
+  to.AddArray(array);
+  return array;
+}
+
+/// As many points at places that are the same each time.
+inline vtkNew<vtkPoints> scatteredPoints(vtkIdType count) {
+  std::mt19937 random(5);
+  vtkNew<vtkPoints> points;
+  const auto coordinate = [&] { return static_cast<double>(random() % 9000) / 7; };
+  for (vtkIdType i = 0; i < count; ++i) {
+    const double x = coordinate(), y = coordinate(), z = coordinate();
+    points->InsertNextPoint(x, y, z);
+  }
+  return points;
+}
 
 struct Encoding {
   int mode = vtkXMLWriter::Appended, compressor = vtkXMLWriter::ZLIB,
