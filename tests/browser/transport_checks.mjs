@@ -243,7 +243,10 @@ async function worksUnderAStrictPolicy({browser, logs, viewer: files, out}) {
     const page = await browser.page(url, (text) => messages.push(text));
     const isThere = () =>
       page.evaluate(
-        () => window.qtetViewer?.state === 'complete' && window.qtetViewer.matches('.loaded'),
+        () =>
+          window.qtetViewer?.state === 'complete' &&
+          window.qtetViewer.matches('.loaded') &&
+          window.qtetViewer.viewing.later !== null,
       );
     for (const end = Date.now() + kTimeoutMs; !(await isThere());) {
       assert.ok(Date.now() < end, `the mesh does not come: ${messages.join('; ')}`);
