@@ -45,10 +45,8 @@ Status RecordWriter::base() {
                 "two cells of the base mesh disagree on the orientation of their face");
   std::vector<std::uint32_t> inOrder;
   for (const std::uint32_t i : coder.order) inOrder.push_back(ids[i]);
-  if (Status s = mirror_.start(std::move(coder.tetrahedra), std::move(inOrder),
-                               std::move(coder.vertexOrder));
-      !s)
-    return s;
+  if (Status s = mirror_.start(coder.tetrahedra, inOrder, coder.vertexOrder); !s) return s;
+  for (VertexId v = 0; v < mirror_.vertices().size(); ++v) describer_.place(v);
   const std::vector<LatticePoint>& points = mesh().points;
   const auto at = [&](VertexId u, std::uint32_t c) { return points[u][c]; };
   for (VertexId v = 0; v < points.size(); ++v)
@@ -85,6 +83,7 @@ Status RecordWriter::record(VertexId v, Fusion fusion) {
                 "fusion of vertex " + std::to_string(fusion.fused) + ": " + what);
   };
   if (mesh().star(v).size() > kMaxLinkTriangles) return bad("its star has too many cells");
+  describer_.lookAhead(v);
   if (!mesh().enter(v, link_)) return bad("its link is not a closed surface");
   RecordTruth truth;
   if (!describer_.describe(v, link_, fusion, truth))
@@ -94,6 +93,9 @@ Status RecordWriter::record(VertexId v, Fusion fusion) {
   const Slots before = mesh().next();
   fields_.beforeSplit(v, link_, split);
   mirror_.apply(v, link_, split, fusion, describer_.restored(split));
+  describer_.place(v);
+  for (VertexId slot = before.vertices; slot < mesh().next().vertices; ++slot)
+    describer_.place(slot);
   fields_.afterSplit(fusion, before.tetrahedra, chunks_.fields());
   chunks_.endRecord();
   const Slots& after = mesh().next();

@@ -1,30 +1,37 @@
 #include "codec/mesh/face_groups.h"
 
 #include <algorithm>
-#include <tuple>
-
-#include "codec/mesh/boundary.h"
+#include <array>
+#include <numeric>
 
 namespace qtet {
 namespace {
 
-Triangle sorted(Triangle t) {
-  if (t[0] > t[1]) std::swap(t[0], t[1]);
-  if (t[1] > t[2]) std::swap(t[1], t[2]);
-  if (t[0] > t[1]) std::swap(t[0], t[1]);
-  return t;
+/// A cell's vertices, ascending, each with the number of its corner in the lowest two bits.
+std::array<std::uint64_t, 4> ascending(const Tetrahedron& cell) {
+  std::array<std::uint64_t, 4> out{};
+  for (std::size_t i = 0; i < 4; ++i) out[i] = std::uint64_t{cell[i]} << 2 | i;
+  const auto order = [&out](std::size_t a, std::size_t b) {
+    const std::uint64_t low = std::min(out[a], out[b]), high = std::max(out[a], out[b]);
+    out[a] = low, out[b] = high;
+  };
+  order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+  return out;
 }
 
-/// `begin[v]`: how many faces have a smallest vertex below v.
+/// By vertex, how many faces have a smaller one as their smallest.
 std::vector<std::uint64_t> bucketStarts(std::span<const Tetrahedron> tetrahedra) {
   VertexId largest = 0;
   for (const Tetrahedron& cell : tetrahedra)
     largest = std::max({largest, cell[0], cell[1], cell[2], cell[3]});
-  std::vector<std::uint64_t> begin(std::size_t{largest} + 2, 0);
+  std::vector<std::uint64_t> begin(std::size_t{largest} + 1, 0);
   for (const Tetrahedron& cell : tetrahedra) {
-    for (int i = 0; i < 4; ++i) ++begin[std::size_t{sorted(cellFace(cell, i))[0]} + 1];
+    const auto [lowA, highA] = std::minmax(cell[0], cell[1]);
+    const auto [lowB, highB] = std::minmax(cell[2], cell[3]);
+    begin[std::min(lowA, lowB)] += 3;
+    begin[std::min({std::max(lowA, lowB), highA, highB})] += 1;
   }
-  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), std::uint64_t{0});
   return begin;
 }
 
@@ -41,26 +48,24 @@ FaceGroups::FaceGroups(std::span<const Tetrahedron> tetrahedra, const std::atomi
   };
   // A counting sort by the smallest vertex first: what is left to compare are some twenty faces a
   // bucket.
-  const std::vector<std::uint64_t> begin = bucketStarts(tetrahedra);
-  std::vector<std::uint64_t> next(begin.begin(), begin.end() - 1);
+  ends_ = bucketStarts(tetrahedra);
   for (std::size_t cell = 0; cell < tetrahedra.size(); ++cell) {
     if (isStopped(cell)) break;
-    for (int i = 0; i < 4; ++i) {
-      const Triangle face = sorted(cellFace(tetrahedra[cell], i));
-      faces_[next[face[0]]++] = {face[0], face[1], face[2],
-                                 4 * std::uint64_t{cell} + static_cast<std::uint64_t>(i)};
-    }
+    const std::array<std::uint64_t, 4> at = ascending(tetrahedra[cell]);
+    const auto add = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t opposite) {
+      faces_[ends_[at[a] >> 2]++] = {at[b] >> 2 << 32 | at[c] >> 2,
+                                     4 * std::uint64_t{cell} + (at[opposite] & 3)};
+    };
+    add(0, 1, 2, 3), add(0, 1, 3, 2), add(0, 2, 3, 1), add(1, 2, 3, 0);
   }
-  for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
+  std::size_t first = 0;
+  for (std::size_t v = 0; v < ends_.size(); ++v) {
     if (isStopped(v)) break;
-    std::sort(faces_.begin() + static_cast<std::ptrdiff_t>(begin[v]),
-              faces_.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]),
-              [](const Face& a, const Face& b) {
-                return std::tie(a.middle, a.largest, a.side) <
-                       std::tie(b.middle, b.largest, b.side);
-              });
+    std::sort(faces_.begin() + static_cast<std::ptrdiff_t>(first),
+              faces_.begin() + static_cast<std::ptrdiff_t>(ends_[v]));
+    first = ends_[v];
   }
-  if (stopped != nullptr && *stopped) faces_.clear();
+  if (stopped != nullptr && *stopped) faces_.clear(), ends_.clear();
 }
 
 }  // namespace qtet

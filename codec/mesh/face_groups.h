@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,29 +32,28 @@ class FaceGroups {
   template <class Visit>
   void forEach(Visit visit) const {
     std::vector<FaceSide> sides;
-    for (std::size_t first = 0; first < faces_.size();) {
-      sides.clear();
-      std::size_t end = first;
-      for (; end < faces_.size() && faces_[end].isSameFaceAs(faces_[first]); ++end)
-        sides.push_back(faces_[end].side);
-      visit(std::span<const FaceSide>(sides));
-      first = end;
+    std::size_t first = 0;
+    for (const std::uint64_t end : ends_) {
+      while (first < end) {
+        sides.clear();
+        const std::uint64_t rest = faces_[first].rest;
+        for (; first < end && faces_[first].rest == rest; ++first)
+          sides.push_back(faces_[first].side);
+        visit(std::span<const FaceSide>(sides));
+      }
     }
   }
 
  private:
   struct Face {
-    VertexId smallest;
-    VertexId middle;
-    VertexId largest;
+    std::uint64_t rest;  // its middle vertex and, in the low half, its largest one
     FaceSide side;
 
-    [[nodiscard]] bool isSameFaceAs(const Face& other) const {
-      return smallest == other.smallest && middle == other.middle && largest == other.largest;
-    }
+    friend auto operator<=>(const Face&, const Face&) = default;
   };
 
-  std::vector<Face> faces_;
+  std::vector<Face> faces_;          // by smallest vertex
+  std::vector<std::uint64_t> ends_;  // the faces of smallest vertex v end before ends_[v]
 };
 
 }  // namespace qtet

@@ -176,8 +176,7 @@ bool GrowingMesh::enter(VertexId v, Link& link) {
   link.clear(points.size());
   const std::span<const CellRef> star = this->star(v);
   entered_.assign(star.begin(), star.end());
-  for (const CellRef ref : star)
-    prefetch(ref & kBoundaryBit ? boundary[ref & ~kBoundaryBit].data() : tetrahedra[ref].data());
+  for (const CellRef ref : star) expectCell(ref);
   places_.resize(star.size());
   turned_.resize(star.size());
   bool whole = true;

@@ -85,6 +85,10 @@ class GrowingMesh {
     // most stars are longer than a cache line
     prefetch(pool_.at(s.first) + s.size - static_cast<std::uint32_t>(s.size != 0));
   }
+  /// A hint: cell(ref) comes soon.
+  void expectCell(CellRef ref) const {
+    prefetch(ref & kBoundaryBit ? boundary[ref & ~kBoundaryBit].data() : tetrahedra[ref].data());
+  }
   /// Tetrahedra by slot, then boundary triangles by slot.
   [[nodiscard]] std::span<const CellRef> star(VertexId v) const {
     return {pool_.at(states_[v].first), states_[v].size};

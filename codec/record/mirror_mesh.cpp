@@ -12,15 +12,25 @@ namespace qtet {
 MirrorMesh::MirrorMesh(const FusionHistory& history)
     : history_(history), slots_(history.points.size(), kGhost) {}
 
-Status MirrorMesh::start(std::vector<Tetrahedron> tetrahedra, std::vector<std::uint32_t> cells,
-                         std::vector<VertexId> vertices) {
+Status MirrorMesh::start(std::span<const Tetrahedron> tetrahedra,
+                         std::span<const std::uint32_t> cells, std::span<const VertexId> vertices) {
   assert(vertices_.empty());
-  tetrahedra_ = std::move(cells);
-  vertices_ = std::move(vertices);
+  const auto isGhost = [](const auto& cell) {
+    return std::ranges::find(cell, kGhost) != cell.end();
+  };
+  const auto ghosts = static_cast<std::uint32_t>(std::ranges::count_if(history_.cells, isGhost));
+  const Slots total{static_cast<std::uint32_t>(history_.points.size() - history_.fusions.size()),
+                    static_cast<std::uint32_t>(history_.cells.size()) - ghosts, ghosts};
+  mesh_.reserve(total);
+  tetrahedra_.reserve(total.tetrahedra), triangles_.reserve(total.triangles);
+  vertices_.reserve(total.vertices);
+  tetrahedra_.assign(cells.begin(), cells.end());
+  vertices_.assign(vertices.begin(), vertices.end());
   for (VertexId v = 0; v < vertices_.size(); ++v) slots_[vertices_[v]] = v;
   for (const VertexId vertex : vertices_) mesh_.points.push_back(history_.points[vertex]);
-  mesh_.tetrahedra = std::move(tetrahedra);
-  mesh_.boundary = boundaryOf(mesh_.tetrahedra);
+  mesh_.tetrahedra.assign(tetrahedra.begin(), tetrahedra.end());
+  const std::vector<Triangle> boundary = boundaryOf(mesh_.tetrahedra);
+  mesh_.boundary.assign(boundary.begin(), boundary.end());
   mesh_.start(history_.lattice.bits);
   return matchBoundary();
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "codec/coding/prefetch.h"
 #include "codec/mesh/growing_mesh.h"
 #include "codec/record/fusion_history.h"
 #include "proto/error.h"
@@ -21,8 +22,8 @@ class MirrorMesh {
   /// Takes the base mesh: its tetrahedra by slot, and what the history calls each tetrahedron and
   /// vertex. Errors: bad-value (the history's ghost cells are not the boundary of these).
   /// REQUIRES: called once and first.
-  Status start(std::vector<Tetrahedron> tetrahedra, std::vector<std::uint32_t> cells,
-               std::vector<VertexId> vertices);
+  Status start(std::span<const Tetrahedron> tetrahedra, std::span<const std::uint32_t> cells,
+               std::span<const VertexId> vertices);
   /// Applies a split of v, which undoes `fusion`: as GrowingMesh::apply. `restored` holds the
   /// history's cell of each of `split.deleted`.
   void apply(VertexId v, const Link& link, const Split& split, const Fusion& fusion,
@@ -33,6 +34,17 @@ class MirrorMesh {
   /// By slot: the history's vertices and its cells that are tetrahedra.
   [[nodiscard]] const std::vector<VertexId>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::uint32_t>& tetrahedra() const { return tetrahedra_; }
+  /// A hint: the star of v is soon split.
+  void expect(VertexId v) const {
+    for (const CellRef ref : mesh_.star(v)) {
+      mesh_.expectCell(ref);
+      prefetch(ref & kBoundaryBit ? &triangles_[ref & ~kBoundaryBit] : &tetrahedra_[ref]);
+    }
+  }
+  /// A hint: slotOf(vertex) comes soon.
+  void expectSlot(VertexId vertex) const {
+    if (vertex != kGhost) prefetch(&slots_[vertex]);
+  }
   /// The history's cell.
   [[nodiscard]] std::uint32_t cellOf(CellRef ref) const {
     return ref & kBoundaryBit ? triangles_[ref & ~kBoundaryBit] : tetrahedra_[ref];

@@ -4,10 +4,10 @@
 #include <array>
 #include <cassert>
 
+#include "codec/coding/prefetch.h"
+
 namespace qtet {
 namespace {
-
-constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 // Numbers the prey vertices in order of first appearance along the link's traversal.
 void number(const Link& link, Fusion& fusion, RecordTruth& truth) {
@@ -28,17 +28,55 @@ void number(const Link& link, Fusion& fusion, RecordTruth& truth) {
 SplitDescriber::SplitDescriber(const FusionHistory& history, const MirrorMesh& mirror)
     : history_(history),
       mirror_(mirror),
-      fusionOf_(history.points.size(), kNone),
+      waiting_(history.points.size()),
       labelOf_(history.cells.size(), kNoLabel) {
   for (std::uint32_t i = 0; i < history.fusions.size(); ++i)
-    fusionOf_[history.fusions[i].fused] = i;
+    waiting_[history.fusions[i].fused] = {i, history.levels - history.fusions[i].level};
 }
 
-const Fusion* SplitDescriber::fusionAt(VertexId v) const {
-  const std::uint32_t index = fusionOf_[mirror_.vertices()[v]];
-  if (index == kNone) return nullptr;
-  const Fusion& fusion = history_.fusions[index];
-  return history_.levels - fusion.level == mirror_.mesh().level() ? &fusion : nullptr;
+void SplitDescriber::place(VertexId slot) {
+  assert(slot <= next_.size());
+  if (slot == next_.size()) next_.emplace_back();
+  next_[slot] = waiting_[mirror_.vertices()[slot]];
+}
+
+// The splits of a level lie scattered in memory. The data of each are asked for in steps, since a
+// step reads what the one before it asked for.
+void SplitDescriber::lookAhead(VertexId v) {
+  if (!kPrefetchIsFree) return;
+  const std::uint32_t level = mirror_.mesh().level();
+  if (seenLevel_ != level) seenLevel_ = level, seen_ = v, ahead_ = {};
+  if (ahead_.size() > 0 && ahead_[0] == v) ahead_.pop();
+  for (; seen_ < mirror_.mesh().levelVertices() && ahead_.size() < Ahead::kMost; ++seen_)
+    if (next_[seen_].level == level) {
+      ahead_.push(seen_);
+      prefetch(&history_.fusions[next_[seen_].fusion]);
+      mirror_.mesh().expect(seen_);
+    }
+  if (ahead_.size() > 6) expectLists(ahead_[6]);
+  if (ahead_.size() > 4) expectCells(ahead_[4]);
+  if (ahead_.size() > 2) expectCorners(ahead_[2]);
+}
+
+void SplitDescriber::expectLists(VertexId v) const {
+  const Fusion& fusion = history_.fusions[next_[v].fusion];
+  prefetchAll(affectedBy(fusion));
+  prefetchAll(deletedBy(fusion));
+  prefetch(&history_.affectedLabels[fusion.firstAffected]);
+}
+
+void SplitDescriber::expectCells(VertexId v) const {
+  const Fusion& fusion = history_.fusions[next_[v].fusion];
+  for (const std::uint32_t cell : affectedBy(fusion)) prefetch(&labelOf_[cell]);
+  for (const std::uint32_t cell : deletedBy(fusion)) prefetch(&history_.cells[cell]);
+  for (std::size_t i = 0; i < fusion.k; ++i)
+    prefetch(&history_.points[fusion.prey[i]]), prefetch(&waiting_[fusion.prey[i]]);
+  mirror_.expect(v);
+}
+
+void SplitDescriber::expectCorners(VertexId v) const {
+  for (const std::uint32_t cell : deletedBy(history_.fusions[next_[v].fusion]))
+    for (const VertexId corner : history_.cells[cell]) mirror_.expectSlot(corner);
 }
 
 bool SplitDescriber::describe(VertexId v, const Link& link, Fusion& fusion, RecordTruth& truth) {
@@ -67,8 +105,7 @@ bool SplitDescriber::labels(VertexId v, const Fusion& fusion, RecordTruth& truth
 
 bool SplitDescriber::deleted(const Link& link, const Fusion& fusion, RecordTruth& truth) {
   deleted_.clear();
-  for (std::uint32_t i = 0; i < fusion.deletedCount; ++i) {
-    const std::uint32_t id = history_.deletedCells[fusion.firstDeleted + i];
+  for (const std::uint32_t id : deletedBy(fusion)) {
     const auto& cell = history_.cells[id];
     LocalCell local{};
     for (std::size_t j = 0; j < 4; ++j) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "codec/mesh/boundary.h"
 #include "simplify/mesh/cell_faces.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/surface_manifold.h"
@@ -68,17 +67,32 @@ void dropRepeatedVertexCells(Cleaning& cleaning) {
   if (cleaning.report.repeatedVertexCells.count > 0) dropCells(cleaning, drop);
 }
 
-void dropDuplicateCells(Cleaning& cleaning) {
-  const std::vector<CellId> duplicates =
-      duplicatesIn(cleaning.mesh.tetrahedra, cleaning.stopped.get());
+/// The faces of the cells that are left once each set of vertices has one.
+MatchedFaces dropDuplicateCells(Cleaning& cleaning) {
+  const std::vector<Tetrahedron>& cells = cleaning.mesh.tetrahedra;
+  MatchedFaces faces = matchFaces(cells, cleaning.stopped.get());
   throwIfStopped(cleaning.stop);
-  if (duplicates.empty()) return;
-  std::vector<char> drop(cleaning.mesh.tetrahedra.size(), 0);
-  for (const CellId cell : duplicates) {
+  if (faces.duplicates.empty()) return faces;
+  std::vector<char> drop(cells.size(), 0);
+  for (const CellId cell : faces.duplicates) {
     drop[cell] = 1;
     cleaning.report.duplicateCells.add(cleaning.cellNames[cell]);
   }
   dropCells(cleaning, drop);
+  faces = matchFaces(cells, cleaning.stopped.get());
+  throwIfStopped(cleaning.stop);
+  return faces;
+}
+
+Status checkCrowds(const Cleaning& cleaning, const MatchedFaces& faces) {
+  if (faces.crowded.empty()) return {};
+  std::string list;
+  for (const CellId cell : faces.firstCrowd)
+    list += (list.empty() ? "" : ", ") + std::to_string(cleaning.cellNames[cell]);
+  return fail(ErrorCode::kBadInput,
+              std::to_string(faces.firstCrowd.size()) + " cells (" + list +
+                  ") share one face, so they overlap; at most two can. Remove the superfluous "
+                  "ones, or export the parts as separate files");
 }
 
 double volume6Of(const TetMesh& mesh, const Tetrahedron& t) {
@@ -133,17 +147,12 @@ void turn(Cleaning& cleaning, const std::vector<CellId>& component, const std::v
   for (const CellId cell : component) turned[cell] = (sense[cell] == kTurned) != (volume < 0);
 }
 
-Status orient(Cleaning& cleaning) {
-  const auto neighbours =
-      neighboursOf(cleaning.mesh.tetrahedra, cleaning.cellNames, cleaning.stopped.get());
-  throwIfStopped(cleaning.stop);
-  if (!neighbours) return std::unexpected(neighbours.error());
-
+Status orient(Cleaning& cleaning, MatchedFaces& faces) {
   std::vector<Tetrahedron>& cells = cleaning.mesh.tetrahedra;
   std::vector<char> sense(cells.size(), kUnseen), turned(cells.size(), 0);
   for (CellId first = 0; first < cells.size(); ++first) {
     if (sense[first] != kUnseen) continue;
-    const auto component = orientComponent(first, cleaning, *neighbours, sense);
+    const auto component = orientComponent(first, cleaning, faces.neighbours, sense);
     if (!component) return std::unexpected(component.error());
     turn(cleaning, *component, sense, turned);
     ++cleaning.report.components;
@@ -152,6 +161,7 @@ Status orient(Cleaning& cleaning) {
     if (i % kLookEvery == 0) throwIfStopped(cleaning.stop);
     if (turned[i]) {
       std::swap(cells[i][2], cells[i][3]);
+      std::swap(faces.neighbours[i].across[2], faces.neighbours[i].across[3]);
       cleaning.report.reorientedCells.add(cleaning.cellNames[i]);
     }
     const int sign = signOf(cleaning.mesh, cells[i]);
@@ -205,10 +215,7 @@ void reportCoincidentPoints(Cleaning& cleaning) {
 }
 
 void reportNonManifoldParts(Cleaning& cleaning) {
-  const std::vector<Triangle> boundary =
-      boundaryOf(cleaning.mesh.tetrahedra, cleaning.stopped.get());
-  throwIfStopped(cleaning.stop);
-  const NonManifoldParts parts = nonManifoldPartsOf(boundary);
+  const NonManifoldParts parts = nonManifoldPartsOf(cleaning.report.boundary);
   for (const auto& [low, high] : parts.edges) {
     cleaning.report.nonManifoldEdges.add(cleaning.pointNames[low]);
     if (cleaning.report.nonManifoldEdges.count <= Occurrences::kShown)
@@ -222,14 +229,18 @@ Result<CleanReport> clean(TetMesh& mesh, const std::stop_token& stop) {
   Cleaning cleaning{
       mesh, {}, countedUp(mesh.tetrahedra.size()), countedUp(mesh.points.size()), stop};
   dropRepeatedVertexCells(cleaning);
-  dropDuplicateCells(cleaning);
+  MatchedFaces faces = dropDuplicateCells(cleaning);
   if (mesh.tetrahedra.empty()) {
     return fail(ErrorCode::kBadInput,
                 "no cell has four different vertices, so there is nothing to simplify; export the "
                 "volume mesh again");
   }
-  if (Status oriented = orient(cleaning); !oriented) return std::unexpected(oriented.error());
+  if (Status checked = checkCrowds(cleaning, faces); !checked)
+    return std::unexpected(checked.error());
+  if (Status oriented = orient(cleaning, faces); !oriented)
+    return std::unexpected(oriented.error());
   dropUnusedPoints(cleaning);
+  cleaning.report.boundary = faces.boundaryOf(mesh.tetrahedra);
   reportCoincidentPoints(cleaning);
   reportNonManifoldParts(cleaning);
   return std::move(cleaning.report);

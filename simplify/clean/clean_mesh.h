@@ -38,7 +38,8 @@ struct CleanReport {
   std::vector<std::uint64_t> nonManifoldEdgeEnds;  ///< and this the upper one
   /// Boundary vertices whose triangles are not one closed fan: kept.
   Occurrences nonManifoldVertices;
-  std::uint64_t components = 0;  ///< sets of cells that hang together by faces
+  std::uint64_t components = 0;    ///< sets of cells that hang together by faces
+  std::vector<Triangle> boundary;  ///< the cleaned mesh's, as boundaryOf gives it
 
   /// Changes made and unusual findings, one sentence each; empty for a flawless mesh.
   [[nodiscard]] std::vector<std::string> sentences() const;

@@ -170,7 +170,7 @@ Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, Q
 }
 
 Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
-                            const std::stop_token& stop) {
+                            const std::stop_token& stop, std::vector<Triangle> boundary) {
   if (Status checked = checkOptions(options); !checked) return std::unexpected(checked.error());
   const Box box = boxOf(mesh.points);
   if (Status checked = checkBox(box); !checked) return std::unexpected(checked.error());
@@ -179,7 +179,8 @@ Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
   out.report.requestedBits = options.positionBits;
   placePoints(mesh, box, stop, out);
   out.mesh.tetrahedra = mesh.tetrahedra;
-  out.mesh.boundary = boundaryOf(mesh.tetrahedra, StopFlag(stop).get());
+  out.mesh.boundary =
+      boundary.empty() ? boundaryOf(mesh.tetrahedra, StopFlag(stop).get()) : std::move(boundary);
   throwIfStopped(stop);
   if (Status placed = placeFields(mesh, options.fieldBits, stop, out); !placed)
     return std::unexpected(placed.error());
@@ -189,8 +190,8 @@ Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
 }  // namespace
 
 Result<QuantisedMesh> quantise(const TetMesh& mesh, const QuantiseOptions& options,
-                               const std::stop_token& stop) {
-  return orCancelled([&] { return place(mesh, options, stop); });
+                               const std::stop_token& stop, std::vector<Triangle> boundary) {
+  return orCancelled([&] { return place(mesh, options, stop, std::move(boundary)); });
 }
 
 }  // namespace qtet

@@ -13,11 +13,11 @@ namespace qtet {
 [[nodiscard]] double diagonalOf(const LatticeMesh& mesh);
 
 /// The weight (CostOptions::boundaryWeight). By its worth, a boundary off by d on average counts
-/// like fields off by a few times their change over d. The change is that at the boundary, the
-/// fields' error the average over the volume. By the balance, the boundary's expected error counts
-/// as much as the fields' (expected_error.h). The weight is the geometric mean of both, or the
-/// worth if that is less. It depends on no unit and on no field's range. REQUIRES: `parts` of point
-/// fields of `mesh`, whose boundary is boundaryOf's.
+/// like fields off by somewhat more than their change over d. The change is that at the boundary,
+/// the fields' error the average over the volume. By the balance, the boundary's expected error
+/// counts a quarter as much as the fields' (expected_error.h). The weight is the geometric mean of
+/// both, or the worth if that is less. It depends on no unit and on no field's range. REQUIRES:
+/// `parts` of point fields of `mesh`, whose boundary is boundaryOf's.
 [[nodiscard]] double balancedBoundaryWeight(const LatticeMesh& mesh,
                                             std::span<const CostPart> parts);
 

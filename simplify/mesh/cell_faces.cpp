@@ -1,7 +1,7 @@
 #include "simplify/mesh/cell_faces.h"
 
 #include <algorithm>
-#include <string>
+#include <cassert>
 
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/face_groups.h"
@@ -31,54 +31,52 @@ void join(std::span<const Tetrahedron> cells, FaceSide one, FaceSide other,
   set(other, one);
 }
 
+// Cells with the same vertices share all four faces, and only they share a face and the vertex
+// opposite it.
+void addDuplicates(std::span<const Tetrahedron> cells, std::span<const FaceSide> sides,
+                   std::vector<CellId>& duplicates) {
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const VertexId opposite = oppositeVertex(cells, sides[i]);
+    if (std::ranges::any_of(sides.first(i), [&](FaceSide earlier) {
+          return oppositeVertex(cells, earlier) == opposite;
+        }))
+      duplicates.push_back(cellOf(sides[i]));
+  }
+}
+
 }  // namespace
 
-std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells,
-                                 const std::atomic<bool>* stopped) {
-  std::vector<CellId> duplicates;
-  // Cells with the same vertices share all four faces, and only they share a face and the vertex
-  // opposite it.
-  FaceGroups(cells, stopped).forEach([&](std::span<const FaceSide> sides) {
-    for (std::size_t i = 1; i < sides.size(); ++i) {
-      const auto isTwin = [&](FaceSide earlier) {
-        return oppositeVertex(cells, earlier) == oppositeVertex(cells, sides[i]);
-      };
-      if (std::any_of(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(i), isTwin))
-        duplicates.push_back(cellOf(sides[i]));
+std::vector<Triangle> MatchedFaces::boundaryOf(std::span<const Tetrahedron> cells) const {
+  assert(cells.size() == neighbours.size());
+  std::vector<Triangle> boundary;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (neighbours[cell].across[i] == kNoCell)
+        boundary.push_back(cellFace(cells[cell], static_cast<int>(i)));
     }
-  });
-  std::sort(duplicates.begin(), duplicates.end());
-  duplicates.erase(std::unique(duplicates.begin(), duplicates.end()), duplicates.end());
-  return duplicates;
+  }
+  return boundary;
 }
 
-std::vector<CellId> crowdedFacesIn(std::span<const Tetrahedron> cells) {
-  std::vector<CellId> crowded;
-  FaceGroups(cells).forEach([&](std::span<const FaceSide> sides) {
-    if (sides.size() > 2) crowded.push_back(cellOf(sides[0]));
-  });
-  std::sort(crowded.begin(), crowded.end());
-  return crowded;
-}
-
-Result<std::vector<CellNeighbours>> neighboursOf(std::span<const Tetrahedron> cells,
-                                                 std::span<const std::uint64_t> names,
-                                                 const std::atomic<bool>* stopped) {
-  std::vector<CellNeighbours> out(cells.size());
-  std::vector<FaceSide> crowded;
+MatchedFaces matchFaces(std::span<const Tetrahedron> cells, const std::atomic<bool>* stopped) {
+  MatchedFaces out;
+  out.neighbours.resize(cells.size());
   FaceGroups(cells, stopped).forEach([&](std::span<const FaceSide> sides) {
-    if (sides.size() == 2) join(cells, sides[0], sides[1], out);
-    if (sides.size() > 2 && crowded.empty()) crowded.assign(sides.begin(), sides.end());
+    if (sides.size() == 1) return;
+    addDuplicates(cells, sides, out.duplicates);
+    if (sides.size() == 2) {
+      join(cells, sides[0], sides[1], out.neighbours);
+      return;
+    }
+    if (out.crowded.empty())
+      for (const FaceSide side : sides) out.firstCrowd.push_back(cellOf(side));
+    out.crowded.push_back(cellOf(sides[0]));
   });
-  if (crowded.empty()) return out;
-
-  std::string list;
-  for (const FaceSide side : crowded)
-    list += (list.empty() ? "" : ", ") + std::to_string(names[cellOf(side)]);
-  return fail(ErrorCode::kBadInput,
-              std::to_string(crowded.size()) + " cells (" + list +
-                  ") share one face, so they overlap; at most two can. Remove the superfluous "
-                  "ones, or export the parts as separate files");
+  std::ranges::sort(out.duplicates);
+  out.duplicates.erase(std::unique(out.duplicates.begin(), out.duplicates.end()),
+                       out.duplicates.end());
+  std::ranges::sort(out.crowded);
+  return out;
 }
 
 }  // namespace qtet

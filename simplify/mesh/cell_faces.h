@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "proto/error.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -26,19 +25,20 @@ struct CellNeighbours {
          t[2] == t[3];
 }
 
-/// The later cells of each set of cells with the same four vertices, ascending. Unspecified once
-/// `stopped` is true.
-[[nodiscard]] std::vector<CellId> duplicatesIn(std::span<const Tetrahedron> cells,
-                                               const std::atomic<bool>* stopped = nullptr);
+/// Which cells share faces.
+struct MatchedFaces {
+  std::vector<CellNeighbours> neighbours;  ///< by cell; across faces of two cells alone
+  /// The later cells of each set of cells with the same four vertices, ascending.
+  std::vector<CellId> duplicates;
+  std::vector<CellId> crowded;     ///< a cell of each face of more than two, ascending
+  std::vector<CellId> firstCrowd;  ///< all cells of the first of these faces
 
-/// A cell of each face that more than two cells have, by face. REQUIRES: four different vertices a
-/// cell.
-[[nodiscard]] std::vector<CellId> crowdedFacesIn(std::span<const Tetrahedron> cells);
+  /// The boundary in the order of boundaryOf(cells). REQUIRES: the cells that were matched.
+  [[nodiscard]] std::vector<Triangle> boundaryOf(std::span<const Tetrahedron> cells) const;
+};
 
-/// Errors: bad-input for a face of more than two cells; `names[i]` is what cell i is called in the
-/// message. Unspecified once `stopped` is true.
-[[nodiscard]] Result<std::vector<CellNeighbours>> neighboursOf(
-    std::span<const Tetrahedron> cells, std::span<const std::uint64_t> names,
-    const std::atomic<bool>* stopped = nullptr);
+/// Unspecified once `stopped` is true. REQUIRES: four different vertices a cell.
+[[nodiscard]] MatchedFaces matchFaces(std::span<const Tetrahedron> cells,
+                                      const std::atomic<bool>* stopped = nullptr);
 
 }  // namespace qtet

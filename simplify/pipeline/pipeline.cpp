@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "codec/log/log_manifest.h"
 #include "simplify/cost/cost_parts.h"
@@ -86,7 +87,8 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   if (run.options.keep.originalCells) run.kept.originalCells = takeOriginalCells(mesh);
 
   if (Status s = run.stages.begin(Stage::kQuantise); !s) return std::unexpected(s.error());
-  Result<QuantisedMesh> out = quantise(mesh, run.options.quantise, run.options.stop);
+  Result<QuantisedMesh> out = quantise(mesh, run.options.quantise, run.options.stop,
+                                       std::exchange(run.report.clean.boundary, {}));
   if (!out) return out;
   run.report.quantise = out->report;
   run.note(out->report.notes);

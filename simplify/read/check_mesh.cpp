@@ -5,7 +5,6 @@
 #include <iterator>
 #include <set>
 
-#include "codec/mesh/boundary.h"
 #include "simplify/clean/hanging_points.h"
 #include "simplify/clean/mend_faces.h"
 #include "simplify/mesh/cell_faces.h"
@@ -65,14 +64,15 @@ class Checking {
     }
     TetMesh sound{mesh.points, {}, {}, {}};
     std::vector<std::uint64_t> soundNames;
-    const std::vector<CellId> duplicates = duplicatesIn(different);
+    const std::vector<CellId> duplicates = matchFaces(different).duplicates;
     for (std::size_t i = 0; i < different.size(); ++i) {
       if (std::ranges::binary_search(duplicates, static_cast<CellId>(i))) continue;
       sound.tetrahedra.push_back(different[i]);
       soundNames.push_back(names[i]);
     }
-    lookForOverlaps(sound, soundNames);
-    lookForOpenFaces(sound);
+    const MatchedFaces faces = matchFaces(sound.tetrahedra);
+    lookForOverlaps(faces, soundNames);
+    lookForOpenFaces(sound, faces);
   }
 
   void lookAtSolid(TetMesh& mesh) {
@@ -86,18 +86,18 @@ class Checking {
   }
 
  private:
-  void lookForOverlaps(const TetMesh& mesh, const std::vector<std::uint64_t>& names) {
+  void lookForOverlaps(const MatchedFaces& faces, const std::vector<std::uint64_t>& names) {
     Occurrences crowded;
-    for (const CellId cell : crowdedFacesIn(mesh.tetrahedra)) crowded.add(names[cell]);
+    for (const CellId cell : faces.crowded) crowded.add(names[cell]);
     isCrowded_ = crowded.count > 0;
     add({"crowdedFaces", Verdict::kRefused, "faces of more than two cells: the cells overlap",
          "tetrahedron", crowded,
          "remove the superfluous cells, or export the parts as files of their own"});
   }
 
-  void lookForOpenFaces(TetMesh& mesh) {
+  void lookForOpenFaces(TetMesh& mesh, const MatchedFaces& faces) {
     Occurrences hanging;
-    for (const VertexId v : hangingPointsOf(mesh.points, boundaryOf(mesh.tetrahedra)))
+    for (const VertexId v : hangingPointsOf(mesh.points, faces.boundaryOf(mesh.tetrahedra)))
       hanging.add(v);
     add({"hangingPoints", Verdict::kKept,
          "T-junctions: boundary points on a boundary face of which they are no corner, where the "

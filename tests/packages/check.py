@@ -23,6 +23,7 @@ OPTIONAL = {
     "docker": "stands in comments' examples",
     "sudo": "for users who are not root; root needs none",
     "script": "a test of the tool's colours skips without it",
+    "gmsh": "higher_cells_test.py tries its elements of higher degree where it is",
 }
 
 # The first word of a command: at a line's start or behind | & ; ( { ! `; the word behind one that

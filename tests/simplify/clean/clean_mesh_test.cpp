@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "codec/mesh/boundary.h"
 #include "simplify/mesh/volume_sign.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 
@@ -78,6 +79,22 @@ TEST(CleanMesh, aMixOfOrientationsBecomesPositive) {
   for (const Tetrahedron& t : mesh.tetrahedra)
     ASSERT_EQ(
         volumeSign(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]), 1);
+}
+
+TEST(CleanMesh, theBoundaryIsThatOfTheCleanedMesh) {
+  TetMesh mesh = boxSample();
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); i += 2)
+    std::swap(mesh.tetrahedra[i][2], mesh.tetrahedra[i][3]);
+  mesh.points.insert(mesh.points.begin(), Position{9, 9, 9});
+  for (Tetrahedron& t : mesh.tetrahedra)
+    for (VertexId& v : t) ++v;
+  mesh.tetrahedra.push_back(mesh.tetrahedra[7]);
+  mesh.fields.clear();
+  const CleanReport report = cleaned(mesh);
+  EXPECT_EQ(report.duplicateCells.count, 1u);
+  EXPECT_EQ(report.unusedPoints.count, 1u);
+  EXPECT_GT(report.reorientedCells.count, 0u);
+  EXPECT_EQ(report.boundary, boundaryOf(mesh.tetrahedra));
 }
 
 TEST(CleanMesh, aCellInsideOutAgainstItsNeighboursIsKeptAndReported) {

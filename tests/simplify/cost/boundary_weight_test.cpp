@@ -33,9 +33,9 @@ double weightOf(const LatticeMesh& mesh) {
 
 // The field over its range is x over the side L. So its squared gradient is 1 / L^2, the diagonal
 // sqrt 3 L, volume over area L / 6. A cube has creases alone, so the balance has no say.
-TEST(BoundaryWeight, isAtMostSixTimesDiagonalVolumeAndSquaredGradientOverArea) {
+TEST(BoundaryWeight, isAtMostOneAndAHalfTimesDiagonalVolumeAndSquaredGradientOverArea) {
   const LatticeMesh mesh = cubeWith([](const LatticePoint& p, std::int32_t) { return p[0]; });
-  EXPECT_NEAR(weightOf(mesh), std::sqrt(3.0), 1e-9);
+  EXPECT_NEAR(weightOf(mesh), std::sqrt(3.0) / 4, 1e-9);
 }
 
 TEST(BoundaryWeight, countsTheFieldsChangeAtTheBoundaryAlone) {
@@ -43,11 +43,12 @@ TEST(BoundaryWeight, countsTheFieldsChangeAtTheBoundaryAlone) {
     const auto inner = [&](std::int32_t x) { return x > side * 3 / 8 && x < side * 5 / 8; };
     return inner(p[0]) && inner(p[1]) && inner(p[2]) ? side : 0;
   });
-  EXPECT_EQ(weightOf(flat), 0.05) << "it is steep round the cube's middle, where the boundary does "
-                                     "not see it; the least weight holds";
+  EXPECT_EQ(weightOf(flat), 0.0125)
+      << "it is steep round the cube's middle, where the boundary does "
+         "not see it; the least weight holds";
   const LatticeMesh steep = cubeWith(
       [](const LatticePoint& p, std::int32_t side) { return (p[0] + p[1] + p[2]) * 4 % side; });
-  EXPECT_GT(weightOf(steep), 10);
+  EXPECT_GT(weightOf(steep), 2.5);
   EXPECT_LE(weightOf(steep), 200);
 }
 
@@ -73,8 +74,8 @@ TEST(BoundaryWeight, isLessTheRougherTheBoundaryAndTheSmootherTheField) {
   const double both = weightOf(roughCube(0.3, 2.5));
   EXPECT_LT(weightOf(roughCube(0.4, 2.5)), 0.8 * both);
   EXPECT_LT(weightOf(roughCube(0.3, 1.25)), 0.5 * both);
-  EXPECT_GT(both, 0.05);
-  EXPECT_LT(both, 6) << "the worth";
+  EXPECT_GT(both, 0.0125);
+  EXPECT_LT(both, 1.5) << "the worth";
 }
 
 TEST(ExpectedError, vanishesForLinearFieldsButForTheirRounding) {
@@ -111,11 +112,11 @@ TEST(BoundaryWeight, countsEachFieldByItsWeight) {
   mesh.fields[1].range[1] /= 2;  // twice as steep over its range
   mesh.values.push_back(mesh.values[0]);
   EXPECT_NEAR(balancedBoundaryWeight(mesh, costPartsOf(mesh, std::vector<double>{1, 0})),
-              std::sqrt(3.0), 1e-9);
+              std::sqrt(3.0) / 4, 1e-9);
   EXPECT_NEAR(balancedBoundaryWeight(mesh, costPartsOf(mesh, std::vector<double>{0, 1})),
-              4 * std::sqrt(3.0), 1e-9);
+              std::sqrt(3.0), 1e-9);
   EXPECT_NEAR(balancedBoundaryWeight(mesh, costPartsOf(mesh, std::vector<double>{3, 1})),
-              1.75 * std::sqrt(3.0), 1e-9);
+              1.75 / 4 * std::sqrt(3.0), 1e-9);
 }
 
 TEST(BoundaryWeight, isWhatTheCostTakesWhenNobodySays) {

@@ -91,13 +91,12 @@ TEST_P(Quality, isNoWorseThanCommitted) {
 
 // A boundary that is where it was to a lattice step: 0.0009 % of the box's diagonal.
 INSTANTIATE_TEST_SUITE_P(Samples, Quality,
-                         ::testing::Values(Floor{"box", 50, {0.2198, 0.2896, 0.0009, 18.5, 9}},
-                                           Floor{"box", 90, {1.4344, 1.6315, 0.0009, 8.45, 28}},
-                                           Floor{"box", 99, {5.4774, 6.7253, 12.515, 8.10, 49}},
-                                           Floor{"fin", 50, {0.02883, 0.03406, 0.00569, 2.63, 17}},
-                                           Floor{"fin", 90, {0.31348, 0.41791, 0.08015, 1.058, 48}},
-                                           Floor{
-                                               "fin", 99, {1.59484, 2.87052, 0.69835, 0.605, 89}}),
+                         ::testing::Values(Floor{"box", 50, {0.2198, 0.2896, 0.0009, 18.49, 9}},
+                                           Floor{"box", 90, {1.4344, 1.6315, 0.0027, 8.44, 28}},
+                                           Floor{"box", 99, {5.3749, 6.8398, 12.519, 4.30, 50}},
+                                           Floor{"fin", 50, {0.03294, 0.03268, 0.0110, 2.59, 17}},
+                                           Floor{"fin", 90, {0.30422, 0.51252, 0.1483, 1.36, 48}},
+                                           Floor{"fin", 99, {1.45529, 3.23954, 0.8126, 0.478, 86}}),
                          [](const auto& floor) { return ::testing::PrintToString(floor.param); });
 
 }  // namespace
