@@ -1,5 +1,5 @@
 // Plain values for the blocks that a client of `/v1/stream` has, and for its wishes (STREAM.md,
-// "What a client has", "Target", "View").
+// "What a client has", "View").
 #pragma once
 
 #include <array>
@@ -8,8 +8,9 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
+
+#include "proto/target.h"
 
 namespace qtet {
 
@@ -50,28 +51,6 @@ struct Have {
   HeldChunks mesh{};
   std::vector<std::pair<std::string, HeldChunks>> fields{};  ///< by key; within `mesh` each
 };
-
-// ---- where to stop
-
-struct EverythingTarget {};
-struct LevelTarget {
-  std::uint32_t level = 0;
-};
-struct BytesTarget {
-  std::uint64_t bytes = 0;
-};
-struct TetrahedraTarget {
-  std::uint64_t tetrahedra = 0;
-};
-struct FieldErrorTarget {
-  double error = 0;  ///< rms, as a fraction of the field's range
-  std::string field{};
-};
-struct BoundaryErrorTarget {
-  double error = 0;  ///< as a fraction of the diagonal
-};
-using Target = std::variant<EverythingTarget, LevelTarget, BytesTarget, TetrahedraTarget,
-                            FieldErrorTarget, BoundaryErrorTarget>;
 
 // ---- what is looked at, in the mesh's own units
 

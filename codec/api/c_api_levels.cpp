@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "codec/api/c_api_handle.h"
-#include "codec/log/level_choice.h"
+#include "codec/log/target_choice.h"
 #include "codec/refine/refiner.h"
 
 using qtet::Result;
@@ -28,7 +28,9 @@ constexpr std::uint32_t versionNumber(std::string_view text) {
 static_assert(versionNumber(kVersionText) == QTET_VERSION_NUMBER,
               "codec/api/qtet.h and the project have different versions");
 
-qtet_status answer(qtet_log* log, const Result<std::uint32_t>& level, std::uint32_t* out) {
+qtet_status answer(qtet_log* log, const qtet::Target& target, std::uint32_t* out) {
+  if (const qtet_status status = log->needPlace(out)) return status;
+  const Result<std::uint32_t> level = qtet::levelFor(target, log->manifest, log->file->index());
   if (!level) return log->refuse(level.error());
   *out = *level;
   return QTET_OK;
@@ -87,24 +89,17 @@ qtet_status qtet_log_field_error(qtet_log* log, uint32_t level, uint32_t field, 
 }
 
 qtet_status qtet_log_level_of_tetrahedra(qtet_log* log, uint64_t most, uint32_t* level) {
-  return withLog(log, [&] {
-    if (const qtet_status status = log->needPlace(level)) return status;
-    return answer(log, qtet::levelOfTetrahedra(log->manifest, static_cast<double>(most)), level);
-  });
+  return withLog(log, [&] { return answer(log, qtet::TetrahedraTarget{most}, level); });
 }
 
 qtet_status qtet_log_level_of_bytes(qtet_log* log, uint64_t most, uint32_t* level) {
-  return withLog(log, [&] {
-    if (const qtet_status status = log->needPlace(level)) return status;
-    return answer(log, qtet::levelOfBytes(log->manifest, log->file->index(), most), level);
-  });
+  return withLog(log, [&] { return answer(log, qtet::BytesTarget{most}, level); });
 }
 
 qtet_status qtet_log_level_of_boundary_error(qtet_log* log, double bound, uint32_t* level) {
   return withLog(log, [&] {
-    if (const qtet_status status = log->needPlace(level)) return status;
     if (const qtet_status status = needBound(log, bound)) return status;
-    return answer(log, qtet::levelOfBoundaryError(log->manifest, bound), level);
+    return answer(log, qtet::BoundaryErrorTarget{bound}, level);
   });
 }
 
@@ -112,8 +107,7 @@ qtet_status qtet_log_level_of_field_error(qtet_log* log, uint32_t field, double 
                                           uint32_t* level) {
   return withLog(log, [&] {
     if (const qtet_status status = log->needField(field)) return status;
-    if (const qtet_status status = log->needPlace(level)) return status;
     if (const qtet_status status = needBound(log, bound)) return status;
-    return answer(log, qtet::levelOfFieldError(log->manifest, field, bound), level);
+    return answer(log, qtet::FieldErrorTarget{bound, fieldKey(log->manifest, field)}, level);
   });
 }

@@ -7,7 +7,7 @@
 #include <expected>
 #include <numeric>
 
-#include "codec/log/level_choice.h"
+#include "codec/log/target_choice.h"
 #include "codec/picture/poster.h"
 #include "server/http/content_disposition.h"
 #include "server/http/http_resource.h"
@@ -53,6 +53,10 @@ bool isPicture(LevelForm form) { return form == LevelForm::kPng || form == Level
 /// Whether the form is compressed already and is sent as it is.
 bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == LevelForm::kDrc; }
 
+Result<std::uint32_t> levelOf(const ServedMesh& mesh, const Target& target) {
+  return levelFor(target, mesh.manifest, mesh.log.index());
+}
+
 /// "NAME:E" as the coarsest level at which the field's rms error (or that of "boundary", its
 /// distance) is at most E.
 OrRefusal<std::uint32_t> levelOfError(const ServedMesh& mesh, const std::string& text) {
@@ -65,10 +69,10 @@ OrRefusal<std::uint32_t> levelOfError(const ServedMesh& mesh, const std::string&
         "error is NAME:E, a field or 'boundary' and a fraction of its range or of the diagonal, "
         "like error=boundary:0.01");
   const std::string name = text.substr(0, colon);
-  const auto field = fieldOfKey(mesh.manifest, name);
-  if (!field && name != "boundary") return notFound("this mesh has no field '" + name + "'");
-  const auto level = field ? levelOfFieldError(mesh.manifest, *field, *bound)
-                           : levelOfBoundaryError(mesh.manifest, *bound);
+  const bool isField = fieldOfKey(mesh.manifest, name).has_value();
+  if (!isField && name != "boundary") return notFound("this mesh has no field '" + name + "'");
+  const auto level = isField ? levelOf(mesh, FieldErrorTarget{*bound, name})
+                             : levelOf(mesh, BoundaryErrorTarget{*bound});
   if (!level) return notFound(level.error().message);
   return *level;
 }
@@ -81,8 +85,7 @@ OrRefusal<std::uint32_t> fittingLevel(const RequestTarget& target, const ServedM
   if (error) return levelOfError(mesh, *error);
   const auto most = parseNumber<std::uint64_t>(tets ? *tets : *bytes);
   if (!most) return badRequest("tets and bytes are whole numbers");
-  return tets ? levelOfTetrahedra(mesh.manifest, static_cast<double>(*most))
-              : levelOfBytes(mesh.manifest, mesh.log.index(), *most);
+  return *(tets ? levelOf(mesh, TetrahedraTarget{*most}) : levelOf(mesh, BytesTarget{*most}));
 }
 
 OrRefusal<std::uint32_t> levelOfName(std::string_view name, const RequestTarget& target,

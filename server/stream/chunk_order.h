@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "codec/log/target_choice.h"
+#include "proto/stream_request.h"
 #include "server/stream/client_blocks.h"
 #include "server/stream/log_front.h"
-#include "server/stream/stream_target.h"
 
 namespace qtet {
 

@@ -61,13 +61,10 @@ std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, std::vector<std:
 }
 
 std::expected<StopAt, Refusal> stopOf(const Target& target, const ServedMesh& mesh) {
-  std::uint32_t field = 0;
-  if (const auto* error = std::get_if<FieldErrorTarget>(&target)) {
-    const auto found = fieldOfKey(mesh.manifest, error->field);
-    if (!found) return std::unexpected(unknownField(mesh, error->field));
-    field = *found;
-  }
-  return stopAt(mesh.log.index(), mesh.manifest, target, field);
+  if (const auto* error = std::get_if<FieldErrorTarget>(&target);
+      error && !fieldOfKey(mesh.manifest, error->field))
+    return std::unexpected(unknownField(mesh, error->field));
+  return chunksFor(target, mesh.manifest, mesh.log.index()).value();
 }
 
 }  // namespace

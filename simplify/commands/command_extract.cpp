@@ -2,8 +2,8 @@
 #include <limits>
 #include <numeric>
 
-#include "codec/log/level_choice.h"
 #include "codec/log/log_index.h"
+#include "codec/log/target_choice.h"
 #include "proto/field_key.h"
 #include "proto/level_error_json.h"
 #include "simplify/commands/command_measure.h"
@@ -15,27 +15,24 @@
 namespace qtet {
 namespace {
 
-Result<std::uint32_t> levelWithin(const Manifest& manifest,
-                                  const std::pair<std::string, double>& fieldBound) {
-  if (const auto field = fieldOfKey(manifest, fieldBound.first))
-    return levelOfFieldError(manifest, *field, fieldBound.second);
-  std::string keys;
-  for (std::uint32_t f = 0; f < manifest.fields.size(); ++f)
-    keys += (keys.empty() ? "" : ", ") + fieldKey(manifest, f);
-  return fail(ErrorCode::kNotFound, "the log has no field '" + fieldBound.first +
-                                        "'; it has: " + (keys.empty() ? "none" : keys));
+Target targetOf(const ParsedWords& parsed, const Manifest& manifest) {
+  const auto cells = [](double most) { return TetrahedraTarget{static_cast<std::uint64_t>(most)}; };
+  if (parsed.has("error")) {
+    auto [field, error] = parseNamedError("error", parsed.get<std::string>("error"));
+    return FieldErrorTarget{error, std::move(field)};
+  }
+  if (parsed.has("boundary-error"))
+    return BoundaryErrorTarget{parsed.number("boundary-error", 0, 1)};
+  if (parsed.has("tets")) return cells(parsed.number("tets", 0, 1e18));
+  return cells(parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
 }
 
-Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& manifest) {
-  if (parsed.has("error"))
-    return levelWithin(manifest, parseNamedError("error", parsed.get<std::string>("error")));
-  if (parsed.has("boundary-error"))
-    return levelOfBoundaryError(manifest, parsed.number("boundary-error", 0, 1));
+/// `--level` is not a target: a level that does not exist is an error.
+Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& manifest,
+                                  const LogIndex& index) {
   if (parsed.has("level"))
     return static_cast<std::uint32_t>(parsed.integer("level", 0, std::numeric_limits<int>::max()));
-  if (parsed.has("tets")) return levelOfTetrahedra(manifest, parsed.number("tets", 0, 1e18));
-  return levelOfTetrahedra(manifest,
-                           parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
+  return levelFor(targetOf(parsed, manifest), manifest, index);
 }
 
 /// Leaves a mesh of either kind only the `wanted` fields: their numbers, ascending.
@@ -133,7 +130,7 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const Result<OpenedLog> log = openLog(input);
   if (!log) return std::unexpected(log.error());
 
-  const Result<std::uint32_t> level = chosenLevel(parsed, log->manifest);
+  const Result<std::uint32_t> level = chosenLevel(parsed, log->manifest, log->file.index());
   if (!level) return std::unexpected(level.error());
   const bool restores =
       *level + 1 == log->manifest.levels.size() && !log->file.index().closing.empty();

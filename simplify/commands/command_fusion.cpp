@@ -49,7 +49,7 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "base-cells", po::value<int>(), "stop when the base mesh has so many tetrahedra")(
       "boundary-weight", po::value<double>(),
       "what the boundary's place counts beside the fields: 0 to 1 for the fields first, 4,000 to "
-      "40,000 for the shape first; without, a weight from 0.0125 to 200 by how "
+      "40,000 for the shape first; without, a weight from 0.05 to 200 by how "
       "smooth the fields and the boundary are, which the report tells")(
       "field-weight", po::value<std::vector<std::string>>(),
       "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be "

@@ -14,13 +14,13 @@ namespace {
 
 // The factor on the fields' change over the distance that the boundary is off by, squared. The
 // other one is on the boundary's expected error beside the fields'. With four times as much, fields
-// are 3 to 21 % further off at equal cells. The envelope's tolerance keeps the volume (HISTORY.md).
+// are 4 to 14 % further off at equal cells. The envelope's tolerance keeps the volume (HISTORY.md).
 constexpr double kWorth = 1.5;
 constexpr double kBalance = 0.25;
 // More puts the shape before the fields, which is a user's choice. Less would give the shape away
 // where fields are so smooth that they hardly need cells.
 constexpr double kMaxWeight = 200;
-constexpr double kMinWeight = 0.0125;
+constexpr double kMinWeight = 0.05;
 
 // The steepness of the fields in the cost: the sum of their squared gradients in a cell of positive
 // volume.

@@ -128,8 +128,9 @@ bool LiveBoundary::isMetBy(const Proposal& proposal) {
   for (const auto* triangles : {&new_, &left_})
     for (const PlacedTriangle& t : *triangles) std::ranges::for_each(t.at, enclose);
   bool meets = false;
-  tree_.touching(low, high,
-                 [&](std::uint32_t other) { return !(meets = isMetBy(proposal, other)); });
+  tree_.touching(low, high, [&](std::uint32_t other, const auto&) {
+    return !(meets = isMetBy(proposal, other));
+  });
   return meets;
 }
 

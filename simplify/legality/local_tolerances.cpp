@@ -59,12 +59,14 @@ class Lookout {
   void look(std::uint32_t triangle, const Vector3& from, const Vector3& along) {
     std::array<double, 2> nearest{1, 1};
     std::array<std::uint32_t, 2> hit{triangle, triangle};
-    tree_.crossing(from - along, from + along, [&](std::uint32_t other) {
-      if (other == triangle) return;
-      const double at = passingAt(from, along, tree_.corners(other));
-      const std::size_t side = at < 0 ? 1 : 0;
-      if (std::abs(at) < nearest[side]) nearest[side] = std::abs(at), hit[side] = other;
-    });
+    tree_.crossing(from - along, from + along,
+                   [&](std::uint32_t other, const std::array<Vector3, 3>& corners) {
+                     if (other == triangle) return;
+                     const double at = passingAt(from, along, corners);
+                     const std::size_t side = at < 0 ? 1 : 0;
+                     if (std::abs(at) < nearest[side])
+                       nearest[side] = std::abs(at), hit[side] = other;
+                   });
     for (std::size_t side = 0; side < 2; ++side)
       for (const std::uint32_t t : {triangle, hit[side]})
         out_[t] = std::min(out_[t], floatBelow(nearest[side] * most_));

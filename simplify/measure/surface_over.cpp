@@ -170,8 +170,8 @@ SurfaceOver surfaceOver(const TriangleTree& surface, std::span<const Vector3> pi
   }
   std::size_t looked = 0;
   bool isClear = true;
-  surface.touching(low, high, [&](std::uint32_t id) {
-    return isClear = ++looked <= kMaxTriangles && prism.add(id, surface.corners(id));
+  surface.touching(low, high, [&](std::uint32_t id, const Corners& corners) {
+    return isClear = ++looked <= kMaxTriangles && prism.add(id, corners);
   });
   return isClear ? prism.result() : SurfaceOver{};
 }

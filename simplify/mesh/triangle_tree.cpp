@@ -24,6 +24,8 @@ TriangleTree::TriangleTree(std::span<const LatticePoint> points, std::span<const
     : points_(points), cells_(cells), ids_(std::move(ids)) {
   nodes_.reserve(ids_.size());
   build(0, static_cast<std::uint32_t>(ids_.size()));
+  places_.reserve(ids_.size());
+  for (const std::uint32_t id : ids_) places_.push_back(placeOf(id));
   if (isCrowded()) fitSlabs({});
 }
 
@@ -90,14 +92,14 @@ TriangleTree::Slabs TriangleTree::slabsOf(const Node& node,
   return out;
 }
 
-void TriangleTree::fit(Node& leaf) const {
-  leaf.low.fill(std::numeric_limits<std::int32_t>::max());
-  leaf.high.fill(std::numeric_limits<std::int32_t>::min());
-  for (const std::uint32_t id : std::span(ids_).subspan(leaf.first, leaf.count))
-    for (std::size_t corner = 0; corner < 3; ++corner)
+void TriangleTree::fit(Node& node) const {
+  node.low.fill(std::numeric_limits<std::int32_t>::max());
+  node.high.fill(std::numeric_limits<std::int32_t>::min());
+  for (const std::uint32_t id : std::span(ids_).subspan(node.first, node.count))
+    for (const LatticePoint& p : placeOf(id))
       for (std::size_t k = 0; k < 3; ++k) {
-        leaf.low[k] = std::min(leaf.low[k], points_[cells_[id][corner]][k]);
-        leaf.high[k] = std::max(leaf.high[k], points_[cells_[id][corner]][k]);
+        node.low[k] = std::min(node.low[k], p[k]);
+        node.high[k] = std::max(node.high[k], p[k]);
       }
 }
 
@@ -139,11 +141,15 @@ void TriangleTree::allowGrowth() {
 
 void TriangleTree::grow(std::uint32_t triangle) {
   assert(!parents_.empty() && leaves_[triangle] != kNoNode);
-  LatticePoint low = points_[cells_[triangle][0]], high = low;
-  for (std::size_t corner = 1; corner < 3; ++corner)
+  const Place place = placeOf(triangle);
+  const Node& leaf = nodes_[leaves_[triangle]];
+  for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
+    if (ids_[i] == triangle) places_[i] = place;
+  LatticePoint low = place[0], high = low;
+  for (const LatticePoint& p : place)
     for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], points_[cells_[triangle][corner]][k]);
-      high[k] = std::max(high[k], points_[cells_[triangle][corner]][k]);
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
     }
   bool grows = true;
   for (std::uint32_t i = leaves_[triangle]; grows && i != kNoNode; i = parents_[i]) {
@@ -165,6 +171,8 @@ void TriangleTree::refit(std::span<const std::uint8_t> live) {
       const auto end = std::partition(begin, begin + node.count,
                                       [&](std::uint32_t id) { return live[id] != 0; });
       node.count = static_cast<std::uint32_t>(end - begin);
+      for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
+        places_[at] = placeOf(ids_[at]);
       fit(node);
       continue;
     }
@@ -201,9 +209,12 @@ double TriangleTree::squaredDistance(const Vector3& p, const Node& node) {
 
 void TriangleTree::tryTriangle(const Vector3& p, std::uint32_t triangle,
                                NearestTriangle& best) const {
-  const Cell& cell = cells_[triangle];
-  const NearestPoint found = nearestOnTriangle(
-      p, {toVector(points_[cell[0]]), toVector(points_[cell[1]]), toVector(points_[cell[2]])});
+  tryPlace(p, placeOf(triangle), triangle, best);
+}
+
+void TriangleTree::tryPlace(const Vector3& p, const Place& place, std::uint32_t triangle,
+                            NearestTriangle& best) {
+  const NearestPoint found = nearestOnTriangle(p, toVectors(place));
   if (found.squared < best.point.squared) best = {triangle, found};
 }
 
@@ -226,7 +237,7 @@ std::size_t TriangleTree::nearest(const Vector3& p, NearestTriangle& best, doubl
       const Node& node = nodes_[index];
       if (node.right == 0) {
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-          tryTriangle(p, ids_[i], best);
+          tryPlace(p, places_[i], ids_[i], best);
         break;
       }
       Waiting near{minSquared(index + 1), index + 1}, far{minSquared(node.right), node.right};

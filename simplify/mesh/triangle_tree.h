@@ -40,12 +40,12 @@ class TriangleTree {
   /// the next refit they hold where it was as well. Slabs do not: nearest() is not for such a tree.
   /// REQUIRES: allowGrowth().
   void grow(std::uint32_t triangle);
-  /// Calls visit(id) for the triangles of every leaf whose box touches the one from low to high,
-  /// until it returns false.
+  /// Calls visit(id, corners) for the triangles of every leaf whose box touches the one from low to
+  /// high, until it returns false.
   template <class Visit>
   void touching(const LatticePoint& low, const LatticePoint& high, const Visit& visit) const;
-  /// Calls visit(id) for the triangles of every leaf whose box the segment passes, and perhaps a
-  /// few more.
+  /// Calls visit(id, corners) for the triangles of every leaf whose box the segment passes, and
+  /// perhaps a few more.
   template <class Visit>
   void crossing(const Vector3& from, const Vector3& to, const Visit& visit) const;
 
@@ -54,8 +54,7 @@ class TriangleTree {
   void refit(std::span<const std::uint8_t> live);
   [[nodiscard]] std::size_t builtOver() const { return ids_.size(); }
   [[nodiscard]] std::array<Vector3, 3> corners(std::uint32_t triangle) const {
-    const Cell& cell = cells_[triangle];
-    return {toVector(points_[cell[0]]), toVector(points_[cell[1]]), toVector(points_[cell[2]])};
+    return toVectors(placeOf(triangle));
   }
 
   /// Puts the nearest triangle into `best` if it is nearer than what stands there: a good guess
@@ -84,11 +83,22 @@ class TriangleTree {
     std::array<double, 2> low, high;  // low > high where nothing lives
   };
 
-  /// Calls visit(id), until it returns false, for the leaves under nodes that are not apart.
+  using Place = std::array<LatticePoint, 3>;
+  [[nodiscard]] Place placeOf(std::uint32_t triangle) const {
+    const Cell& cell = cells_[triangle];
+    return {points_[cell[0]], points_[cell[1]], points_[cell[2]]};
+  }
+  [[nodiscard]] static std::array<Vector3, 3> toVectors(const Place& place) {
+    return {toVector(place[0]), toVector(place[1]), toVector(place[2])};
+  }
+  static void tryPlace(const Vector3& p, const Place& place, std::uint32_t triangle,
+                       NearestTriangle& best);
+  /// Calls visit(id, corners), until it returns false, for the leaves under nodes that are not
+  /// apart.
   template <class IsApart, class Visit>
   void walk(const IsApart& isApart, const Visit& visit) const;
   void build(std::uint32_t first, std::uint32_t count);
-  void fit(Node& leaf) const;
+  void fit(Node& node) const;
   [[nodiscard]] bool isCrowded() const;
   void fitSlabs(std::span<const std::uint8_t> live);
   [[nodiscard]] Slabs slabsOf(const Node& node, std::span<const std::uint8_t> live) const;
@@ -98,6 +108,9 @@ class TriangleTree {
   std::span<const LatticePoint> points_;
   std::span<const Cell> cells_;
   std::vector<std::uint32_t> ids_;
+  // Where the triangles are, as of the last refit or grow, in the order of ids_. A search reads
+  // neighbours in the tree, which lie anywhere in the mesh.
+  std::vector<Place> places_;
   std::vector<Node> nodes_;
   std::vector<Slabs> slabs_;  // one a node, or none
   // of grow(): by node its parent, by triangle its leaf
@@ -118,7 +131,7 @@ void TriangleTree::walk(const IsApart& isApart, const Visit& visit) const {
     }
     if (!apart)
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        if (!visit(ids_[i])) return;
+        if (!visit(ids_[i], toVectors(places_[i]))) return;
     if (size == 0) return;
     index = waiting[--size];
   }
@@ -153,7 +166,9 @@ void TriangleTree::crossing(const Vector3& from, const Vector3& to, const Visit&
     }
     return apart;
   };
-  walk(isApart, [&](std::uint32_t id) { return visit(id), true; });
+  walk(isApart, [&](std::uint32_t id, const std::array<Vector3, 3>& corners) {
+    return visit(id, corners), true;
+  });
 }
 
 }  // namespace qtet

@@ -79,7 +79,7 @@ std::uint64_t bytesOf(const LogFront& log, const View& view,
                       const std::vector<std::uint32_t>& fields) {
   const auto& [index, manifest, intervals] = log;
   std::uint64_t bytes = index.headBytes();
-  const StopAt stop = stopAt(index, manifest, LevelTarget{manifest.levels.back().level}, 0);
+  const StopAt stop = chunksFor(LevelTarget{manifest.levels.back().level}, manifest, index).value();
   for (const BlockRun& run : planStream(log, ClientBlocks(index, fields), view, stop, 1u << 18))
     bytes += sliceOf(index, run).size;
   return bytes;

@@ -48,7 +48,8 @@ class PacketIntervalsTest : public ::testing::Test {
   }
   [[nodiscard]] const LogIndex& index() const { return log_->index(); }
   [[nodiscard]] std::vector<std::uint32_t> planned(const Isovalue& isovalue) const {
-    const StopAt stop = stopAt(index(), manifest_, LevelTarget{manifest_.levels.back().level}, 0);
+    const StopAt stop =
+        chunksFor(LevelTarget{manifest_.levels.back().level}, manifest_, index()).value();
     std::vector<std::uint32_t> out;
     for (const BlockRun& run :
          planStream({index(), manifest_, &table_}, ClientBlocks(index(), {0, 1}),

@@ -35,7 +35,7 @@ struct Planned {
                                            std::uint32_t payload = kEverything,
                                            const View& view = {}, const Target& target = {}) const {
     return planStream({index, manifest, intervals ? &*intervals : nullptr}, blocks, view,
-                      stopAt(index, manifest, target, 0), payload);
+                      chunksFor(target, manifest, index).value(), payload);
   }
   [[nodiscard]] std::vector<std::uint32_t> chunks(const View& view,
                                                   const Target& target = {}) const {

@@ -1,0 +1,106 @@
+#include "codec/log/target_choice.h"
+
+#include <algorithm>
+#include <cassert>
+#include <variant>
+
+#include "codec/log/log_index.h"
+#include "codec/log/log_levels.h"
+#include "proto/level_error.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+namespace {
+
+Error noField(const Manifest& manifest, const std::string& key) {
+  std::string keys;
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+    keys += (f == 0 ? "" : ", ") + fieldKey(manifest, f);
+  return {ErrorCode::kNotFound,
+          "the log has no field '" + key + "'; it has: " + (keys.empty() ? "none" : keys)};
+}
+
+class LevelChooser {
+ public:
+  LevelChooser(const Manifest& manifest, const LogIndex& index)
+      : manifest_(manifest), index_(index) {}
+
+  Result<std::uint32_t> operator()(const EverythingTarget&) const { return last(); }
+  Result<std::uint32_t> operator()(const LevelTarget& t) const { return std::min(t.level, last()); }
+  Result<std::uint32_t> operator()(const BytesTarget& t) const {
+    return finest([&](const ManifestLevel& level) {
+      return prefixBytes(manifest_, index_, level.level) <= t.bytes;
+    });
+  }
+  Result<std::uint32_t> operator()(const TetrahedraTarget& t) const {
+    return finest([&](const ManifestLevel& level) { return level.tetrahedra <= t.tetrahedra; });
+  }
+  Result<std::uint32_t> operator()(const FieldErrorTarget& t) const {
+    const auto field = fieldOfKey(manifest_, t.field);
+    if (!field) return std::unexpected(noField(manifest_, t.field));
+    return coarsest(t.error, [&](const LevelError& error) { return error.fields[*field].rms; });
+  }
+  Result<std::uint32_t> operator()(const BoundaryErrorTarget& t) const {
+    return coarsest(t.error, [](const LevelError& error) { return error.boundaryDistance(); });
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t last() const { return manifest_.levels.back().level; }
+
+  template <class Fits>
+  [[nodiscard]] std::uint32_t finest(const Fits& fits) const {
+    const auto found =
+        std::ranges::find_if(manifest_.levels.rbegin(), manifest_.levels.rend(), fits);
+    return found == manifest_.levels.rend() ? 0 : found->level;
+  }
+  template <class ErrorOf>
+  [[nodiscard]] Result<std::uint32_t> coarsest(double bound, const ErrorOf& errorOf) const {
+    if (!manifest_.levels.back().error)
+      return fail(ErrorCode::kNotFound,
+                  "the log does not have the errors of its levels; choose by size, or simplify "
+                  "again with `measure` levels");
+    const auto found = std::ranges::find_if(manifest_.levels, [&](const ManifestLevel& level) {
+      return level.error && errorOf(*level.error) <= bound;
+    });
+    return found == manifest_.levels.end() ? last() : found->level;
+  }
+
+  const Manifest& manifest_;
+  const LogIndex& index_;
+};
+
+std::uint32_t lastChunkWithin(const LogIndex& index, std::uint64_t bytes) {
+  std::uint32_t last = 0;
+  while (last + 1 < index.chunks.size() &&
+         index.chunks[last + 1].offset + index.chunks[last + 1].size() <= bytes)
+    ++last;
+  return last;
+}
+
+}  // namespace
+
+Result<std::uint32_t> levelFor(const Target& target, const Manifest& manifest,
+                               const LogIndex& index) {
+  assert(!manifest.levels.empty());
+  return std::visit(LevelChooser(manifest, index), target);
+}
+
+Result<StopAt> chunksFor(const Target& target, const Manifest& manifest, const LogIndex& index) {
+  assert(manifest.fields.size() == index.fields.size());
+  assert(!manifest.levels.empty() && manifest.levels.back().chunk < index.chunks.size());
+  if (std::holds_alternative<EverythingTarget>(target)) return StopAt{};
+  const bool isRegions = index.layout == Layout::kRegions;
+  if (const auto* bytes = std::get_if<BytesTarget>(&target))
+    return isRegions ? StopAt{.payload = bytes->bytes}
+                     : StopAt{.lastChunk = lastChunkWithin(index, bytes->bytes)};
+  if (const auto* cells = std::get_if<TetrahedraTarget>(&target); cells && isRegions)
+    return StopAt{.tetrahedra = cells->tetrahedra};
+  if (const auto* error = std::get_if<FieldErrorTarget>(&target);
+      error && !fieldOfKey(manifest, error->field))
+    return std::unexpected(noField(manifest, error->field));
+  const std::uint32_t level =
+      levelFor(target, manifest, index).value_or(manifest.levels.back().level);
+  return StopAt{.lastChunk = manifest.levels[level].chunk, .ofWantedOnly = true};
+}
+
+}  // namespace qtet
