@@ -19,7 +19,8 @@ Status MirrorMesh::start(std::span<const Tetrahedron> tetrahedra,
     return std::ranges::find(cell, kGhost) != cell.end();
   };
   const auto ghosts = static_cast<std::uint32_t>(std::ranges::count_if(history_.cells, isGhost));
-  const Slots total{static_cast<std::uint32_t>(history_.points.size() - history_.fusions.size()),
+  const std::size_t fused = std::min(history_.fusions.size(), history_.points.size());
+  const Slots total{static_cast<std::uint32_t>(history_.points.size() - fused),
                     static_cast<std::uint32_t>(history_.cells.size()) - ghosts, ghosts};
   mesh_.reserve(total);
   tetrahedra_.reserve(total.tetrahedra), triangles_.reserve(total.triangles);

@@ -45,8 +45,8 @@ void SplitDescriber::place(VertexId slot) {
 void SplitDescriber::lookAhead(VertexId v) {
   if (!kPrefetchIsFree) return;
   const std::uint32_t level = mirror_.mesh().level();
-  if (seenLevel_ != level) seenLevel_ = level, seen_ = v, ahead_ = {};
-  if (ahead_.size() > 0 && ahead_[0] == v) ahead_.pop();
+  if (seenLevel_ != level) seenLevel_ = level, seen_ = v + 1, ahead_ = {};
+  while (ahead_.size() > 0 && ahead_[0] <= v) ahead_.pop();
   for (; seen_ < mirror_.mesh().levelVertices() && ahead_.size() < Ahead::kMost; ++seen_)
     if (next_[seen_].level == level) {
       ahead_.push(seen_);
@@ -62,7 +62,7 @@ void SplitDescriber::expectLists(VertexId v) const {
   const Fusion& fusion = history_.fusions[next_[v].fusion];
   prefetchAll(affectedBy(fusion));
   prefetchAll(deletedBy(fusion));
-  prefetch(&history_.affectedLabels[fusion.firstAffected]);
+  prefetch(history_.affectedLabels.data() + fusion.firstAffected);
 }
 
 void SplitDescriber::expectCells(VertexId v) const {

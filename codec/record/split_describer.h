@@ -58,10 +58,10 @@ class SplitDescriber {
   void expectCells(VertexId v) const;
   void expectCorners(VertexId v) const;
   [[nodiscard]] std::span<const std::uint32_t> affectedBy(const Fusion& fusion) const {
-    return {&history_.affectedCells[fusion.firstAffected], fusion.affectedCount};
+    return std::span(history_.affectedCells).subspan(fusion.firstAffected, fusion.affectedCount);
   }
   [[nodiscard]] std::span<const std::uint32_t> deletedBy(const Fusion& fusion) const {
-    return {&history_.deletedCells[fusion.firstDeleted], fusion.deletedCount};
+    return std::span(history_.deletedCells).subspan(fusion.firstDeleted, fusion.deletedCount);
   }
   bool labels(VertexId v, const Fusion& fusion, RecordTruth& truth);
   bool deleted(const Link& link, const Fusion& fusion, RecordTruth& truth);
