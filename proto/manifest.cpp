@@ -23,6 +23,14 @@ std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_vi
   return fieldOfKey(manifest.fields, key);
 }
 
+Error noSuchField(const Manifest& manifest, std::string_view key) {
+  std::string keys;
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+    keys += (f == 0 ? "" : ", ") + fieldKey(manifest, f);
+  return {ErrorCode::kNotFound, "the log has no field '" + std::string(key) +
+                                    "'; it has: " + (keys.empty() ? "none" : keys)};
+}
+
 std::array<double, 6> focusCorners(const Manifest& manifest) {
   std::array<double, 6> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {

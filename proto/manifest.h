@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "proto/error.h"
 #include "proto/level_error.h"
 
 namespace qtet {
@@ -75,6 +76,8 @@ struct Manifest {
 /// The one field that `key` means (field_key.h).
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest,
                                                       std::string_view key);
+/// not-found: no field is meant by `key`. The message has the keys of those that are there.
+[[nodiscard]] Error noSuchField(const Manifest& manifest, std::string_view key);
 
 /// The corners of the manifest's focus in the mesh's own coordinates. REQUIRES: there is one.
 [[nodiscard]] std::array<double, 6> focusCorners(const Manifest& manifest);

@@ -232,10 +232,6 @@ qtet_status qtet_log_find_field(qtet_log* log, const char* name, uint32_t* field
       *field = *found;
       return QTET_OK;
     }
-    std::string names;
-    for (std::size_t f = 0; f < log->manifest.fields.size(); ++f)
-      names += (f == 0 ? "" : ", ") + qtet::fieldKey(log->manifest, f);
-    return log->refuse(QTET_NOT_FOUND, "the log has no field '" + std::string(name) +
-                                           "'; it has: " + (names.empty() ? "none" : names));
+    return log->refuse(qtet::noSuchField(log->manifest, name));
   });
 }

@@ -12,14 +12,6 @@
 namespace qtet {
 namespace {
 
-Error noField(const Manifest& manifest, const std::string& key) {
-  std::string keys;
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-    keys += (f == 0 ? "" : ", ") + fieldKey(manifest, f);
-  return {ErrorCode::kNotFound,
-          "the log has no field '" + key + "'; it has: " + (keys.empty() ? "none" : keys)};
-}
-
 class LevelChooser {
  public:
   LevelChooser(const Manifest& manifest, const LogIndex& index)
@@ -37,7 +29,7 @@ class LevelChooser {
   }
   Result<std::uint32_t> operator()(const FieldErrorTarget& t) const {
     const auto field = fieldOfKey(manifest_, t.field);
-    if (!field) return std::unexpected(noField(manifest_, t.field));
+    if (!field) return std::unexpected(noSuchField(manifest_, t.field));
     return coarsest(t.error, [&](const LevelError& error) { return error.fields[*field].rms; });
   }
   Result<std::uint32_t> operator()(const BoundaryErrorTarget& t) const {
@@ -97,7 +89,7 @@ Result<StopAt> chunksFor(const Target& target, const Manifest& manifest, const L
     return StopAt{.tetrahedra = cells->tetrahedra};
   if (const auto* error = std::get_if<FieldErrorTarget>(&target);
       error && !fieldOfKey(manifest, error->field))
-    return std::unexpected(noField(manifest, error->field));
+    return std::unexpected(noSuchField(manifest, error->field));
   const std::uint32_t level =
       levelFor(target, manifest, index).value_or(manifest.levels.back().level);
   return StopAt{.lastChunk = manifest.levels[level].chunk, .ofWantedOnly = true};

@@ -61,10 +61,9 @@ std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, std::vector<std:
 }
 
 std::expected<StopAt, Refusal> stopOf(const Target& target, const ServedMesh& mesh) {
-  if (const auto* error = std::get_if<FieldErrorTarget>(&target);
-      error && !fieldOfKey(mesh.manifest, error->field))
-    return std::unexpected(unknownField(mesh, error->field));
-  return chunksFor(target, mesh.manifest, mesh.log.index()).value();
+  const Result<StopAt> stop = chunksFor(target, mesh.manifest, mesh.log.index());
+  if (!stop) return std::unexpected(unknownField(mesh, std::get<FieldErrorTarget>(target).field));
+  return *stop;
 }
 
 }  // namespace

@@ -30,13 +30,6 @@ Status checkNewLog(const ParsedWords& parsed, const std::string& mesh) {
                               : Status{};
 }
 
-std::string namesOf(const Manifest& manifest) {
-  std::string out;
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-    out += (f == 0 ? "" : ", ") + fieldKey(manifest, f);
-  return out.empty() ? "none" : out;
-}
-
 /// The log's fields without those that `mesh` replaces. Errors: bad-value (a name that is there,
 /// without --replace).
 Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMesh& mesh,
@@ -171,9 +164,7 @@ Status removeField(const ParsedWords& parsed, Console& console) {
   if (!names) kept.clear();
   for (const std::string& name : names.value_or(std::vector<std::string>{})) {
     const std::vector<std::uint32_t> meant = fieldsOfKey(log->manifest.fields, name);
-    if (meant.empty())
-      return fail(ErrorCode::kNotFound,
-                  "the log has no field '" + name + "'; it has: " + namesOf(log->manifest));
+    if (meant.empty()) return std::unexpected(noSuchField(log->manifest, name));
     for (const std::uint32_t f : meant) std::erase(kept, f);
   }
   const Result<Bytes> bytes = withFields(log->file, kept, {});

@@ -35,11 +35,12 @@ Result<Bytes> meshFileBytes(const TetMesh& mesh, const std::filesystem::path& ou
   const std::string ending = output.extension().string();
   if (!needsLattice(ending)) return meshFileBytes(fileMesh(mesh), ending);
   TetMesh cleaned = mesh;
-  if (const Result<CleanReport> report = cleanMesh(cleaned); !report)
-    return std::unexpected(report.error());
+  Result<CleanReport> report = cleanMesh(cleaned);
+  if (!report) return std::unexpected(report.error());
   QuantiseOptions options;
   options.positionBits = options.fieldBits = kExportBits;
-  const Result<QuantisedMesh> quantised = quantise(cleaned, options);
+  const Result<QuantisedMesh> quantised =
+      quantise(cleaned, options, {}, std::move(report->boundary));
   return quantised ? meshFileBytes(quantised->mesh, ending, file)
                    : std::unexpected(quantised.error());
 }

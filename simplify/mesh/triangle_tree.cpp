@@ -92,21 +92,28 @@ TriangleTree::Slabs TriangleTree::slabsOf(const Node& node,
   return out;
 }
 
-void TriangleTree::fit(Node& node) const {
+void TriangleTree::clear(Node& node) {
   node.low.fill(std::numeric_limits<std::int32_t>::max());
   node.high.fill(std::numeric_limits<std::int32_t>::min());
-  for (const std::uint32_t id : std::span(ids_).subspan(node.first, node.count))
-    for (const LatticePoint& p : placeOf(id))
-      for (std::size_t k = 0; k < 3; ++k) {
-        node.low[k] = std::min(node.low[k], p[k]);
-        node.high[k] = std::max(node.high[k], p[k]);
-      }
+}
+
+bool TriangleTree::enclose(Node& node, const Place& place) {
+  bool grows = false;
+  for (const LatticePoint& p : place)
+    for (std::size_t k = 0; k < 3; ++k) {
+      grows |= p[k] < node.low[k] || p[k] > node.high[k];
+      node.low[k] = std::min(node.low[k], p[k]);
+      node.high[k] = std::max(node.high[k], p[k]);
+    }
+  return grows;
 }
 
 void TriangleTree::build(std::uint32_t first, std::uint32_t count) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({{}, {}, 0, first, count});
-  fit(nodes_[index]);
+  clear(nodes_[index]);
+  for (const std::uint32_t id : std::span(ids_).subspan(first, count))
+    enclose(nodes_[index], placeOf(id));
   if (count <= kLeafTriangles) return;
   const Node& box = nodes_[index];
   std::size_t axis = 0;
@@ -145,22 +152,8 @@ void TriangleTree::grow(std::uint32_t triangle) {
   const Node& leaf = nodes_[leaves_[triangle]];
   for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
     if (ids_[i] == triangle) places_[i] = place;
-  LatticePoint low = place[0], high = low;
-  for (const LatticePoint& p : place)
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
-  bool grows = true;
-  for (std::uint32_t i = leaves_[triangle]; grows && i != kNoNode; i = parents_[i]) {
-    grows = false;
-    Node& node = nodes_[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      grows |= low[k] < node.low[k] || high[k] > node.high[k];
-      node.low[k] = std::min(node.low[k], low[k]);
-      node.high[k] = std::max(node.high[k], high[k]);
-    }
-  }
+  for (std::uint32_t i = leaves_[triangle]; i != kNoNode; i = parents_[i])
+    if (!enclose(nodes_[i], place)) break;
 }
 
 void TriangleTree::refit(std::span<const std::uint8_t> live) {
@@ -171,9 +164,9 @@ void TriangleTree::refit(std::span<const std::uint8_t> live) {
       const auto end = std::partition(begin, begin + node.count,
                                       [&](std::uint32_t id) { return live[id] != 0; });
       node.count = static_cast<std::uint32_t>(end - begin);
+      clear(node);
       for (std::uint32_t at = node.first; at < node.first + node.count; ++at)
-        places_[at] = placeOf(ids_[at]);
-      fit(node);
+        enclose(node, places_[at] = placeOf(ids_[at]));
       continue;
     }
     const Node &left = nodes_[i + 1], &right = nodes_[node.right];

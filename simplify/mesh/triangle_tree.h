@@ -98,7 +98,9 @@ class TriangleTree {
   template <class IsApart, class Visit>
   void walk(const IsApart& isApart, const Visit& visit) const;
   void build(std::uint32_t first, std::uint32_t count);
-  void fit(Node& node) const;
+  static void clear(Node& node);
+  /// Returns whether the node's box had to grow.
+  static bool enclose(Node& node, const Place& place);
   [[nodiscard]] bool isCrowded() const;
   void fitSlabs(std::span<const std::uint8_t> live);
   [[nodiscard]] Slabs slabsOf(const Node& node, std::span<const std::uint8_t> live) const;

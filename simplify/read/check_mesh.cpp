@@ -64,13 +64,13 @@ class Checking {
     }
     TetMesh sound{mesh.points, {}, {}, {}};
     std::vector<std::uint64_t> soundNames;
-    const std::vector<CellId> duplicates = matchFaces(different).duplicates;
+    MatchedFaces faces = matchFaces(different);
     for (std::size_t i = 0; i < different.size(); ++i) {
-      if (std::ranges::binary_search(duplicates, static_cast<CellId>(i))) continue;
+      if (std::ranges::binary_search(faces.duplicates, static_cast<CellId>(i))) continue;
       sound.tetrahedra.push_back(different[i]);
       soundNames.push_back(names[i]);
     }
-    const MatchedFaces faces = matchFaces(sound.tetrahedra);
+    if (!faces.duplicates.empty()) faces = matchFaces(sound.tetrahedra);
     lookForOverlaps(faces, soundNames);
     lookForOpenFaces(sound, faces);
   }
