@@ -41,10 +41,9 @@ inline constexpr std::uint64_t kMaxStepsPerByte = 1024;
 inline constexpr std::uint64_t kFreeStepBytes = 4096;
 /// Structure bytes that a chunk's counts are checked as if it had in addition.
 inline constexpr std::uint64_t kFreeCountBytes = 64;
-/// The same for a packet of the layout `regions`, since room for its slots may be made before the
-/// bytes of earlier packets are there. Also for a whole log, before a refiner makes room for it.
-/// Real ones bring one or two cells a byte.
-inline constexpr std::uint64_t kMaxElementsPerPacketByte = 64;
+/// Vertices, tetrahedra or triangles a structure byte for which a refiner makes room before they
+/// come. Real logs bring one or two cells a byte.
+inline constexpr std::uint64_t kMaxElementsPerByte = 64;
 /// Bits of one lattice axis: differences and products of three then fit the exact predicates, and
 /// Draco's 2^30.
 inline constexpr int kMaxPositionBits = 28;

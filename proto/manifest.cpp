@@ -52,7 +52,6 @@ Json openingJson(const Manifest& manifest) {
 std::string manifestToJson(const Manifest& manifest) {
   Json out;
   out["generator"] = manifest.generator;
-  out["layout"] = manifest.layout;
   out["source"] = manifest.source;
   out["lattice"] = {{"bits", manifest.latticeBits},
                     {"step", manifest.latticeStep},

@@ -56,7 +56,6 @@ struct Opening {
 
 struct Manifest {
   std::string generator;
-  std::string layout = "stream";
   std::string source;  ///< file name of the input, without its folder
   int latticeBits = 0;
   double latticeStep = 1;

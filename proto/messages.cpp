@@ -35,7 +35,6 @@ OpenMessage readOpen(const JsonCursor& json) {
     out.fields.push_back(readName(name));
   out.have = readHave(json.optional("have"));
   out.target = readTarget(json.optional("target"));
-  out.view = readView(json.optional("view"));
   out.credit = json["credit"].count(0, kMaxCredit);
   return out;
 }
@@ -72,16 +71,12 @@ Json openToJson(const OpenMessage& m) {
   if (!m.digest.empty()) out["digest"] = m.digest;
   out["have"] = toJson(m.have);
   if (!std::holds_alternative<EverythingTarget>(m.target)) out["target"] = toJson(m.target);
-  if (Json view = toJson(m.view); !view.is_null()) out["view"] = std::move(view);
   return out;
 }
 
 struct ToJson {
   Json operator()(const OpenMessage& m) const { return openToJson(m); }
   Json operator()(const CreditMessage& m) const { return {{"type", "credit"}, {"bytes", m.bytes}}; }
-  Json operator()(const ViewMessage& m) const {
-    return {{"type", "view"}, {"view", toJson(m.view)}};
-  }
   Json operator()(const TargetMessage& m) const {
     return {{"type", "target"}, {"target", toJson(m.target)}};
   }
@@ -93,11 +88,11 @@ struct ToJson {
   }
   Json operator()(const CancelMessage&) const { return {{"type", "cancel"}}; }
   Json operator()(const OpenedMessage& m) const {
-    return {{"type", "opened"}, {"stream", m.stream},   {"mesh", m.mesh},    {"digest", m.digest},
-            {"bytes", m.bytes}, {"planned", m.planned}, {"layout", m.layout}};
+    return {{"type", "opened"},   {"stream", m.stream}, {"mesh", m.mesh},
+            {"digest", m.digest}, {"bytes", m.bytes},   {"planned", m.planned}};
   }
   Json operator()(const PlannedMessage& m) const {
-    return {{"type", "planned"}, {"stream", m.stream}, {"planned", m.planned}, {"view", m.view}};
+    return {{"type", "planned"}, {"stream", m.stream}, {"planned", m.planned}};
   }
   Json operator()(const DoneMessage& m) const { return {{"type", "done"}, {"stream", m.stream}}; }
   Json operator()(const StoppedMessage& m) const {
@@ -121,8 +116,6 @@ Result<ClientMessage> parseClientMessage(std::string_view json) {
     out = readOpen(root);
   } else if (type == "credit") {
     out = CreditMessage{root["bytes"].count(0, kMaxCredit)};
-  } else if (type == "view") {
-    out = ViewMessage{readView(root["view"])};
   } else if (type == "target") {
     out = TargetMessage{readTarget(root["target"])};
   } else if (type == "pause") {
@@ -133,7 +126,7 @@ Result<ClientMessage> parseClientMessage(std::string_view json) {
   } else if (type == "cancel" || type == "stop") {
     out = CancelMessage{};
   } else {
-    root["type"].fail("must be 'open', 'credit', 'view', 'target', 'pause', 'resume' or 'cancel'");
+    root["type"].fail("must be 'open', 'credit', 'target', 'pause', 'resume' or 'cancel'");
   }
   return checked(std::move(out), error);
 }
@@ -146,15 +139,10 @@ Result<ServerMessage> parseServerMessage(std::string_view json) {
   const std::string type = root["type"].text(kMaxNameBytes);
   ServerMessage out;
   if (type == "opened") {
-    out = OpenedMessage{readStream(root),
-                        readName(root["mesh"]),
-                        readDigest(root["digest"]),
-                        root["bytes"].count(0, kMaxCredit),
-                        root["planned"].count(0, kMaxCredit),
-                        readName(root["layout"])};
+    out = OpenedMessage{readStream(root), readName(root["mesh"]), readDigest(root["digest"]),
+                        root["bytes"].count(0, kMaxCredit), root["planned"].count(0, kMaxCredit)};
   } else if (type == "planned") {
-    out = PlannedMessage{readStream(root), root["planned"].count(0, kMaxCredit),
-                         root["view"].count32(0, 0xFFFFFFFFu)};
+    out = PlannedMessage{readStream(root), root["planned"].count(0, kMaxCredit)};
   } else if (type == "done") {
     out = DoneMessage{readStream(root)};
   } else if (type == "stopped") {

@@ -13,6 +13,7 @@
 #include "proto/bytes.h"
 #include "proto/error.h"
 #include "proto/stream_request.h"
+#include "proto/target.h"
 
 namespace qtet {
 
@@ -33,14 +34,10 @@ struct OpenMessage {
   std::vector<std::string> fields;  ///< to send, in any order
   Have have;
   Target target;
-  View view;
   std::uint64_t credit = 0;  ///< bytes
 };
 struct CreditMessage {
   std::uint64_t bytes = 0;
-};
-struct ViewMessage {
-  View view;
 };
 struct TargetMessage {
   Target target;
@@ -51,8 +48,8 @@ struct ResumeMessage {
 };
 /// `cancel`, or `stop`, its older name.
 struct CancelMessage {};
-using ClientMessage = std::variant<OpenMessage, CreditMessage, ViewMessage, TargetMessage,
-                                   PauseMessage, ResumeMessage, CancelMessage>;
+using ClientMessage = std::variant<OpenMessage, CreditMessage, TargetMessage, PauseMessage,
+                                   ResumeMessage, CancelMessage>;
 
 /// Errors: limit-exceeded (above kMaxMessageBytes), bad-value with the JSON pointer of what is
 /// wrong. Unknown members are ignored.
@@ -67,14 +64,11 @@ struct OpenedMessage {
   std::string digest;
   std::uint64_t bytes = 0;    ///< of the whole log
   std::uint64_t planned = 0;  ///< payload bytes that will follow
-  std::string layout = "stream";
 };
-/// Answers `view` and `target`.
+/// Answers `target`.
 struct PlannedMessage {
   std::uint32_t stream = 0;
-  std::uint64_t planned = 0;  ///< payload bytes that will follow, in the new order
-  /// The last of the stream's `view`s that the order regards, counted from 1; 0: that of `open`.
-  std::uint32_t view = 0;
+  std::uint64_t planned = 0;  ///< payload bytes that will follow
 };
 struct DoneMessage {
   std::uint32_t stream = 0;

@@ -4,6 +4,7 @@
 
 #include "proto/json_reader.h"
 #include "proto/stream_request.h"
+#include "proto/target.h"
 
 namespace qtet {
 
@@ -11,13 +12,9 @@ namespace qtet {
 [[nodiscard]] Have readHave(const JsonCursor& json);
 /// Absent and null: everything.
 [[nodiscard]] Target readTarget(const JsonCursor& json);
-/// Absent and null: an empty view.
-[[nodiscard]] View readView(const JsonCursor& json);
 
 [[nodiscard]] Json toJson(const Have& have);
 /// null: everything.
 [[nodiscard]] Json toJson(const Target& target);
-/// null: an empty view.
-[[nodiscard]] Json toJson(const View& view);
 
 }  // namespace qtet

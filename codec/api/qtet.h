@@ -16,9 +16,7 @@
  * Structs   The caller passes sizeof his struct first: later versions append members, and fill no
  *           more than he has.
  * Sizes     Arrays are packed in slots of codec/FORMAT.md: a slot's number never changes while a
- *           mesh is refined. Gaps occur only in logs of layout `regions`, at levels within a band.
- *           There a cell of four (a triangle of three) times the same vertex is a gap, and no
- *           other cell has the vertices that belong to it.
+ *           mesh is refined.
  *
  * The browser has functions of its own (codec/api/wasm_api.h in the sources). There a page fetches
  * blocks and Draco decodes them outside, so a module is one refiner that is fed integers. Here a

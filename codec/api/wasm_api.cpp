@@ -113,18 +113,6 @@ std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   return static_cast<std::uint32_t>(part == qtet::kStructurePart ? e.structureCodec : e.valueCodec);
 }
 
-std::uint32_t qtet_head_chunks() { return refiner ? refiner->index().headChunks() : 0; }
-std::uint32_t qtet_dependency(std::uint32_t chunk) {
-  if (!hasBlock(chunk, qtet::kStructurePart)) return 0;
-  const LogIndex& index = refiner->index();
-  const qtet::ChunkEntry& e = index.chunks[chunk];
-  return e.dependencyCount == 0 ? chunk : index.dependencies[e.firstDependency];
-}
-const std::uint8_t* qtet_packet_box(std::uint32_t chunk) {
-  static_assert(sizeof(qtet::PacketBox) == 6);
-  return hasBlock(chunk, qtet::kStructurePart) ? refiner->index().chunks[chunk].box.least.data()
-                                               : nullptr;
-}
 const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk) {
   static std::uint32_t counts[3];
   if (!hasBlock(chunk, qtet::kStructurePart)) return nullptr;
@@ -170,13 +158,6 @@ int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_
 }
 
 std::uint32_t qtet_chunks_applied() { return refiner ? refiner->chunksApplied() : 0; }
-bool qtet_applied(std::uint32_t chunk) {
-  return hasBlock(chunk, qtet::kStructurePart) && refiner->applied(chunk);
-}
-bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk) {
-  return hasField(field) && hasBlock(chunk, qtet::kFirstFieldPart + field) &&
-         refiner->fieldApplied(field, chunk);
-}
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field) {
   return hasField(field) ? refiner->fieldChunksApplied(field) : 0;
 }

@@ -38,13 +38,6 @@ std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part);
 std::uint32_t qtet_field_association(std::uint32_t field);
 /// CodecId of a block.
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part);
-/// Chunks before the first packet (FORMAT.md, "Layout regions"): all of them in `stream`.
-std::uint32_t qtet_head_chunks();
-/// The chunk that this one depends on; of chunk 0 itself.
-std::uint32_t qtet_dependency(std::uint32_t chunk);
-/// Six bytes, a packet's box in 256ths of the lattice: the least along each axis, then the largest,
-/// included. Null where there is no such chunk.
-const std::uint8_t* qtet_packet_box(std::uint32_t chunk);
 /// Tetrahedra, vertices and boundary triangles that a chunk brings; null where there is no such
 /// chunk. Valid until the next such call.
 const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk);
@@ -64,10 +57,6 @@ int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_
                      std::uint32_t count, const std::uint8_t* digits, std::uint32_t digitBytes);
 
 std::uint32_t qtet_chunks_applied();
-/// Whether this chunk is applied, for the mesh and for a field. The counts do not say which packets
-/// are.
-bool qtet_applied(std::uint32_t chunk);
-bool qtet_field_applied(std::uint32_t field, std::uint32_t chunk);
 std::uint32_t qtet_field_chunks_applied(std::uint32_t field);
 std::uint32_t qtet_level();
 std::uint32_t qtet_vertex_count();

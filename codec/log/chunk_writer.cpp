@@ -42,11 +42,6 @@ std::uint64_t ChunkWriter::estimatedBytes() const {
   return open_.structure.size() + open_.valueBits / 8 * (1 + valueBytes_) / (1 + valueBits_ / 8);
 }
 
-void ChunkWriter::begin(std::uint32_t firstLevel, std::uint32_t node) {
-  open_.row.firstLevel = firstLevel;
-  open_.row.node = node;
-}
-
 Status ChunkWriter::close(std::uint32_t lastLevel, std::uint32_t endSlot, const Slots& end) {
   ChunkEntry& row = open_.row;
   row.lastLevel = lastLevel;

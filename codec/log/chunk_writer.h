@@ -28,10 +28,9 @@ class ChunkWriter {
   [[nodiscard]] std::uint64_t estimatedBytes() const;
 
   /// close() ends the open chunk, after which the mesh has slots up to `end`. begin() opens the
-  /// next one, which begins in `firstLevel`; a packet also needs its node. Errors: limit-exceeded,
-  /// bad-codec.
+  /// next one, which begins in `firstLevel`. Errors: limit-exceeded, bad-codec.
   Status close(std::uint32_t lastLevel, std::uint32_t endSlot, const Slots& end);
-  void begin(std::uint32_t firstLevel, std::uint32_t node = 0);
+  void begin(std::uint32_t firstLevel) { open_.row.firstLevel = firstLevel; }
 
   /// The closed chunks only.
   [[nodiscard]] std::vector<ChunkEntry>& rows() { return rows_; }

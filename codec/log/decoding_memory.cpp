@@ -61,16 +61,6 @@ std::uint64_t fieldBytes(const LogIndex& index, const Slots& slots) {
   return (kDoubling - 1) * sum + largest + kDoubling * ancestry;
 }
 
-// The cells of the nodes whose packets may come next, and what the vertices are counted by.
-std::uint64_t nodeBytes(const LogIndex& index, const Slots& slots) {
-  if (index.layout != Layout::kRegions) return 0;
-  const std::uint64_t cells = std::uint64_t{slots.tetrahedra} + slots.triangles;
-  return kDoubling *
-             (sizeof(CellId) * cells + (sizeof(std::array<std::uint32_t, 2>) + sizeof(VertexId)) *
-                                           std::uint64_t{slots.vertices}) +
-         kChunk * (std::uint64_t{2} << index.lastDepth());
-}
-
 }  // namespace
 
 std::uint64_t decodingBytes(const LogIndex& index) {
@@ -82,13 +72,13 @@ std::uint64_t decodingBytes(const LogIndex& index) {
   // A refiner reserves room for all elements at once if their number is credible for so few bytes.
   // Otherwise it lets its arrays grow.
   const bool roomy = std::max({all.slots.vertices, all.slots.tetrahedra, all.slots.triangles}) <=
-                     kMaxElementsPerPacketByte * all.structureBytes;
+                     kMaxElementsPerByte * all.structureBytes;
   const std::uint64_t table =
       index.chunks.size() * (sizeof(ChunkEntry) + kChunk + index.parts() * sizeof(BlockEntry)) +
       index.manifest.size();
   return kFixed + table + (roomy ? 1 : kDoubling) * mesh +
          kBaseTetrahedron * index.chunks.front().newTetrahedra + fieldBytes(index, all.slots) +
-         nodeBytes(index, all.slots) + kBlockInteger * all.blockIntegers;
+         +kBlockInteger * all.blockIntegers;
 }
 
 }  // namespace qtet

@@ -1,5 +1,4 @@
-// Writes levels as runs of whole chunks, which split every vertex of the mesh that may split. These
-// are all chunks of the layout `stream`, and the head of `regions`.
+// Writes levels as runs of whole chunks, which split every vertex of the mesh that may split.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 
 #include "codec/log/chunk_table.h"
@@ -23,7 +22,6 @@ struct Header {
   std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
   std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0;
   std::uint64_t fileBytes = 0;
-  Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
   std::uint16_t minor = 0;
 
@@ -79,9 +77,12 @@ Result<Header> readHeader(ByteView bytes) {
     return fail(ErrorCode::kBadValue,
                 "a reserved byte of the header (14, 15 or 56 to 59) is not 0; use a newer qtet",
                 14);
-  if (layout > static_cast<std::uint8_t>(Layout::kRegions))
-    return fail(ErrorCode::kBadValue, "unknown layout " + std::to_string(layout), 12);
-  h.layout = static_cast<Layout>(layout);
+  if (layout != 0)
+    return fail(ErrorCode::kBadVersion,
+                "layout " + std::to_string(layout) +
+                    " of the format; this build reads layout 0: make the log again from its input "
+                    "with qtet simplify, or use a newer qtet",
+                12);
   if (h.positionBits < kMinPositionBits || h.positionBits > kMaxPositionBits)
     return fail(ErrorCode::kBadValue,
                 "a lattice of " + std::to_string(h.positionBits) + " bits; 4 to 28 are allowed",
@@ -138,53 +139,8 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t f
   return {};
 }
 
-// Packets stand in the order of their nodes, 2^firstDepth to 2^(lastDepth + 1) - 1. Each band is
-// whole, and one bit deeper than the one before it.
-const char* brokenPacket(const LogIndex& index, std::uint32_t i, std::uint32_t head,
-                         std::uint32_t firstNode) {
-  const ChunkEntry& e = index.chunks[i];
-  const ChunkEntry& before = index.chunks[i - 1];
-  if (e.node != firstNode + (i - head))
-    return "its node does not follow that of the packet before it";
-  if (e.endSlot != kLevelEnd || before.endSlot != kLevelEnd)
-    return "a packet, or the chunk before the first one, ends within a level";
-  if (!std::has_single_bit(e.node) && e.lastLevel != before.lastLevel)
-    return "its levels are not those of its band";
-  const std::uint32_t parent = index.dependencies[e.firstDependency];
-  if (parent >= head && !index.chunks[parent].box.contains(e.box))
-    return "its box is not within its parent's";
-  for (std::size_t a = 0; a < 3; ++a)
-    if (e.box.least[a] > e.box.most[a]) return "its box is inside out";
-  return nullptr;
-}
-
-Status checkLayout(const LogIndex& index, std::uint64_t tableEnd) {
-  const auto bad = [](std::uint32_t i, const char* what) {
-    return fail(ErrorCode::kBadValue, "chunk table, row " + std::to_string(i) + ": " + what +
-                                          "; fetch or build the log again");
-  };
-  const auto chunks = static_cast<std::uint32_t>(index.chunks.size());
-  const std::uint32_t head = index.headChunks();
-  if (head < chunks) {
-    const std::uint32_t firstNode = index.chunks[head].node;
-    if (head == 0) return bad(head, "the base mesh is no packet");
-    if (firstNode < 2 || !std::has_single_bit(firstNode))
-      return bad(head, "the first band's packets are not a power of two in number");
-    for (std::uint32_t i = head; i < chunks; ++i)
-      if (const char* what = brokenPacket(index, i, head, firstNode)) return bad(i, what);
-    if (!std::has_single_bit(index.chunks.back().node + 1))
-      return bad(chunks - 1, "the last band is not whole");
-  } else if (index.layout == Layout::kRegions) {
-    return bad(chunks - 1, "a log of regions has packets");
-  }
-  if (index.chunks.back().endSlot != kLevelEnd)
-    return fail(ErrorCode::kBadValue,
-                "the last chunk ends within a level; fetch or build the log again", tableEnd);
-  return {};
-}
-
 // Checks everything that later steps rely on: blocks that end where the file does, levels in order,
-// counts within limits, packets in order.
+// counts within limits.
 Status check(const LogIndex& index, const Header& header) {
   std::uint64_t offset = header.headBytes();
   std::uint64_t vertices = 0;
@@ -219,16 +175,14 @@ Status check(const LogIndex& index, const Header& header) {
     if (e.records > steps || e.newVertices > 4 * steps || e.newTetrahedra > 8 * steps ||
         e.newBoundaryTriangles > 8 * steps)
       return bad(ErrorCode::kLimitExceeded, "it promises more than its bytes can hold");
-    const std::uint64_t elements = kMaxElementsPerPacketByte *
-                                   (std::uint64_t{e.blocks[kStructurePart].size} + kFreeCountBytes);
-    if (e.node != 0 && (e.newVertices > elements || e.newTetrahedra > elements ||
-                        e.newBoundaryTriangles > elements))
-      return bad(ErrorCode::kLimitExceeded, "a packet that promises more than packets hold");
     // so that tuples() fits its type
     if (e.records > e.newVertices) return bad(ErrorCode::kBadValue, "more records than vertices");
   }
-  if (Status layout = checkLayout(index, header.headBytes()); !layout) return layout;
-  if (index.dependencies.size() != header.dependencies)
+  if (index.chunks.back().endSlot != kLevelEnd)
+    return fail(ErrorCode::kBadValue,
+                "the last chunk ends within a level; fetch or build the log again",
+                header.headBytes());
+  if (header.dependencies + 1 != index.chunks.size())
     return fail(ErrorCode::kBadValue,
                 "the table has another number of dependencies than the header says; fetch or build "
                 "the log again",
@@ -261,24 +215,6 @@ bool LogIndex::hasCellField() const {
       fields, [](const FieldShape& field) { return field.association == Association::kCell; });
 }
 
-std::uint32_t LogIndex::headChunks() const {
-  return static_cast<std::uint32_t>(
-      std::ranges::find_if(chunks, [](const ChunkEntry& e) { return e.node != 0; }) -
-      chunks.begin());
-}
-
-std::uint32_t LogIndex::firstDepth() const {
-  const std::uint32_t head = headChunks();
-  return head < chunks.size() ? static_cast<std::uint32_t>(std::bit_width(chunks[head].node)) - 1
-                              : 0;
-}
-
-std::uint32_t LogIndex::lastDepth() const {
-  return chunks.empty() || chunks.back().node == 0
-             ? 0
-             : static_cast<std::uint32_t>(std::bit_width(chunks.back().node)) - 1;
-}
-
 Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
   const Result<Header> header = readHeader(firstBytes);
   if (!header) return std::unexpected(header.error());
@@ -304,7 +240,6 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
                 "the chunk table's CRC-32C does not match; fetch the file again",
                 kHeaderBytes + std::uint64_t{header->manifestBytes});
   LogIndex index;
-  index.layout = header->layout;
   index.positionBits = header->positionBits;
   index.manifestMinor = header->minor;
   index.fileBytes = header->fileBytes;
@@ -352,7 +287,7 @@ Bytes LogIndex::encode() const {
   w.write(kVersionMajor);
   const bool hasCells = closingBlock(ClosingKind::kOriginalCells) != nullptr;
   w.write(std::max(manifestMinor, hasCells ? kMinorOfOriginalCells : std::uint16_t{0}));
-  w.write(static_cast<std::uint8_t>(layout));
+  w.write(std::uint8_t{0});  // layout
   w.write(positionBits);
   w.write(std::uint16_t{0});
   w.write(fileBytes);
@@ -362,7 +297,7 @@ Bytes LogIndex::encode() const {
   w.write(crc32c(table.bytes()));
   w.write(static_cast<std::uint32_t>(chunks.size()));
   w.write(static_cast<std::uint32_t>(fields.size()));
-  w.write(static_cast<std::uint32_t>(dependencies.size()));
+  w.write(static_cast<std::uint32_t>(chunks.size() - 1));  // dependencies
   w.write(static_cast<std::uint32_t>(closing.size()));
   w.write(std::uint32_t{0});
   w.write(crc32c(w.bytes()));

@@ -3,7 +3,6 @@
 // checked against limits and against the bytes.
 #pragma once
 
-#include <array>
 #include <cassert>
 #include <cstdint>
 #include <vector>
@@ -13,8 +12,6 @@
 #include "proto/error.h"
 
 namespace qtet {
-
-enum class Layout : std::uint8_t { kStream = 0, kRegions = 1 };
 
 /// The kind of element that a field's values belong to.
 enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };
@@ -40,20 +37,8 @@ inline constexpr std::uint32_t kFirstFieldPart = 2;
 /// `ChunkEntry::endSlot` of a chunk that finishes its last level.
 inline constexpr std::uint32_t kLevelEnd = 0xFFFFFFFFu;
 
-/// A box on the lattice in 256ths of its size, most included: [least / 256, (most + 1) / 256) along
-/// each axis.
-struct PacketBox {
-  std::array<std::uint8_t, 3> least{}, most{};
-
-  [[nodiscard]] bool contains(const PacketBox& other) const {
-    for (std::size_t a = 0; a < 3; ++a)
-      if (other.least[a] < least[a] || most[a] < other.most[a]) return false;
-    return true;
-  }
-  bool operator==(const PacketBox&) const = default;
-};
-
-/// One row of the chunk table. Chunk 0 is the base mesh (level 0).
+/// One row of the chunk table. Chunk 0 is the base mesh (level 0); each other one refines the mesh
+/// that the chunks before it gave.
 struct ChunkEntry {
   std::uint64_t offset = 0;  ///< of its first block in the file; derived, not stored
   /// The levels that its records belong to; the first follows from the row before.
@@ -65,15 +50,6 @@ struct ChunkEntry {
   std::uint32_t newVertices = 0;
   std::uint32_t newTetrahedra = 0;
   std::uint32_t newBoundaryTriangles = 0;
-  /// Index into LogIndex::dependencies. Derived: a packet depends on its parent's chunk, any other
-  /// chunk on the one before it.
-  std::uint32_t firstDependency = 0;
-  std::uint32_t dependencyCount = 0;
-  /// A packet's node (layout `regions`): 2^depth + its place at that depth, so that its parent is
-  /// node / 2. 0 for other chunks.
-  std::uint32_t node = 0;
-  /// The box of a packet's node: where its cells lie in the finest mesh. Zeros for other chunks.
-  PacketBox box;
   CodecId structureCodec = CodecId::kRange;
   CodecId valueCodec = CodecId::kDraco;
   std::vector<BlockEntry> blocks;  ///< 2 + fields
@@ -111,7 +87,6 @@ struct LogIndex {
   /// The minor version of a log that has known errors, since not all levels need have one.
   static constexpr std::uint16_t kMinorOfSomeErrors = 3;
 
-  Layout layout = Layout::kStream;
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
   Bytes manifest;  ///< as it stands in the file; codec/log/log_manifest.h reads it
@@ -119,7 +94,6 @@ struct LogIndex {
   std::uint16_t manifestMinor = 0;
   std::vector<FieldShape> fields;
   std::vector<ChunkEntry> chunks;
-  std::vector<std::uint32_t> dependencies;
   std::vector<ClosingBlock> closing;  ///< in file order
 
   /// The closing block of that kind (and field), or nullptr.
@@ -140,14 +114,6 @@ struct LogIndex {
     return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
   }
   [[nodiscard]] bool hasCellField() const;
-  /// Chunks before the first packet: all of them in `stream`.
-  [[nodiscard]] std::uint32_t headChunks() const;
-  /// Depth of the first packets' nodes: the number of bits that the head's end codes for each cell.
-  /// 0 in `stream`.
-  [[nodiscard]] std::uint32_t firstDepth() const;
-  /// Depth of the last packets' nodes. 0 in `stream`.
-  [[nodiscard]] std::uint32_t lastDepth() const;
-
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64
   /// bytes), bad-magic, bad-version, bad-checksum, limit-exceeded, bad-value.
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
@@ -155,7 +121,7 @@ struct LogIndex {
   /// at.
   [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
   /// Header, manifest and table as they stand in the file. Ignores the values that the rows imply
-  /// (offsets, first levels, dependencies).
+  /// (offsets, first levels).
   [[nodiscard]] Bytes encode() const;
 };
 

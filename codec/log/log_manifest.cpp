@@ -306,7 +306,6 @@ Result<Bytes> manifestBlock(const Manifest& manifest) {
 Result<Manifest> manifestOf(const LogIndex& index) {
   Manifest out;
   ByteReader r(index.manifest, LogIndex::kHeaderBytes);
-  out.layout = index.layout == Layout::kRegions ? "regions" : "stream";
   out.generator = readText(r);
   out.source = readText(r);
   out.latticeBits = index.positionBits;

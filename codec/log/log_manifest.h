@@ -23,7 +23,7 @@ struct LogIndex;
 /// REQUIRES: at least one level.
 [[nodiscard]] std::uint16_t minorOf(const Manifest& manifest);
 
-/// Reads index.manifest. The rest of the index gives layout, bits of the lattice, shapes of the
+/// Reads index.manifest. The rest of the index gives bits of the lattice, shapes of the
 /// fields, the number of levels and each level's chunk. Errors: truncated; limit-exceeded (found
 /// before anything is allocated); bad-value with what is out of range, and for bytes left over.
 [[nodiscard]] Result<Manifest> manifestOf(const LogIndex& index);

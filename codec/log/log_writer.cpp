@@ -7,7 +7,6 @@
 
 #include "codec/log/level_runs.h"
 #include "codec/log/log_manifest.h"
-#include "codec/log/packet_writer.h"
 #include "codec/log/record_writer.h"
 #include "proto/limits.h"
 
@@ -48,30 +47,14 @@ Status writeStream(RecordWriter& writer, const FusionHistory& history,
   return writer.closeChunk(history.levels, kLevelEnd);
 }
 
-/// Gives what children took.
-Result<std::uint64_t> writeRegions(RecordWriter& writer, const FusionHistory& history,
-                                   const std::vector<Band>& bands,
-                                   const LogWriterOptions& options) {
-  if (Status s = writeLevelRuns(writer, bands.front().firstLevel - 1, options); !s)
-    return std::unexpected(s.error());
-  PacketWriter packets(history, bands, writer);
-  if (Status s = packets.endHead(); !s) return std::unexpected(s.error());
-  for (const Band& band : bands) {
-    if (Status s = packets.write(band); !s) return std::unexpected(s.error());
-    if (options.progress) options.progress(writer.done());
-  }
-  packets.findBoxes();
-  return packets.childBytes();
-}
-
 Status checkRecords(const FusionHistory& history, const std::vector<ChunkEntry>& rows) {
   std::uint64_t records = 0;
   for (const ChunkEntry& row : rows) records += row.records;
-  return records == history.fusions.size()
-             ? Status{}
-             : fail(ErrorCode::kBadValue,
-                    "a fusion of the history belongs to a level or a node of the tree in which its "
-                    "vertex is not; simplify the mesh again");
+  return records == history.fusions.size() ? Status{}
+                                           : fail(ErrorCode::kBadValue,
+                                                  "a fusion of the history belongs to a level in "
+                                                  "which its vertex is not; simplify "
+                                                  "the mesh again");
 }
 
 std::vector<ManifestLevel> levelsOf(const std::vector<Slots>& added, const LevelErrors& errors) {
@@ -106,9 +89,8 @@ Manifest manifestFor(const FusionHistory& history, const LogWriterOptions& optio
 
 /// Without offsets, which follow from the length of its own bytes.
 Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& options,
-                         RecordWriter& writer, Layout layout) {
+                         RecordWriter& writer) {
   LogIndex index;
-  index.layout = layout;
   index.positionBits = static_cast<std::uint8_t>(history.lattice.bits);
   const Manifest manifest = manifestFor(history, options, writer.added());
   Result<Bytes> block = manifestBlock(manifest);
@@ -119,13 +101,11 @@ Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& o
     index.fields.push_back(
         {f.components, isCellField(f) ? Association::kCell : Association::kPoint, f.hasMissing});
   index.chunks = std::move(writer.chunks().rows());
-  // their number stands in the header; what they are follows from the rows
-  index.dependencies.resize(index.chunks.size() - 1);
   return index;
 }
 
 LogStatistics statisticsOf(const LogIndex& index, const FusionHistory& history,
-                           std::uint64_t positionCost, std::uint64_t childBytes) {
+                           std::uint64_t positionCost) {
   LogStatistics s;
   s.headBytes = s.fileBytes = index.encode().size();
   s.fieldBytes.resize(index.fields.size());
@@ -141,7 +121,6 @@ LogStatistics statisticsOf(const LogIndex& index, const FusionHistory& history,
   const std::uint64_t positionBytes = positionCost / (64 * 8);
   s.structureBytes -= positionBytes;
   s.positionBytes += positionBytes;
-  s.childBytes = childBytes;
   s.chunks = static_cast<std::uint32_t>(index.chunks.size());
   s.levels = history.levels;
   s.records = history.fusions.size();
@@ -152,28 +131,18 @@ LogStatistics statisticsOf(const LogIndex& index, const FusionHistory& history,
 
 Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOptions& options) {
   if (Status s = checkLimits(history, options); !s) return std::unexpected(s.error());
-  const Result<std::vector<Band>> bands = bandsOf(history);
-  if (!bands) return std::unexpected(bands.error());
   if (Status s = checkCellFields(history); !s) return std::unexpected(s.error());
 
   RecordWriter writer(history, options.valueCodec, options.stop);
   if (Status s = writer.base(); !s) return std::unexpected(s.error());
-  const Layout layout = bands->empty() ? Layout::kStream : Layout::kRegions;
-  std::uint64_t childBytes = 0;
-  if (layout == Layout::kStream) {
-    if (Status s = writeStream(writer, history, options); !s) return std::unexpected(s.error());
-  } else {
-    const Result<std::uint64_t> bytes = writeRegions(writer, history, *bands, options);
-    if (!bytes) return std::unexpected(bytes.error());
-    childBytes = *bytes;
-  }
+  if (Status s = writeStream(writer, history, options); !s) return std::unexpected(s.error());
   if (Status s = checkRecords(history, writer.chunks().rows()); !s)
     return std::unexpected(s.error());
 
-  Result<LogIndex> index = indexOf(history, options, writer, layout);
+  Result<LogIndex> index = indexOf(history, options, writer);
   if (!index) return std::unexpected(index.error());
   EncodedLog log;
-  log.statistics = statisticsOf(*index, history, writer.positionCost(), childBytes);
+  log.statistics = statisticsOf(*index, history, writer.positionCost());
   log.statistics.steps = writer.meter().steps();
   index->fileBytes = log.statistics.fileBytes;
   log.points = writer.mirror().vertices();

@@ -1,5 +1,5 @@
-// Encodes a simplifier's history as a log (FORMAT.md). The layout is `regions` if the history has
-// bands, else `stream`. Deterministic: the same input gives the same bytes.
+// Encodes a simplifier's history as a log (FORMAT.md). Deterministic: the same input gives the same
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -35,9 +35,7 @@ struct LogWriterOptions {
 struct LogStatistics {
   std::uint64_t headBytes = 0;       ///< header, manifest, table
   std::uint64_t structureBytes = 0;  ///< without what positions take of them
-  /// The share of the child bits (layout `regions`), accurate to a byte a node.
-  std::uint64_t childBytes = 0;
-  std::uint64_t positionBytes = 0;  ///< with that: placements, remainders, digits
+  std::uint64_t positionBytes = 0;   ///< with that: placements, remainders, digits
   std::vector<std::uint64_t> fieldBytes;
   std::uint64_t baseBytes = 0;  ///< of the above, what chunk 0 takes
   std::uint64_t fileBytes = 0;

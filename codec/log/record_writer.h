@@ -1,5 +1,5 @@
-// The part that the encoders of both layouts share. It writes the base mesh and one record after
-// the other into the open chunk, and applies them to the mirror of the decoder's mesh.
+// Writes the base mesh and one record after the other into the open chunk, and applies them to the
+// mirror of the decoder's mesh.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ class RecordWriter {
   Status closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot);
 
   [[nodiscard]] ChunkWriter& chunks() { return chunks_; }
-  /// Counts the work that is written. The caller counts levels and child bits.
+  /// Counts the work that is written. The caller counts levels.
   [[nodiscard]] WorkMeter& meter() { return meter_; }
   [[nodiscard]] RecordModels& models() { return models_; }
   [[nodiscard]] GrowingMesh& mesh() { return mirror_.mesh(); }

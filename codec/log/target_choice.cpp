@@ -77,22 +77,17 @@ Result<std::uint32_t> levelFor(const Target& target, const Manifest& manifest,
   return std::visit(LevelChooser(manifest, index), target);
 }
 
-Result<StopAt> chunksFor(const Target& target, const Manifest& manifest, const LogIndex& index) {
+Result<std::uint32_t> lastChunkFor(const Target& target, const Manifest& manifest,
+                                   const LogIndex& index) {
   assert(manifest.fields.size() == index.fields.size());
   assert(!manifest.levels.empty() && manifest.levels.back().chunk < index.chunks.size());
-  if (std::holds_alternative<EverythingTarget>(target)) return StopAt{};
-  const bool isRegions = index.layout == Layout::kRegions;
   if (const auto* bytes = std::get_if<BytesTarget>(&target))
-    return isRegions ? StopAt{.payload = bytes->bytes}
-                     : StopAt{.lastChunk = lastChunkWithin(index, bytes->bytes)};
-  if (const auto* cells = std::get_if<TetrahedraTarget>(&target); cells && isRegions)
-    return StopAt{.tetrahedra = cells->tetrahedra};
+    return lastChunkWithin(index, bytes->bytes);
   if (const auto* error = std::get_if<FieldErrorTarget>(&target);
       error && !fieldOfKey(manifest, error->field))
     return std::unexpected(noSuchField(manifest, error->field));
-  const std::uint32_t level =
-      levelFor(target, manifest, index).value_or(manifest.levels.back().level);
-  return StopAt{.lastChunk = manifest.levels[level].chunk, .ofWantedOnly = true};
+  return manifest.levels[levelFor(target, manifest, index).value_or(manifest.levels.back().level)]
+      .chunk;
 }
 
 }  // namespace qtet

@@ -20,20 +20,10 @@ struct Manifest;
 [[nodiscard]] Result<std::uint32_t> levelFor(const Target& target, const Manifest& manifest,
                                              const LogIndex& index);
 
-/// Where a stream of chunks ends, as bounds on what is sent.
-struct StopAt {
-  std::uint32_t lastChunk = 0xFFFFFFFFu;  ///< chunks behind it are not sent
-  /// Bytes that the client has and gets, the head included. The first chunk is always sent.
-  std::uint64_t payload = ~std::uint64_t{0};
-  /// Cells of the client's mesh. The base mesh is always sent.
-  std::uint64_t tetrahedra = ~std::uint64_t{0};
-  bool ofWantedOnly = false;  ///< satisfied once the view's wishes are fulfilled
-};
-
-/// The chunks of levelFor. Bytes are counted in whole chunks, not in levels. In the layout
-/// `regions` bytes and cells bound what a view takes. If no level's error is known, the last level
-/// is good enough. Errors: not-found (no such field). REQUIRES: as levelFor.
-[[nodiscard]] Result<StopAt> chunksFor(const Target& target, const Manifest& manifest,
-                                       const LogIndex& index);
+/// The last chunk that the target takes: that of levelFor, but bytes are counted in whole chunks, not
+/// in levels. If no level's error is known, the last level is good enough. Errors: not-found (no
+/// such field). REQUIRES: as levelFor.
+[[nodiscard]] Result<std::uint32_t> lastChunkFor(const Target& target, const Manifest& manifest,
+                                                 const LogIndex& index);
 
 }  // namespace qtet

@@ -28,22 +28,10 @@ void GrowingMesh::start(int positionBits) {
   for (std::size_t v = 0; v < cells.size(); ++v) makeRoom(states_[v], cells[v]);
   for (std::uint32_t i = 0; i < tetrahedra.size(); ++i) addCell(i);
   for (std::uint32_t i = 0; i < boundary.size(); ++i) addCell(i | kBoundaryBit);
-  next_ = {static_cast<std::uint32_t>(points.size()), static_cast<std::uint32_t>(tetrahedra.size()),
-           static_cast<std::uint32_t>(boundary.size())};
-}
-
-void GrowingMesh::continueAt(const Slots& first, const Slots& end) {
-  assert(first.within(end));
-  next_ = first;
-  if (points.size() < end.vertices)
-    points.resize(end.vertices, kHolePoint), states_.resize(end.vertices),
-        marked_.resize(end.vertices);
-  if (tetrahedra.size() < end.tetrahedra) tetrahedra.resize(end.tetrahedra, kHoleTetrahedron);
-  if (boundary.size() < end.triangles) boundary.resize(end.triangles, kHoleTriangle);
 }
 
 Slots GrowingMesh::slotsAfter(const Split& split, const Link& link) const {
-  Slots after = next_;
+  Slots after = next();
   after.vertices += static_cast<std::uint32_t>(split.k) - 1;
   for (const LocalCell& cell : split.deleted) {
     const bool ghost = std::ranges::any_of(
@@ -54,9 +42,8 @@ Slots GrowingMesh::slotsAfter(const Split& split, const Link& link) const {
 }
 
 VertexId GrowingMesh::newVertex() {
-  if (next_.vertices == points.size())
-    points.emplace_back(), states_.emplace_back(), marked_.emplace_back();
-  return next_.vertices++;
+  points.emplace_back(), states_.emplace_back(), marked_.emplace_back();
+  return static_cast<VertexId>(points.size() - 1);
 }
 
 void GrowingMesh::beginLevel(std::uint32_t level) {
@@ -256,12 +243,12 @@ void GrowingMesh::apply(VertexId v, const Link& link, const Split& split) {
       c[i] = local[i] & kPreyBit ? prey[local[i] & 3] : link.vertices()[local[i]];
     const auto ghost = static_cast<std::size_t>(std::ranges::find(c, kGhost) - c.begin());
     if (ghost == 4) {
-      put(tetrahedra, next_.tetrahedra, c);
-      addCell(next_.tetrahedra++);
+      tetrahedra.push_back(c);
+      addCell(static_cast<CellRef>(tetrahedra.size() - 1));
     } else {
       c = withLast(c, ghost);
-      put(boundary, next_.triangles, Triangle{c[0], c[1], c[2]});
-      addCell(next_.triangles++ | kBoundaryBit);
+      boundary.push_back({c[0], c[1], c[2]});
+      addCell(static_cast<CellRef>(boundary.size() - 1) | kBoundaryBit);
     }
   }
 }

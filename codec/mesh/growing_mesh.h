@@ -1,6 +1,6 @@
 // The mesh that grows in place, in the refiner and in the encoder's mirror of it. Slots never move,
 // an affected cell changes one index, and the stars of all vertices stay up to date (FORMAT.md,
-// "Refinement"). Chunks may fill their slots in any order; until then the slots are holes.
+// "Refinement").
 #pragma once
 
 #include <algorithm>
@@ -60,17 +60,16 @@ class GrowingMesh {
   void reserve(const Slots& total);
   /// Bytes that reserve() takes.
   [[nodiscard]] static std::uint64_t roomFor(const Slots& total);
-  /// The slots that the next split fills first: at the end, or where continueAt() said.
-  [[nodiscard]] const Slots& next() const { return next_; }
-  /// The next splits fill slots from `first` on; all below `end` exist from now on, holes unless
-  /// filled. REQUIRES: those from `first` to `end` are holes or do not exist, and no split goes
-  /// beyond `end` (slotsAfter).
-  void continueAt(const Slots& first, const Slots& end);
+  /// The slots that the next split fills first.
+  [[nodiscard]] Slots next() const {
+    return {static_cast<std::uint32_t>(points.size()),
+            static_cast<std::uint32_t>(tetrahedra.size()),
+            static_cast<std::uint32_t>(boundary.size())};
+  }
   /// next() after this split.
   [[nodiscard]] Slots slotsAfter(const Split& split, const Link& link) const;
 
-  /// Frees all present vertices for splitting. REQUIRES: 1 to kMaxLevels; upwards in `stream` and
-  /// within a packet of `regions`, which no vertex of another packet of its band meets.
+  /// Frees all present vertices for splitting. REQUIRES: 1 to kMaxLevels, upwards.
   void beginLevel(std::uint32_t level);
   /// The current level.
   [[nodiscard]] std::uint32_t level() const { return level_; }
@@ -143,13 +142,6 @@ class GrowingMesh {
   void makeRoom(State& state, std::uint32_t cells);
   static std::uint64_t starCells(const Slots& total);
   VertexId newVertex();
-  template <class Cells, class Cell>
-  static void put(Cells& cells, std::uint32_t slot, const Cell& cell) {
-    if (slot == cells.size())
-      cells.push_back(cell);
-    else
-      cells[slot] = cell;
-  }
 
   std::vector<State> states_;
   // by vertex: the last level in which it was in the star of a split
@@ -162,7 +154,6 @@ class GrowingMesh {
   std::vector<Triangle> turned_;
   LatticePoint fused_{};
   std::uint32_t level_ = 0, levelVertices_ = 0;
-  Slots next_;
   int spreadShift_ = 0;
 };
 

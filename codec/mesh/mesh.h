@@ -35,12 +35,6 @@ struct Slots {
   bool operator==(const Slots&) const = default;
 };
 
-/// The values of slots whose chunk has not arrived: a point off the lattice, and cells of one
-/// vertex, which draw nothing.
-inline constexpr LatticePoint kHolePoint{-1, -1, -1};
-inline constexpr Tetrahedron kHoleTetrahedron{0, 0, 0, 0};
-inline constexpr Triangle kHoleTriangle{0, 0, 0};
-
 /// position = origin + step * lattice point, the same step on every axis.
 struct Lattice {
   int bits = 16;

@@ -47,7 +47,7 @@ void CellAncestry::addSide(LocalVertex a, LocalVertex b, LocalVertex c, std::siz
 
 void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link,
                                std::span<const LocalCell> restored, CellId first) {
-  assert(star.size() == link.triangles().size() && first <= known_.size());
+  assert(star.size() == link.triangles().size() && first == known_.size());
   CellId next = first;
   sides_.clear();
   atSplit_.clear();
@@ -70,7 +70,7 @@ void CellAncestry::addRestored(std::span<const CellRef> star, const Link& link,
       addSide(c[(i + 1) % 4], c[(i + 2) % 4], c[(i + 3) % 4], atSplit_.size());
     atSplit_.push_back(next++);
   }
-  makeRoom(next);
+  known_.resize(next, {kNone, kNone, kNone, kNone});
   std::sort(sides_.begin(), sides_.end());
   for (std::size_t i = 1; i < sides_.size(); ++i) {
     const CellId cell = atSplit_[sides_[i] & kTetrahedronMask];

@@ -28,12 +28,6 @@ class CellAncestry {
   /// brings, from slot `first` on. REQUIRES: called for every split.
   void addRestored(std::span<const CellRef> star, const Link& link,
                    std::span<const LocalCell> restored, CellId first);
-  /// Tetrahedra below `end` exist from now on; those that nothing was added for have no earlier
-  /// ones.
-  void makeRoom(CellId end) {
-    if (known_.size() < end) known_.resize(end, {kNone, kNone, kNone, kNone});
-  }
-
   /// The prediction of a value of tetrahedron `cell`; `at(t)` reads that of an earlier tetrahedron
   /// t; missing values do not count.
   template <class At>

@@ -23,22 +23,6 @@ struct Fusion {
   std::uint32_t affectedCount = 0, deletedCount = 0;
 };
 
-/// For the layout `regions`: a binary tree over the cells, and the levels in which fusions kept to
-/// its nodes. Node n at depth d is the set of leaves whose topmost d bits are n. Band b (0 = the
-/// finest) keeps to the nodes at depth `depth` - b. All cells of a star belong to one of them, the
-/// deleted ones included.
-struct Bands {
-  std::uint32_t depth = 0;          ///< the tree has 2^depth leaves
-  std::vector<std::uint32_t> leaf;  ///< of every cell of the history, for life
-  /// For each band, one past its last level (FusionHistory's numbers); ascending, at most `depth`
-  /// of them. Empty: no bands.
-  std::vector<std::uint32_t> ends;
-
-  [[nodiscard]] std::uint32_t node(std::uint32_t cell, std::uint32_t atDepth) const {
-    return leaf[cell] >> (depth - atDepth);
-  }
-};
-
 /// Cells are the input's tetrahedra followed by its boundary triangles as (a, b, c, kGhost).
 /// REQUIRES within one level no prey vertex in the star of another fusion of that level; within the
 /// list, order of doing.
@@ -56,7 +40,6 @@ struct FusionHistory {
   std::vector<std::uint8_t> affectedLabels;  ///< index into prey
   std::vector<std::uint32_t> deletedCells;
   std::uint32_t levels = 0;
-  Bands bands;
 };
 
 }  // namespace qtet

@@ -13,7 +13,6 @@
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/value_block.h"
-#include "codec/mesh/compact_mesh.h"
 #include "codec/mesh/mesh.h"
 #include "codec/refine/refiner.h"
 #include "proto/crc32c.h"
@@ -212,10 +211,7 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
       return fail(ErrorCode::kIo, "stopped, because nobody waits for the level any more");
     if (Status s = applyChunk(log, refiner, chunk, wanted); !s) return std::unexpected(s.error());
   }
-  LatticeMesh mesh = latticeMesh(*manifest, refiner, wanted);
-  // of packets that had to stop within their band
-  if (log.index().layout == Layout::kRegions) dropHoles(mesh);
-  return mesh;
+  return latticeMesh(*manifest, refiner, wanted);
 }
 
 }  // namespace qtet

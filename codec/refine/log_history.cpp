@@ -1,8 +1,6 @@
 #include "codec/refine/log_history.h"
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -72,18 +70,13 @@ Status decodeBase(const LogFile& log, LogHistory& out) {
 }
 
 /// Gives every split's vertices their numbers in the history. Sorts the fusions in the order of
-/// execution: level by level, from the last split to the first. (Packets arrive node by node, each
-/// with all of its levels. Those of one level are independent of one another.)
+/// execution: from the last split to the first.
 void number(const SplitRecorder& recorder, LogHistory& out) {
   FusionHistory& h = out.history;
-  std::vector<std::uint32_t> order(h.fusions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(order, std::greater(),
-                    [&](std::uint32_t b) { return std::pair(h.fusions[b].level, b); });
   std::vector<VertexId> vertexOf(out.vertices);  // slot -> the vertex that is there
   for (VertexId v = 0; v < out.vertices; ++v) vertexOf[v] = v;
   out.prey.resize(h.fusions.size());
-  for (const std::uint32_t b : order) {
+  for (std::size_t b = h.fusions.size(); b-- > 0;) {
     Fusion& fusion = h.fusions[b];
     const Birth& birth = out.points.births()[b];
     std::array<VertexId, 4>& prey = out.prey[b];
@@ -102,10 +95,7 @@ void number(const SplitRecorder& recorder, LogHistory& out) {
   }
   out.baseVertices.assign(vertexOf.begin(),
                           vertexOf.begin() + static_cast<std::ptrdiff_t>(out.baseBirths.size()));
-  std::vector<Fusion> fusions;
-  fusions.reserve(order.size());
-  for (const std::uint32_t b : order) fusions.push_back(h.fusions[b]);
-  h.fusions = std::move(fusions);
+  std::ranges::reverse(h.fusions);
 }
 
 /// From the last level's cells to those of the base mesh.

@@ -36,8 +36,7 @@ struct LogHistory {
   std::vector<CodecId> valueCodecs;  ///< of each chunk
 };
 
-/// Reads logs of the layout `regions` too, but leaves out their bands. Errors: all that decoding
-/// gives. `progress` receives the fraction done.
+/// Errors: all that decoding gives. `progress` receives the fraction done.
 [[nodiscard]] Result<LogHistory> historyOf(const LogFile& log,
                                            const std::function<void(double)>& progress = {});
 

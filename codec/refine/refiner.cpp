@@ -42,16 +42,12 @@ Status Refiner::State::mayCome(std::uint32_t chunk) const {
   const auto refuse = [&](const std::string& what) {
     return refuseChunk(ErrorCode::kBadOrder, chunk, what);
   };
-  const auto hasCome = [&](std::uint32_t c) { return added[c].extent != Extent::kNothing; };
   if (phase == Phase::kBroken) return refuse("an earlier chunk failed; start again from chunk 0");
   if (chunk >= plan.index.chunks.size()) return refuse("there is no such chunk");
-  if (hasCome(chunk)) return refuse("it has been applied already");
-  if (chunk > 0 && !hasCome(plan.dependencyOf(chunk)))
-    return refuse("chunk " + std::to_string(plan.dependencyOf(chunk)) + " has to be applied first");
-  const bool beyond = plan.isPacket(chunk)
-                          ? plan.index.chunks[chunk].firstLevel > settings.stopLevel
-                          : chunk > 0 && mesh.levels().last() >= settings.stopLevel;
-  if (phase == Phase::kStopped || beyond)
+  if (chunk < added.size()) return refuse("it has been applied already");
+  if (chunk > added.size())
+    return refuse("chunk " + std::to_string(added.size()) + " has to be applied first");
+  if (phase == Phase::kStopped || (chunk > 0 && mesh.level() >= settings.stopLevel))
     return refuse("the refiner was told to stop at a level before it");
   return {};
 }
@@ -66,7 +62,7 @@ void Refiner::State::makeRoom(std::size_t bytes) {
   if (settings.stopLevel < plan.index.chunks.back().lastLevel) return;
   const Slots& total = plan.slots.back();
   if (std::max({total.vertices, total.tetrahedra, total.triangles}) >
-      kMaxElementsPerPacketByte * *structureBytes)
+      kMaxElementsPerByte * *structureBytes)
     return;
   structureBytes.reset();
   if (hasMemory(mesh.records().roomForAll())) mesh.records().makeRoomForAll();
@@ -80,7 +76,6 @@ Status Refiner::State::apply(std::uint32_t chunk, ByteView structure, Values& po
                    entry,
                    RangeDecoder(structure),
                    positions,
-                   plan.slots[chunk],
                    plan.slots[chunk + 1],
                    firstBirth + entry.records};
   const Result<Extent> extent = mesh.read(input);
@@ -90,9 +85,8 @@ Status Refiner::State::apply(std::uint32_t chunk, ByteView structure, Values& po
     if (!positions.atEnd())
       return refuseChunk(ErrorCode::kBadValue, chunk, "position values are left over");
   }
-  added[chunk] = {*extent, firstBirth, mesh.records().records(), mesh.mesh().next().tetrahedra};
+  added.push_back({*extent, firstBirth, mesh.records().records(), mesh.mesh().next().tetrahedra});
   fields.inherit(chunk);
-  ++chunks;
   return {};
 }
 
@@ -106,8 +100,8 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure,
   s.makeRoom(structure.size());
   Values residuals(positions);
   if (Status status = s.apply(chunk, structure, residuals); !status) return status;
-  const bool stopped = s.added[chunk].extent == Extent::kPartial && !s.plan.isPacket(chunk);
-  s.phase = stopped ? State::Phase::kStopped : State::Phase::kOpen;
+  s.phase =
+      s.added[chunk].extent == Extent::kPartial ? State::Phase::kStopped : State::Phase::kOpen;
   return {};
 }
 
@@ -121,25 +115,19 @@ void Refiner::askBeforeLevels(LevelGate* gate) { state_->settings.gate = gate; }
 void Refiner::stopAtLevel(std::uint32_t level) { state_->settings.stopLevel = level; }
 
 const LogIndex& Refiner::index() const { return state_->plan.index; }
-std::uint32_t Refiner::chunksApplied() const { return state_->chunks; }
+std::uint32_t Refiner::chunksApplied() const {
+  return static_cast<std::uint32_t>(state_->added.size());
+}
 std::uint32_t Refiner::fieldChunksApplied(std::uint32_t field) const {
   return state_->fields.chunks(field);
-}
-bool Refiner::applied(std::uint32_t chunk) const {
-  return chunk < state_->added.size() && state_->added[chunk].extent != Extent::kNothing;
-}
-bool Refiner::fieldApplied(std::uint32_t field, std::uint32_t chunk) const {
-  return state_->fields.applied(field, chunk);
 }
 const Slots& Refiner::firstSlots(std::uint32_t chunk) const {
   assert(chunk < state_->plan.slots.size());
   return state_->plan.slots[chunk];
 }
-std::uint32_t Refiner::level() const { return state_->mesh.levels().last(); }
+std::uint32_t Refiner::level() const { return state_->mesh.level(); }
 std::uint64_t Refiner::steps() const { return state_->mesh.records().meter().steps(); }
-std::span<const LevelCounts> Refiner::levelCounts() const {
-  return state_->mesh.levels().complete();
-}
+std::span<const LevelCounts> Refiner::levelCounts() const { return state_->mesh.levels(); }
 std::span<const LatticePoint> Refiner::points() const { return state_->mesh.mesh().points; }
 std::span<const Tetrahedron> Refiner::tetrahedra() const { return state_->mesh.mesh().tetrahedra; }
 std::span<const Triangle> Refiner::boundary() const { return state_->mesh.mesh().boundary; }

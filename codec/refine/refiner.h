@@ -45,14 +45,10 @@ struct LevelCounts {
   std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
 };
 
-/// Applies the chunks of one log, each after the chunk that it depends on. In `stream` that is file
-/// order. In `regions` packets may arrive in any order in which parents precede their children, and
-/// they fill the same slots whatever the order. Vertices and cells keep their slots for ever; an
-/// affected cell changes one index. A chunk's slots follow from the chunk table (firstSlots). Below
-/// the highest chunk applied, the slots of missing chunks are holes: points are kHolePoint, cells
-/// have one vertex (mesh.h), field values are 0. In file order there are no holes. Not thread-safe.
-/// After an error no further chunk is accepted; ids stay in range, but the mesh is a part of a
-/// chunk's.
+/// Applies the chunks of one log in file order. Vertices and cells keep their slots for ever; an
+/// affected cell changes one index. A chunk's slots follow from the chunk table (firstSlots). Not
+/// thread-safe. After an error no further chunk is accepted; ids stay in range, but the mesh is a
+/// part of a chunk's.
 class Refiner {
  public:
   explicit Refiner(LogIndex index);
@@ -61,38 +57,33 @@ class Refiner {
   Refiner& operator=(Refiner&&) noexcept;
 
   /// Applies chunk `chunk`: `structure` is its structure block, `positions` the decoded positions
-  /// block (3 integers a value). Errors: bad-order (a dependency is missing, or applied already),
-  /// bad-checksum is the caller's to find, anything else of FORMAT.md.
+  /// block (3 integers a value). Errors: bad-order (another chunk comes next), bad-checksum is the caller's to find, anything else of FORMAT.md.
   Status apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions);
   /// Applies field `field` of chunk `chunk`: as many tuples as LogIndex::tuples says. A field may
-  /// lag behind the mesh, never run ahead, and takes a chunk after the one that it depends on, like
-  /// the mesh.
+  /// lag behind the mesh, never run ahead, and takes chunks in file order, like the mesh.
   Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
 
   /// A chunk that goes beyond `level` then ends there, and chunks that begin beyond it are refused.
-  /// Once level() is `level`, the mesh is that level's, with holes in the slots that packets were
-  /// not allowed to fill.
+  /// Once level() is `level`, the mesh is that level's.
   void stopAtLevel(std::uint32_t level);
 
   /// From now on `observer` is notified of every split; nullptr turns this off. It must outlive the
   /// chunks applied.
   void observe(SplitObserver* observer);
 
-  /// From now on `gate` is asked before every level, of a packet as well; nullptr: nobody. False
+  /// From now on `gate` is asked before every level; nullptr: nobody. False
   /// ends the current chunk with the error io. It must outlive the chunks applied.
   void askBeforeLevels(LevelGate* gate);
 
   [[nodiscard]] const LogIndex& index() const;
-  /// How many, in file order also which one is next.
+  /// How many; this is also the next one.
   [[nodiscard]] std::uint32_t chunksApplied() const;
-  [[nodiscard]] bool applied(std::uint32_t chunk) const;
-  [[nodiscard]] bool fieldApplied(std::uint32_t field, std::uint32_t chunk) const;
   /// Where the slots of a chunk begin; those of the next chunk begin where they end. REQUIRES:
   /// chunk <= number of chunks.
   [[nodiscard]] const Slots& firstSlots(std::uint32_t chunk) const;
   /// Chunks of one field that have been applied.
   [[nodiscard]] std::uint32_t fieldChunksApplied(std::uint32_t field) const;
-  /// The last level that is complete everywhere.
+  /// The last complete level.
   [[nodiscard]] std::uint32_t level() const;
 
   /// Work so far, which limit-exceeded bounds (kMaxStepsPerByte).

@@ -4,9 +4,7 @@ namespace qtet {
 
 RefinerFields::RefinerFields(const ChunkPlan& plan, const RecordReader& records,
                              const std::vector<AddedElements>& added)
-    : plan_(plan), records_(records), added_(added), fields_(plan.index.fields.size()) {
-  for (Field& f : fields_) f.applied.resize(plan.index.chunks.size());
-}
+    : plan_(plan), records_(records), added_(added), fields_(plan.index.fields.size()) {}
 
 // A cell stands in with its prediction, a vertex with its fused vertex's value.
 void RefinerFields::inherit(std::uint32_t chunk) {
@@ -51,13 +49,12 @@ Status RefinerFields::mayCome(std::uint32_t field, std::uint32_t chunk, std::siz
   if (f.broken)
     return refuseChunk(ErrorCode::kBadOrder, chunk,
                        "an earlier block of this field failed; start again from chunk 0");
-  if (chunk >= added_.size() || added_[chunk].extent == Extent::kNothing)
+  if (chunk >= added_.size())
     return refuseChunk(ErrorCode::kBadOrder, chunk, "a field cannot run ahead of the mesh");
-  if (f.applied[chunk]) return refuseChunk(ErrorCode::kBadOrder, chunk, "the field has it already");
-  if (chunk > 0 && !f.applied[plan_.dependencyOf(chunk)])
-    return refuseChunk(
-        ErrorCode::kBadOrder, chunk,
-        "the field needs chunk " + std::to_string(plan_.dependencyOf(chunk)) + " first");
+  if (chunk < f.chunks) return refuseChunk(ErrorCode::kBadOrder, chunk, "the field has it already");
+  if (chunk > f.chunks)
+    return refuseChunk(ErrorCode::kBadOrder, chunk,
+                       "the field needs chunk " + std::to_string(f.chunks) + " first");
   if (values != std::size_t{plan_.index.tuples(chunk, kFirstFieldPart + field)} *
                     plan_.index.fields[field].components)
     return refuseChunk(ErrorCode::kBadValue, chunk, "wrong number of field values");
@@ -77,7 +74,6 @@ Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
   f.broken = coded.bad() || !(coded.atEnd() || added_[chunk].extent == Extent::kPartial);
   if (f.broken)
     return refuseChunk(ErrorCode::kBadValue, chunk, "field values out of range or left over");
-  f.applied[chunk] = true;
   ++f.chunks;
   return {};
 }

@@ -13,14 +13,14 @@ namespace qtet {
 
 /// The elements that a chunk has added to the mesh.
 struct AddedElements {
-  Extent extent = Extent::kNothing;
+  Extent extent = Extent::kWhole;
   std::size_t firstBirth = 0, endBirth = 0;
   CellId endTetrahedron = 0;  // of the slots that it filled
 };
 
 class RefinerFields {
  public:
-  /// All must outlive it. `added`: of each chunk, which the mesh has before a field has it.
+  /// All must outlive it. `added`: of each chunk that the mesh has, which a field has later.
   RefinerFields(const ChunkPlan& plan, const RecordReader& records,
                 const std::vector<AddedElements>& added);
 
@@ -30,9 +30,6 @@ class RefinerFields {
   /// arrives.
   void inherit(std::uint32_t chunk);
 
-  [[nodiscard]] bool applied(std::uint32_t field, std::uint32_t chunk) const {
-    return field < fields_.size() && chunk < added_.size() && fields_[field].applied[chunk];
-  }
   [[nodiscard]] std::uint32_t chunks(std::uint32_t field) const { return fields_[field].chunks; }
   [[nodiscard]] std::span<const std::int32_t> values(std::uint32_t field) const {
     return fields_[field].values;
@@ -41,9 +38,8 @@ class RefinerFields {
  private:
   struct Field {
     std::vector<std::int32_t> values;
-    std::vector<bool> applied;  // by chunk
-    std::uint32_t chunks = 0;
-    bool broken = false;  // a block failed half-way: what it wrote is noise
+    std::uint32_t chunks = 0;  // that have come
+    bool broken = false;       // a block failed half-way: what it wrote is noise
   };
 
   [[nodiscard]] Status mayCome(std::uint32_t field, std::uint32_t chunk, std::size_t values) const;

@@ -21,12 +21,7 @@ std::unexpected<Error> ChunkInput::refuseBase() const {
   return refuse(ErrorCode::kBadValue, "the base mesh's structure contradicts itself");
 }
 
-ChunkPlan::ChunkPlan(LogIndex logIndex)
-    : index(std::move(logIndex)),
-      headChunks(index.headChunks()),
-      firstDepth(index.firstDepth()),
-      lastDepth(index.lastDepth()),
-      slots(1) {
+ChunkPlan::ChunkPlan(LogIndex logIndex) : index(std::move(logIndex)), slots(1) {
   for (const ChunkEntry& e : index.chunks) {
     const Slots& s = slots.back();
     slots.push_back({s.vertices + e.newVertices, s.tetrahedra + e.newTetrahedra,
@@ -124,11 +119,6 @@ Status RecordReader::split(const ChunkInput& chunk, RecordCoder<RangeDecoder>& c
     ancestry_.cells->addRestored(mesh_.star(v), link_, split.deleted, mesh_.next().tetrahedra);
   mesh_.apply(v, link_, split);
   return {};
-}
-
-void RecordReader::continueAt(const ChunkInput& packet) {
-  mesh_.continueAt(packet.first, packet.end);
-  if (ancestry_.cells) ancestry_.cells->makeRoom(packet.end.tetrahedra);
 }
 
 Status RecordReader::checkCounts(const ChunkInput& chunk) const {

@@ -2,7 +2,6 @@
 // grows. For refiner*.cpp and nobody else.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -29,16 +28,7 @@ struct ChunkPlan {
   explicit ChunkPlan(LogIndex logIndex);
 
   LogIndex index;
-  std::uint32_t headChunks, firstDepth, lastDepth;
   std::vector<Slots> slots;  // of each chunk the first, and the end
-
-  [[nodiscard]] bool isPacket(std::uint32_t chunk) const { return chunk >= headChunks; }
-  [[nodiscard]] bool hasPackets() const { return headChunks < index.chunks.size(); }
-  /// REQUIRES: not chunk 0.
-  [[nodiscard]] std::uint32_t dependencyOf(std::uint32_t chunk) const {
-    assert(chunk > 0 && chunk < index.chunks.size());
-    return index.dependencies[index.chunks[chunk].firstDependency];
-  }
 };
 
 /// The caller's requests: where to stop, whom to notify.
@@ -66,7 +56,7 @@ struct ChunkInput {
   const ChunkEntry& entry;
   RangeDecoder decoder;
   Values& positions;
-  Slots first, end;     // of the slots that it may fill
+  Slots end;            // of the slots that it may fill
   std::size_t records;  // how many there may be at its end, of all chunks
 
   [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, const std::string& what) const {
@@ -94,14 +84,11 @@ class RecordReader {
   }
   /// Reads the split flag of v, and its record if it splits. REQUIRES: v may split.
   Status vertex(const ChunkInput& chunk, RecordCoder<RangeDecoder>& coder, VertexId v);
-  /// The next records fill the packet's slots.
-  void continueAt(const ChunkInput& packet);
   /// Whether a whole chunk brought what the chunk table says.
   [[nodiscard]] Status checkCounts(const ChunkInput& chunk) const;
 
   [[nodiscard]] GrowingMesh& mesh() { return mesh_; }
   [[nodiscard]] const GrowingMesh& mesh() const { return mesh_; }
-  [[nodiscard]] RecordModels& models() { return models_; }
   /// Takes that many steps, or refuses the chunk with limit-exceeded.
   [[nodiscard]] Status work(const ChunkInput& chunk, std::uint64_t steps);
   [[nodiscard]] WorkMeter& meter() { return meter_; }

@@ -16,15 +16,12 @@ namespace qtet {
 struct Refiner::State {
   enum class Phase : std::uint8_t {
     kOpen,
-    kStopped,  // inside a chunk of the head, at stopLevel
+    kStopped,  // inside a chunk, at stopLevel
     kBroken,   // a chunk failed, or is being applied
   };
 
   explicit State(LogIndex logIndex)
-      : plan(std::move(logIndex)),
-        mesh(plan, settings),
-        added(plan.index.chunks.size()),
-        fields(plan, mesh.records(), added) {}
+      : plan(std::move(logIndex)), mesh(plan, settings), fields(plan, mesh.records(), added) {}
 
   [[nodiscard]] Status mayCome(std::uint32_t chunk) const;
   Status apply(std::uint32_t chunk, ByteView structure, Values& positions);
@@ -33,8 +30,7 @@ struct Refiner::State {
   ChunkPlan plan;
   RefinerSettings settings;
   MeshReader mesh;
-  std::vector<AddedElements> added;  // by chunk
-  std::uint32_t chunks = 0;          // that have come
+  std::vector<AddedElements> added;  // by chunk that has come
   Phase phase = Phase::kOpen;
   RefinerFields fields;
   // bytes of structure that have come; none once memory for the whole log was asked for

@@ -255,7 +255,6 @@ std::vector<Metrics::Figure> Server::State::figures() const {
       cache("{cache=\"pages\"}", router.pageBytes()),
       cache("{cache=\"levels\"}", options.cache != nullptr ? options.cache->bytes() : 0),
       cache("{cache=\"copies\"}", bytesOfCopies()),
-      cache("{cache=\"intervals\"}", KnownIntervals::bytesOfAll()),
       gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
       counter("uploads_published_total", "Logs that were uploaded and published.",
               uploads.published()),

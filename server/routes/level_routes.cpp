@@ -156,7 +156,7 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   const MeshPointer& mesh = log.mesh;
   const std::size_t dot = std::min(name.find('.'), name.size());
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
-  if (!form || isPicture(*form) || form == LevelForm::kIntervals)
+  if (!form || isPicture(*form))
     return problem(404, "not-found",
                    "a level is to be had as {k}.vtu, .vtk, .msh, .usda, and its boundary as "
                    "{k}.glb, .drc, .obj");

@@ -216,7 +216,6 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
                             std::move(*mayRead),
                             services_.timeouts.silence,
                             services_.timeouts.write,
-                            &services_.jobs,
                             services_.unpaced,
                             report_.streamRequest()};
   // A coroutine of its own, so that what a request needed goes.

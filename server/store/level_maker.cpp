@@ -23,12 +23,6 @@ Result<Bytes> written(const LatticeMesh& mesh, const LevelRequest& request) {
 
 Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop) {
   try {
-    if (request.form == LevelForm::kIntervals) {
-      const Result<PacketIntervals> table =
-          packetIntervals(request.mesh->log, request.mesh->manifest, stop);
-      if (!table) return std::unexpected(table.error());
-      return table->encode();
-    }
     const Result<LatticeMesh> mesh =
         meshAtLevel(request.mesh->log, request.level, request.fields, stop);
     if (!mesh) return std::unexpected(mesh.error());

@@ -9,7 +9,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<std::pair<LevelForm, std::string_view>, 10> kForms = {{
+constexpr std::array<std::pair<LevelForm, std::string_view>, 9> kForms = {{
     {LevelForm::kVtu, "vtu"},
     {LevelForm::kVtk, "vtk"},
     {LevelForm::kMsh, "msh"},
@@ -19,7 +19,6 @@ constexpr std::array<std::pair<LevelForm, std::string_view>, 10> kForms = {{
     {LevelForm::kUsda, "usda"},
     {LevelForm::kPng, "png"},
     {LevelForm::kWebp, "webp"},
-    {LevelForm::kIntervals, "intervals"},
 }};
 
 }  // namespace

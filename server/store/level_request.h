@@ -11,20 +11,8 @@
 
 namespace qtet {
 
-/// The kinds of file of codec/files/mesh_file.h, the preview and the poster, and the table of
-/// server/store/packet_intervals.h, which nobody fetches.
-enum class LevelForm : std::uint8_t {
-  kVtu,
-  kVtk,
-  kMsh,
-  kObj,
-  kGlb,
-  kDrc,
-  kUsda,
-  kPng,
-  kWebp,
-  kIntervals
-};
+/// The kinds of file of codec/files/mesh_file.h, the preview and the poster.
+enum class LevelForm : std::uint8_t { kVtu, kVtk, kMsh, kObj, kGlb, kDrc, kUsda, kPng, kWebp };
 
 struct LevelRequest {
   MeshPointer mesh{};

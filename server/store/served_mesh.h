@@ -11,7 +11,6 @@
 
 #include "codec/refine/log_file.h"
 #include "proto/manifest.h"
-#include "server/store/packet_intervals.h"
 #include "server/wire/document.h"
 
 namespace qtet {
@@ -48,8 +47,6 @@ struct ServedMesh {
   FileIdentity file{};
   /// The file of `log`'s bytes, from which the kernel sends them.
   std::unique_ptr<Descriptor> descriptor{};
-  /// The intervals of its packets, once a view has asked for them.
-  std::shared_ptr<KnownIntervals> intervals = std::make_shared<KnownIntervals>();
   /// Its part of limits::kMaxCopiedBytes; nullptr: the file is mapped.
   std::shared_ptr<void> copied{};
 

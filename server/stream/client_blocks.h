@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "codec/log/log_index.h"
-#include "proto/stream_request.h"
 
 namespace qtet {
 
@@ -38,26 +37,14 @@ class ClientBlocks {
     assert(chunk < index_->chunks.size() && column < columns());
     return held_[chunk * columns() + column];
   }
-  [[nodiscard]] bool hasMesh(std::uint32_t chunk) const {
-    return has(chunk, kStructurePart) && has(chunk, kPositionsPart);
-  }
-  [[nodiscard]] bool hasAll(std::uint32_t chunk) const { return missingBlocks(chunk) == 0; }
-  /// Bytes of its blocks that are wanted and not there, and of those that are.
-  [[nodiscard]] std::uint64_t missingBytes(std::uint32_t chunk) const {
-    return bytes(chunk, false);
-  }
-  [[nodiscard]] std::uint64_t heldBytes(std::uint32_t chunk) const { return bytes(chunk, true); }
 
   void add(std::uint32_t chunk, std::size_t column) {
     assert(chunk < index_->chunks.size() && column < columns());
     held_[chunk * columns() + column] = true;
   }
-  /// REQUIRES: no chunk behind the log's last.
-  void add(const HeldChunks& chunks, std::size_t column) {
-    assert(chunks.end() <= index_->chunks.size());
-    for (std::uint32_t c = 0; c < chunks.leading; ++c) add(c, column);
-    for (const ChunkRange& range : chunks.ranges)
-      for (std::uint32_t c = range.first; c < range.end; ++c) add(c, column);
+  /// The first `chunks` chunks. REQUIRES: the log has as many.
+  void addLeading(std::uint32_t chunks, std::size_t column) {
+    for (std::uint32_t c = 0; c < chunks; ++c) add(c, column);
   }
   /// Parts first..first+count-1 of a chunk. REQUIRES: parts of columns.
   void addRun(std::uint32_t chunk, std::uint32_t first, std::uint32_t count) {
@@ -68,18 +55,6 @@ class ClientBlocks {
   }
 
  private:
-  [[nodiscard]] std::uint64_t bytes(std::uint32_t chunk, bool held) const {
-    std::uint64_t out = 0;
-    for (std::size_t column = 0; column < columns(); ++column)
-      if (has(chunk, column) == held) out += index_->block(chunk, partOf(column)).size;
-    return out;
-  }
-  [[nodiscard]] std::size_t missingBlocks(std::uint32_t chunk) const {
-    std::size_t out = 0;
-    for (std::size_t column = 0; column < columns(); ++column) out += !has(chunk, column);
-    return out;
-  }
-
   const LogIndex* index_;
   std::vector<std::uint32_t> fields_;
   std::vector<bool> held_;

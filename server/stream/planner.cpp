@@ -1,7 +1,11 @@
 #include "server/stream/planner.h"
 
+#include <cassert>
+#include <utility>
+
+#include "codec/log/log_index.h"
 #include "proto/messages.h"
-#include "server/stream/chunk_order.h"
+#include "server/stream/client_blocks.h"
 
 namespace qtet {
 namespace {
@@ -36,26 +40,13 @@ class Runs {
 
 }  // namespace
 
-std::vector<BlockRun> planStream(const LogFront& log, const ClientBlocks& blocks, const View& view,
-                                 const StopAt& stop, std::uint32_t payloadBytes) {
-  const LogIndex& index = log.index;
-  std::uint64_t payload = index.headBytes(), tetrahedra = 0;
-  const bool bounded = stop.payload != StopAt().payload || stop.tetrahedra != StopAt().tetrahedra;
-  for (std::uint32_t chunk = 0; bounded && chunk < index.chunks.size(); ++chunk) {
-    payload += blocks.heldBytes(chunk);
-    if (blocks.hasMesh(chunk)) tetrahedra += index.chunks[chunk].newTetrahedra;
-  }
-
+std::vector<BlockRun> planStream(const LogIndex& index, const ClientBlocks& blocks,
+                                 std::uint32_t lastChunk, std::uint32_t payloadBytes) {
+  assert(lastChunk < index.chunks.size());
   Runs runs(index, payloadBytes);
-  for (const std::uint32_t chunk : chunkOrder(log, blocks, view, stop)) {
-    if (bounded) {
-      payload += blocks.missingBytes(chunk);
-      if (!blocks.hasMesh(chunk)) tetrahedra += index.chunks[chunk].newTetrahedra;
-      if (chunk > 0 && (payload > stop.payload || tetrahedra > stop.tetrahedra)) break;
-    }
+  for (std::uint32_t chunk = 0; chunk <= lastChunk; ++chunk)
     for (std::size_t column = 0; column < blocks.columns(); ++column)
       if (!blocks.has(chunk, column)) runs.add(chunk, blocks.partOf(column));
-  }
   return runs.take();
 }
 

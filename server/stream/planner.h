@@ -1,13 +1,9 @@
 // Plans which blocks a client gets, and in which order (STREAM.md, "Binary frame", "Order"). The
-// plan is a pure function of the log's front, the client's blocks and its requests.
+// plan is a pure function of the log's index, the client's blocks and its target.
 #pragma once
 
 #include <cstdint>
 #include <vector>
-
-#include "codec/log/target_choice.h"
-#include "proto/stream_request.h"
-#include "server/stream/log_front.h"
 
 namespace qtet {
 
@@ -23,11 +19,11 @@ struct BlockRun {
   bool operator==(const BlockRun&) const = default;
 };
 
-/// The runs that a client lacks, the head left out. A run takes neighbouring blocks until it would
+/// The runs that a client lacks up to chunk `lastChunk`, the head left out: the chunks in the file's
+/// order, so that whatever has arrived is a mesh with its fields. A run takes neighbouring blocks until it would
 /// exceed `payloadBytes`, and one block at least.
-[[nodiscard]] std::vector<BlockRun> planStream(const LogFront& log, const ClientBlocks& blocks,
-                                               const View& view, const StopAt& stop,
-                                               std::uint32_t payloadBytes);
+[[nodiscard]] std::vector<BlockRun> planStream(const LogIndex& index, const ClientBlocks& blocks,
+                                               std::uint32_t lastChunk, std::uint32_t payloadBytes);
 
 /// Where a run lies in the file: one contiguous piece.
 struct FileSlice {

@@ -14,9 +14,9 @@ inline constexpr unsigned kMaxMessagesPerSecond = 2000;
 /// `open`s a second: each makes a plan over the whole chunk table; a person cannot choose fields as
 /// fast.
 inline constexpr unsigned kMaxOpensPerSecond = 50;
-/// `view`s, `target`s and `resume`s with `have` a second; each of them makes a plan. Nobody turns a
-/// picture faster than a screen of 240 Hz shows it.
-inline constexpr unsigned kMaxViewRequestsPerSecond = 250;
+/// `target`s and `resume`s with `have` a second; each of them makes a plan. Nobody moves a slider
+/// faster than a screen of 240 Hz shows it.
+inline constexpr unsigned kMaxChangesPerSecond = 250;
 /// Answers waiting for a client that sends but does not read.
 inline constexpr std::size_t kMaxQueuedAnswers = 256;
 /// Pings a second: browsers send none.

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 
+#include "codec/log/target_choice.h"
 #include "proto/sentence.h"
 #include "server/stream/stream_limits.h"
 
 namespace qtet {
-
-namespace limits {
-/// Most tetrahedra of a log whose packets' values are computed for a view with an isovalue. Its
-/// finest mesh takes 100 to 150 bytes each, 3 GB in all.
-constexpr std::uint32_t kMaxIntervalTetrahedra = 20'000'000;
-}  // namespace limits
 
 namespace {
 
@@ -43,27 +38,27 @@ std::expected<std::vector<std::uint32_t>, Refusal> fieldsOf(const std::vector<st
 std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, std::vector<std::uint32_t> fields,
                                               const ServedMesh& mesh) {
   const std::size_t chunks = mesh.log.index().chunks.size();
-  if (have.mesh.end() > chunks)
+  if (have.chunks > chunks)
     return std::unexpected(Refusal{kLogChanged, "have names chunk " +
-                                                    std::to_string(have.mesh.end() - 1) +
+                                                    std::to_string(have.chunks - 1) +
                                                     " and this log has " + std::to_string(chunks)});
   ClientBlocks out(mesh.log.index(), std::move(fields));
-  out.add(have.mesh, kStructurePart);
-  out.add(have.mesh, kPositionsPart);
+  out.addLeading(have.chunks, kStructurePart);
+  out.addLeading(have.chunks, kPositionsPart);
   for (const auto& [name, held] : have.fields) {
     const auto field = fieldOfKey(mesh.manifest, name);
     if (!field) return std::unexpected(unknownField(mesh, name));
     const auto at = std::ranges::find(out.fields(), *field);
     if (at != out.fields().end())
-      out.add(held, static_cast<std::size_t>(kFirstFieldPart + (at - out.fields().begin())));
+      out.addLeading(held, static_cast<std::size_t>(kFirstFieldPart + (at - out.fields().begin())));
   }
   return out;
 }
 
-std::expected<StopAt, Refusal> stopOf(const Target& target, const ServedMesh& mesh) {
-  const Result<StopAt> stop = chunksFor(target, mesh.manifest, mesh.log.index());
-  if (!stop) return std::unexpected(unknownField(mesh, std::get<FieldErrorTarget>(target).field));
-  return *stop;
+std::expected<std::uint32_t, Refusal> lastChunkOf(const Target& target, const ServedMesh& mesh) {
+  const Result<std::uint32_t> last = lastChunkFor(target, mesh.manifest, mesh.log.index());
+  if (!last) return std::unexpected(unknownField(mesh, std::get<FieldErrorTarget>(target).field));
+  return *last;
 }
 
 }  // namespace
@@ -88,7 +83,7 @@ void StreamProtocol::receiveBinary() {
 
 bool StreamProtocol::countMessage(Clock::time_point now) {
   if (now - second_ >= std::chrono::seconds(1))
-    second_ = now, messagesOfSecond_ = opensOfSecond_ = viewRequestsOfSecond_ = 0;
+    second_ = now, messagesOfSecond_ = opensOfSecond_ = changesOfSecond_ = 0;
   const bool answersRead = answers_.size() < limits::kMaxQueuedAnswers;
   return count(messagesOfSecond_, answersRead ? limits::kMaxMessagesPerSecond : 0,
                "too many messages, or answers that are not read");
@@ -118,22 +113,18 @@ void StreamProtocol::handle(const OpenMessage& message) {
   if (!fields) return refuse(fields.error().code, std::move(fields.error().detail));
   auto blocks = blocksOf(message.have, std::move(*fields), *mesh);
   if (!blocks) return refuse(blocks.error().code, std::move(blocks.error().detail));
-  auto stop = stopOf(message.target, *mesh);
-  if (!stop) return refuse(stop.error().code, std::move(stop.error().detail));
-  stream_.emplace(Stream{mesh, std::move(*blocks), message.have.mesh.leading > 0, message.view,
-                         *stop, static_cast<std::int64_t>(message.credit)});
+  auto last = lastChunkOf(message.target, *mesh);
+  if (!last) return refuse(last.error().code, std::move(last.error().detail));
+  stream_.emplace(Stream{mesh, std::move(*blocks), message.have.chunks > 0, *last,
+                         static_cast<std::int64_t>(message.credit)});
   const std::uint64_t planned = plan(*stream_);
-  answers_.push_back(
-      toJson(OpenedMessage{opens_, mesh->id, mesh->log.digest(), mesh->log.bytes().size(), planned,
-                           mesh->manifest.layout}));
+  answers_.push_back(toJson(
+      OpenedMessage{opens_, mesh->id, mesh->log.digest(), mesh->log.bytes().size(), planned}));
 }
 
 std::uint64_t StreamProtocol::plan(Stream& stream) {
-  const ServedMesh& mesh = *stream.mesh;
-  const LogIndex& index = mesh.log.index();
-  const auto intervals = mesh.intervals->now();
-  stream.plan = planStream({index, mesh.manifest, intervals.get()}, stream.blocks, stream.view,
-                           stream.stop, limits::kFramePayload);
+  const LogIndex& index = stream.mesh->log.index();
+  stream.plan = planStream(index, stream.blocks, stream.lastChunk, limits::kFramePayload);
   if (!stream.hasHead) stream.plan.insert(stream.plan.begin(), {0, FrameHeader::kHead, 0});
   stream.nextRun = 0;
   stream.planState = Stream::PlanState::kCurrent;
@@ -149,7 +140,7 @@ std::uint64_t StreamProtocol::plan(Stream& stream) {
 void StreamProtocol::catchUp() {
   if (!stream_ || stream_->planState != Stream::PlanState::kStale) return;
   const std::uint64_t planned = plan(*stream_);
-  answers_.push_back(toJson(PlannedMessage{opens_, planned, stream_->views}));
+  answers_.push_back(toJson(PlannedMessage{opens_, planned}));
 }
 
 void StreamProtocol::handle(const CreditMessage& message) {
@@ -159,18 +150,11 @@ void StreamProtocol::handle(const CreditMessage& message) {
                                static_cast<std::int64_t>(kMaxCredit));
 }
 
-void StreamProtocol::handle(const ViewMessage& message) {
-  if (!stream_ || !countViewRequest()) return;
-  stream_->view = message.view;
-  ++stream_->views;
-  stream_->planState = Stream::PlanState::kStale;
-}
-
 void StreamProtocol::handle(const TargetMessage& message) {
-  if (!stream_ || !countViewRequest()) return;
-  const auto stop = stopOf(message.target, *stream_->mesh);
-  if (!stop) return answerError(stop.error().code, stop.error().detail);
-  stream_->stop = *stop;
+  if (!stream_ || !countChange()) return;
+  const auto last = lastChunkOf(message.target, *stream_->mesh);
+  if (!last) return answerError(last.error().code, last.error().detail);
+  stream_->lastChunk = *last;
   stream_->planState = Stream::PlanState::kStale;
 }
 
@@ -181,7 +165,7 @@ void StreamProtocol::handle(const PauseMessage&) {
 void StreamProtocol::handle(const ResumeMessage& message) {
   if (!stream_) return;
   if (message.have) {
-    if (!countViewRequest()) return;
+    if (!countChange()) return;
     auto blocks = blocksOf(*message.have, stream_->blocks.fields(), *stream_->mesh);
     if (!blocks) return answerError(blocks.error().code, blocks.error().detail);
     catchUp();  // what is due is said of the blocks before
@@ -197,22 +181,9 @@ void StreamProtocol::handle(const CancelMessage&) {
   answers_.push_back(toJson(StoppedMessage{opens_}));
 }
 
-MeshPointer StreamProtocol::lacksIntervals() const {
-  if (!stream_ || !stream_->view.isovalue || stream_->mesh->intervals->now()) return nullptr;
-  const ServedMesh& mesh = *stream_->mesh;
-  const bool sorted = mesh.log.index().layout == Layout::kRegions &&
-                      mesh.manifest.levels.back().tetrahedra <= limits::kMaxIntervalTetrahedra;
-  return sorted ? stream_->mesh : nullptr;
-}
-
-void StreamProtocol::intervalsCame(const MeshPointer& mesh) {
-  if (stream_ && stream_->mesh == mesh && stream_->view.isovalue)
-    stream_->planState = Stream::PlanState::kStale;
-}
-
-bool StreamProtocol::countViewRequest() {
-  return count(viewRequestsOfSecond_, limits::kMaxViewRequestsPerSecond,
-               "too many views, targets and resumes with have a second");
+bool StreamProtocol::countChange() {
+  return count(changesOfSecond_, limits::kMaxChangesPerSecond,
+               "too many targets and resumes with have a second");
 }
 
 void StreamProtocol::answerError(const char* code, std::string detail) {

@@ -58,16 +58,9 @@ class StreamProtocol {
   /// There is more to send, and credit alone is wanting.
   [[nodiscard]] bool lacksCredit() const { return hasRun() && stream_->credit <= 0; }
 
-  /// The mesh whose packets' intervals the view asks for and nobody knows yet; nullptr: none. Until
-  /// they are there an isovalue counts for nothing.
-  [[nodiscard]] MeshPointer lacksIntervals() const;
-  /// They are known now: what has not been sent is ordered by them.
-  void intervalsCame(const MeshPointer& mesh);
-
  private:
   void handle(const OpenMessage& message);
   void handle(const CreditMessage& message);
-  void handle(const ViewMessage& message);
   void handle(const TargetMessage& message);
   void handle(const PauseMessage& message);
   void handle(const ResumeMessage& message);
@@ -79,10 +72,8 @@ class StreamProtocol {
     MeshPointer mesh;  ///< a stream finishes on the log that it began with
     ClientBlocks blocks;
     bool hasHead = false;
-    View view{};
-    StopAt stop{};
-    std::int64_t credit = 0;  ///< bytes; below zero by one frame at most
-    std::uint32_t views = 0;  ///< `view` messages so far
+    std::uint32_t lastChunk = 0;  ///< chunks behind it are not sent
+    std::int64_t credit = 0;      ///< bytes; below zero by one frame at most
     bool paused = false;
     enum class PlanState : std::uint8_t {
       kCurrent,
@@ -121,7 +112,7 @@ class StreamProtocol {
   void refuse(const char* code, std::string detail);
   void answerError(const char* code, std::string detail);
   bool countMessage(Clock::time_point now);
-  bool countViewRequest();
+  bool countChange();
   bool count(unsigned& counter, unsigned most, const char* what);
 
   const MeshStore& store_;
@@ -135,7 +126,7 @@ class StreamProtocol {
   Clock::time_point second_{};  ///< the window that the counters belong to
   unsigned messagesOfSecond_ = 0;
   unsigned opensOfSecond_ = 0;
-  unsigned viewRequestsOfSecond_ = 0;
+  unsigned changesOfSecond_ = 0;
 };
 
 }  // namespace qtet

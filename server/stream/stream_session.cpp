@@ -17,7 +17,6 @@
 
 #include "server/stream/control_frames.h"
 #include "server/stream/frame_gather.h"
-#include "server/stream/interval_search.h"
 #include "server/stream/line_room.h"
 #include "server/stream/patience.h"
 #include "server/stream/stream_input.h"
@@ -92,11 +91,6 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
         clock_(peer_.socket.get_executor()),
         protocol_(std::move(protocol)),
         input_(protocol_, control_),
-        intervals_(handshake.jobs, peer_.address(), peer_.socket.get_executor(),
-                   [this](const MeshPointer& mesh) {
-                     protocol_.intervalsCame(mesh);
-                     wake_.cancel();
-                   }),
         patience_(handshake.silence, handshake.write, Clock::now()),
         cork_(peer_.socket, handshake.unpaced),
         bounded_(!handshake.unpaced),
@@ -142,7 +136,6 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   StreamProtocol protocol_;
   ControlFrames control_;
   StreamInput input_;
-  IntervalSearch intervals_;
   Patience patience_;
   Cork cork_;
   const bool bounded_;  // by line_; a client of this machine has no line
@@ -164,7 +157,6 @@ void StreamSession::hear(std::string_view bytes) {
   const std::uint32_t opens = protocol_.opens();
   input_.take(bytes, now);
   if (protocol_.opens() != opens && protocol_.mesh()) report_.opened(protocol_.mesh()->id, now);
-  if (input_.listens()) intervals_.want(protocol_.lacksIntervals());
 }
 
 /// A plain function: a buffer in a coroutine would be held by every silent client.

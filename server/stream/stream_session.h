@@ -8,7 +8,6 @@
 #include <chrono>
 #include <string>
 
-#include "server/store/level_jobs.h"
 #include "server/store/mesh_store.h"
 #include "server/stream/stream_limits.h"
 #include "server/stream/stream_report.h"
@@ -25,8 +24,6 @@ struct StreamHandshake {
   MayRead mayRead{};       ///< which meshes it may open; empty: all
   /// After which it is given up.
   std::chrono::milliseconds silence = limits::kSilenceTime, write = limits::kWriteTime;
-  /// Where the intervals of packets are found; nullptr: they stay unknown.
-  LevelJobs* jobs = nullptr;
   bool unpaced = false;  ///< as Services has it
   StreamRequest request{};
 };

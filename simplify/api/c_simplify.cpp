@@ -74,7 +74,8 @@ Status checkChoices(const qtet_simplify_options& options) {
                                {options.valueCodec, QTET_CODEC_ADAPTIVE, "valueCodec"},
                                {options.keepOrder, 1, "keepOrder"},
                                {options.lossless, 1, "lossless"},
-                               {options.originalIds, 1, "originalIds"}})
+                               {options.originalIds, 1, "originalIds"},
+                               {options.reserved, 0, "reserved"}})
     if (choice.number > choice.last)
       return fail(ErrorCode::kBadValue, std::string(choice.member) + " is " +
                                             std::to_string(choice.number) + "; the last is " +
@@ -131,7 +132,6 @@ qtet::FusionOptions fusionOptionsOf(const qtet_simplify_options& from) {
   out.envelopeTolerance = setNumber(from.envelopeTolerance);
   out.shapeWeight = from.shapeWeight;
   out.placement = kPlacements[from.placement];
-  out.bands.cellsPerPacket = from.cellsPerPacket;
   out.threads = qtet::threadsAtOnce(static_cast<int>(std::clamp(from.threads, 1u, 1024u)));
   return out;
 }

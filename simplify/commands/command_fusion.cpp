@@ -21,24 +21,6 @@ PlacementRule placementRuleOf(const std::string& name) {
   throw UsageError("--placement '" + name + "' is not known; give optimal, vertex or auto");
 }
 
-// 8,000 cells are packets of about 4 KB.
-constexpr int kCellsPerPacket = 8000;
-// Fewer, and most vertices lie between two leaves, where nothing fuses.
-constexpr int kMinCellsPerPacket = 100;
-
-std::size_t cellsPerPacketOf(const ParsedWords& parsed) {
-  const auto layout = parsed.get<std::string>("layout");
-  if (layout != "stream" && layout != "regions")
-    throw UsageError("--layout '" + layout + "' is not known; give stream or regions");
-  if (layout == "stream" && parsed.has("cells-per-packet"))
-    throw UsageError("--cells-per-packet is for --layout regions; leave it out, or give that");
-  if (layout == "stream") return 0;
-  return parsed.has("cells-per-packet")
-             ? static_cast<std::size_t>(parsed.integer("cells-per-packet", kMinCellsPerPacket,
-                                                       std::numeric_limits<int>::max()))
-             : kCellsPerPacket;
-}
-
 }  // namespace
 
 void addFusionOptions(boost::program_options::options_description& options) {
@@ -65,12 +47,6 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "preserve-regions", po::value<std::string>(),
       "a cell field of one component whose values are regions such as tissues or materials: they "
       "and their interfaces keep their topology")(
-      "layout", po::value<std::string>()->default_value("stream"),
-      "stream: the smallest log, refined as a whole; regions: packets of places, so that a viewer "
-      "can refine one place without the rest")(
-      "cells-per-packet", po::value<int>(),
-      "with --layout regions: tetrahedra of the original that share a finest packet, 100 and more; "
-      "8000 without")(
       "threads", po::value<int>()->default_value(1),
       "threads, as many as there are processors at most; the result does not depend on it");
 }
@@ -90,7 +66,6 @@ void takeFusionOptions(const ParsedWords& parsed, PipelineOptions& out) {
   if (parsed.has("envelope-tolerance"))
     fusion.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
   fusion.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
-  fusion.bands.cellsPerPacket = cellsPerPacketOf(parsed);
   if (parsed.has("field-weight"))
     for (const std::string& text : parsed.get<std::vector<std::string>>("field-weight")) {
       out.fieldWeights.push_back(parseNamedNumber(

@@ -36,7 +36,6 @@ OrderedJson infoJson(const OpenedLog& log) {
   return {{"digest", log.file.digest()},
           {"generator", manifest.generator},
           {"source", manifest.source},
-          {"layout", manifest.layout},
           {"bytes", log.file.bytes().size()},
           {"headBytes", log.file.index().headBytes()},
           {"chunks", log.file.index().chunks.size()},
@@ -104,8 +103,7 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
            " are header, manifest and table");
   line(console, "lattice",
        std::to_string(log.manifest.latticeBits) + " bits an axis, step " +
-           brief(log.manifest.latticeStep) + ", from " + originText(log.manifest) + ", layout " +
-           log.manifest.layout);
+           brief(log.manifest.latticeStep) + ", from " + originText(log.manifest));
   line(console, "digest", info["digest"]);
   for (const auto& [what, size] : info["kept"].items())
     line(console, "kept", what + ": " + grouped(size) + " bytes");
@@ -147,7 +145,7 @@ int runInfo(const Words& words, Console& console) {
        "worse one of both ways), the volume that is\n"
        "lost and gained in per cent of the original's, and of each field in per cent of its range: "
        "its max is sampled.\n"
-       "--json: digest, generator, source, layout, bytes, headBytes, chunks, lattice {bits, step, "
+       "--json: digest, generator, source, bytes, headBytes, chunks, lattice {bits, step, "
        "origin}, fields [{name, components, type, association, bits,\n"
        "step, minimum, range, missingValues, bytes}], kept, and levels [{level, tetrahedra, "
        "vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"

@@ -131,7 +131,6 @@ void addSizes(const PipelineOutput& made, OrderedJson& report) {
   report["bytes"] = made.log.size();
   report["bytesOf"] = {{"head", statistics.headBytes},
                        {"connectivity", statistics.structureBytes},
-                       {"childBits", statistics.childBytes},
                        {"positions", statistics.positionBytes},
                        {"fields", fieldBytes}};
   report["bitsPerTetrahedron"] = {{"connectivity", bits(statistics.structureBytes)},
@@ -184,7 +183,6 @@ OrderedJson reportOf(const Request& request, const ReadReport& read, const Pipel
       {"tetrahedra", {{"input", from.tetrahedraIn}, {"full", full}, {"base", base}}},
       {"vertices", manifest.levels.back().vertices},
       {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
-      {"layout", manifest.layout},
       {"levels", manifest.levels.size() - 1},
       {"chunks", from.index.chunks.size()}};
   report["records"] = from.statistics.records;
@@ -323,7 +321,7 @@ int runSimplify(const Words& words, Console& console) {
         {"quality and base mesh",
          {"target-ratio", "base-cells", "envelope-tolerance", "placement", "shape-weight",
           "preserve-regions", "position-bits"}},
-        {"output", {"cells-per-packet", "geometry-codec", "keep-order", "original-ids", "measure"}},
+        {"output", {"geometry-codec", "keep-order", "original-ids", "measure"}},
         {"rare", {"algorithm"}}}},
       options, {"IN"});
   if (parsed.helped(console)) return kExitOk;

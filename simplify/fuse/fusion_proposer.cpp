@@ -48,12 +48,11 @@ CellShares::CellShares() {
 }
 
 FusionProposer::FusionProposer(const FusionMesh& mesh, const FusionCost& cost,
-                               const ChangeTimes& changes, const BandNodes& band,
-                               const FusionLimits& limits, const FusionPointOptions& options)
+                               const ChangeTimes& changes, const FusionLimits& limits,
+                               const FusionPointOptions& options)
     : mesh_(mesh),
       cost_(cost),
       changes_(changes),
-      band_(band),
       test_(mesh, limits),
       finder_(mesh, cost, options) {}
 
@@ -73,7 +72,7 @@ void FusionProposer::candidatesOf(VertexId v, std::span<const VertexId> link,
       if (w < v && counts_.add(w) && link.empty()) cost_.prefetchSlot(w);
   found.reserve(counts_.size());
   counts_.take([&](VertexId w, std::uint32_t cells) {
-    if (!band_.allows(v, w) || mesh_.singular(w)) return;
+    if (mesh_.singular(w)) return;
     found.push_back({static_cast<float>(cells), w});
     cost_.prefetch(w);
   });

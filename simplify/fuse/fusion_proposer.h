@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "simplify/cost/fusion_cost.h"
-#include "simplify/fuse/band_nodes.h"
 #include "simplify/fuse/candidates.h"
 #include "simplify/fuse/change_times.h"
 #include "simplify/fuse/fusion_point.h"
@@ -60,10 +59,9 @@ class CellShares {
 class FusionProposer {
  public:
   FusionProposer(const FusionMesh& mesh, const FusionCost& cost, const ChangeTimes& changes,
-                 const BandNodes& band, const FusionLimits& limits,
-                 const FusionPointOptions& options);
+                 const FusionLimits& limits, const FusionPointOptions& options);
 
-  /// The edges of v that the band allows and whose highest vertex it is, cheapest first.
+  /// The edges of v whose highest vertex it is, cheapest first.
   void candidatesOf(VertexId v, std::vector<Candidate>& found);
   /// The same of a vertex that is higher than all of its neighbours, which are `link`, the ghost
   /// perhaps among them.
@@ -90,7 +88,6 @@ class FusionProposer {
   const FusionMesh& mesh_;
   const FusionCost& cost_;
   const ChangeTimes& changes_;
-  const BandNodes& band_;
   FusionCheck test_;
   FusionPointFinder finder_;
   CellShares shares_;

@@ -28,7 +28,6 @@ void LevelFusions::decideOn(const Proposal& proposal) {
 }
 
 void LevelFusions::carryOut() {
-  for (const PlannedFusion& planned : planned_) band_.fused(planned.prey.vertex[0]);
   state_.fuse(planned_, level_);
   planned_.clear();
   going_ = 0;

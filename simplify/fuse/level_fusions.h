@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "simplify/fuse/band_nodes.h"
 #include "simplify/fuse/fusion_proposer.h"
 #include "simplify/fuse/fusion_state.h"
 #include "simplify/fuse/live_boundary.h"
@@ -17,8 +16,7 @@ namespace qtet {
 class LevelFusions {
  public:
   /// `boundary`: null where no fusion goes outside. REQUIRES: all outlive this.
-  LevelFusions(FusionState& state, BandNodes& band, LiveBoundary* boundary)
-      : state_(state), band_(band), boundary_(boundary) {}
+  LevelFusions(FusionState& state, LiveBoundary* boundary) : state_(state), boundary_(boundary) {}
 
   void begin(std::uint32_t level);
   /// The fusion would make the boundary meet itself.
@@ -43,7 +41,6 @@ class LevelFusions {
 
  private:
   FusionState& state_;
-  BandNodes& band_;
   LiveBoundary* boundary_;
   std::uint32_t level_ = 0;
   std::vector<PlannedFusion> planned_;

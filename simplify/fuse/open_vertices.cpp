@@ -1,6 +1,7 @@
 #include "simplify/fuse/open_vertices.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace qtet {
 namespace {
@@ -78,18 +79,7 @@ void OpenVertices::collect(std::span<const VertexId> vertices, const Find& find)
   }
 }
 
-float OpenVertices::keyAt(double fraction) const {
-  std::vector<float> keys;
-  for (const VertexId v : vertices_)
-    if (const Candidate* best = state_.candidates().best(v)) keys.push_back(best->key);
-  if (keys.empty()) return 0;
-  const auto at =
-      keys.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(keys.size() - 1));
-  std::nth_element(keys.begin(), at, keys.end());
-  return *at;
-}
-
-void OpenVertices::fill(std::vector<QueueEntry>& entries, float most) {
+void OpenVertices::fill(std::vector<QueueEntry>& entries) {
   Candidates& candidates = state_.candidates();
   entries.resize(vertices_.size());
   std::vector<Filled> filled((vertices_.size() + kFilled - 1) / kFilled);
@@ -105,7 +95,7 @@ void OpenVertices::fill(std::vector<QueueEntry>& entries, float most) {
       vertices_[left.vertices] = v;
       left.vertices += !candidates.isEmpty(v);
       entries[left.entries] = {best ? best->key : 0, v};
-      left.entries += best != nullptr && best->key <= most;
+      left.entries += best != nullptr && best->key <= std::numeric_limits<float>::max();
     }
     filled[begin / kFilled] = left;
   });

@@ -24,11 +24,9 @@ class OpenVertices {
   /// Takes in the vertices that a level fused, with their candidates. REQUIRES: carried out.
   void add(const LevelFusions& level);
 
-  /// The key that this fraction of the vertices' best candidates does not pass.
-  [[nodiscard]] float keyAt(double fraction) const;
-  /// The vertices whose best candidate costs no more than `most`, in order of the vertices.
-  /// Vertices without candidates now and later are left out for good.
-  void fill(std::vector<QueueEntry>& entries, float most);
+  /// The vertices that have a candidate of finite cost, in order of the vertices. Vertices without
+  /// candidates now and later are left out for good.
+  void fill(std::vector<QueueEntry>& entries);
 
  private:
   template <class Find>

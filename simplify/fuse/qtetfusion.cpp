@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "proto/limits.h"
-#include "simplify/fuse/band_nodes.h"
 #include "simplify/fuse/fusion_proposer.h"
 #include "simplify/fuse/fusion_state.h"
 #include "simplify/fuse/level_decider.h"
@@ -34,24 +32,12 @@ constexpr double kWorthAnotherPass = 0.002;
 // is thin, or of a topology that must stay.
 constexpr std::size_t kLevelsOfAStall = 8;
 constexpr double kWorthAStallsLevels = 0.02;
-// A level of a band that removes less than this fraction of the cells is its last. The rest is
-// dear, and waits for larger nodes.
-constexpr double kWorthAnotherLevel = 0.015;
 // No new cell may be shaped worse than this, or than a fifth of its star's worst (1 = regular, 0 =
 // flat).
 constexpr double kShapeFloor = 1e-4;
 // Cosine of the largest angle by which a boundary triangle may turn in one fusion. If it turned
 // more, a fold could hide what the quadric does not see.
 constexpr double kNormalCosine = 0.3;
-
-/// Where levels stop.
-struct LevelGoal {
-  std::size_t tetrahedra = 0;  ///< as few as these
-  /// The key of the dearest fusion that a band can still afford.
-  float dearest = std::numeric_limits<float>::infinity();
-
-  [[nodiscard]] bool isBand() const { return !std::isinf(dearest); }
-};
 
 class Simplifier {
  public:
@@ -60,19 +46,15 @@ class Simplifier {
         cells_(mesh.tetrahedra.size()),
         target_(baseCellsOf(options, cells_)),
         workers_(options.threads, options.stop),
-        state_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost, workers_),
-        band_(options.bands.cellsPerPacket == 0
-                  ? BandNodes()
-                  : BandNodes(state_.mesh(), mesh, options.bands.cellsPerPacket)) {
+        state_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost, workers_) {
     limitBy(kShapeFloor, kNormalCosine);
   }
 
   Result<FusionHistory> run() {
-    runBands();
     bool isRelaxed = false;  // the limits of validity alone remain, those of beauty do not
     while (live() > target_) {
       const std::size_t before = live();
-      const bool stalls = !runLevels({target_});
+      const bool stalls = !runLevels();
       if (levels_ == kMaxLevels && live() > target_)
         return fail(ErrorCode::kLimitExceeded,
                     "4,096 levels do not reach the target; ask for more cells with `baseCells`");
@@ -81,33 +63,16 @@ class Simplifier {
       isRelaxed = true;
       limitBy(0, -1);
     }
-    FusionHistory history = state_.takeHistory(levels_);
-    history.bands = band_.take();
-    return history;
+    return state_.takeHistory(levels_);
   }
 
  private:
-  // A band halves the mesh, or does what its nodes leave it at a fair price. Inside small nodes
-  // half would cost far more than it does in the whole.
-  void runBands() {
-    while (live() > target_ &&
-           band_.bands() < std::min<std::size_t>(band_.depth(), options_.bands.most)) {
-      const std::uint32_t firstLevel = levels_;
-      open_.findAll();
-      const LevelGoal goal{std::max(target_, live() / 2), open_.keyAt(options_.bands.dearest)};
-      band_.begin(state_.mesh());
-      runLevels(goal);
-      if (!band_.end(firstLevel, levels_)) break;
-    }
-  }
-
-  // From all candidates to the goal, or until nothing is left to try.
-  /// False: it stalls, and starting from all candidates again would not help.
-  bool runLevels(const LevelGoal& goal) {
+  /// From all candidates to the target, or until nothing is left to try. False: it stalls, and
+  /// starting from all candidates again would not help.
+  bool runLevels() {
     open_.findAll();
     std::deque<std::size_t> before{live()};
-    while (live() > goal.tetrahedra && levels_ < kMaxLevels && runLevel(goal)) {
-      if (goal.isBand() && !isWorth(kWorthAnotherLevel, before.back())) return true;
+    while (live() > target_ && levels_ < kMaxLevels && runLevel()) {
       if (before.size() == kLevelsOfAStall && !isWorth(kWorthAStallsLevels, before.front()))
         return false;
       before.push_back(live());
@@ -117,14 +82,12 @@ class Simplifier {
   }
 
   /// False when nothing is left to try.
-  bool runLevel(const LevelGoal& goal) {
-    open_.fill(queue_.refill(), std::min(goal.dearest, std::numeric_limits<float>::max()));
+  bool runLevel() {
+    open_.fill(queue_.refill());
     if (queue_.entries().empty()) return false;
-    // A band will do whatever it can afford, so the order counts for less there than the number of
-    // levels.
-    queue_.begin(goal.isBand() ? options_.bands.levelQuantile : kLevelQuantile);
+    queue_.begin(kLevelQuantile);
     fusions_.begin(levels_);
-    decider_.run(queue_, fusions_, goal.tetrahedra);
+    decider_.run(queue_, fusions_, target_);
     if (!fusions_.fused().empty()) ++levels_;
     open_.add(fusions_);
     if (options_.progress) options_.progress(progress());
@@ -145,7 +108,7 @@ class Simplifier {
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
       proposers_.push_back(std::make_unique<FusionProposer>(
-          state_.mesh(), state_.cost(), state_.changes(), band_, limits,
+          state_.mesh(), state_.cost(), state_.changes(), limits,
           FusionPointOptions{options_.placement, options_.shapeWeight}));
   }
 
@@ -161,7 +124,6 @@ class Simplifier {
   std::size_t cells_, target_;  // tetrahedra: at first, and as few as these
   Workers workers_;
   FusionState state_;
-  BandNodes band_;
   // where fusions may go outside
   const double tolerance_ = options_.envelopeTolerance.value_or(kEnvelopeTolerance);
   const bool mayLeave_ = tolerance_ > 0;
@@ -174,7 +136,7 @@ class Simplifier {
   Proposers proposers_;  // one a worker
   OpenVertices open_{state_, workers_, proposers_};
   LevelQueue queue_;
-  LevelFusions fusions_{state_, band_, boundary_.get()};
+  LevelFusions fusions_{state_, boundary_.get()};
   LevelDecider decider_{state_, workers_, proposers_};
   std::uint32_t levels_ = 0;
 };

@@ -15,20 +15,6 @@
 
 namespace qtet {
 
-/// ALGORITHM.md, "Bands".
-struct BandOptions {
-  /// Cells of the input in a leaf of the tree that bands keep to; 0: no bands.
-  std::size_t cellsPerPacket = 0;
-  /// Bands at most. With each more, small boxes take fewer bytes and coarse levels get worse.
-  std::size_t most = 6;
-  /// A band ends at the key that this fraction of the vertices' best edges does not pass at its
-  /// start. 0.9 to 1 trades the error of coarse levels for the bytes of a box
-  /// (tests/bench/REGIONS.md).
-  double dearest = 0.93;
-  /// A level of a band ends at this quantile of what the band can afford, 0..1.
-  double levelQuantile = 0.5;
-};
-
 /// Cells of the base mesh where nothing else is asked for: this fraction, but no more than so many.
 /// A viewer has these within the first hundred kilobytes.
 inline constexpr double kBaseRatio = 0.01;
@@ -51,7 +37,6 @@ struct FusionOptions {
   /// The weight of badly shaped new cells in the cost, >= 0 (ALGORITHM.md, "Shape").
   double shapeWeight = 0.5;
   PlacementRule placement = PlacementRule::kAuto;
-  BandOptions bands;
   int threads = 1;                                ///< the result never depends on it
   std::function<void(double fraction)> progress;  ///< 0..1, called at most once a level
   std::stop_token stop{};                         ///< asked many times a second

@@ -15,9 +15,6 @@
 namespace qtet {
 namespace {
 
-// Fewer, and most vertices lie between two leaves, where nothing fuses.
-constexpr std::size_t kMinCellsPerPacket = 100;
-
 /// The stage in hand: reports it to the caller, and notes how long it took.
 class Stages {
  public:
@@ -120,12 +117,7 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (run.options.algorithm != Algorithm::kPaper &&
       !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
     run.report.boundaryWeight = options->cost.boundaryWeight;
-  Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
-  if (history && options->bands.cellsPerPacket > 0 && history->bands.ends.empty())
-    run.note(
-        {"the mesh is too small for more than one packet (`cellsPerPacket`): the log has the "
-         "layout stream"});
-  return history;
+  return fuse(std::move(quantised.mesh), *options, run);
 }
 
 /// Where the base mesh is: by a rule, unless its size or the error of all levels was asked for.
@@ -201,10 +193,6 @@ Status checkOptions(const PipelineOptions& options) {
     return bad(
         "`algorithm` paper knows no `regions`, `envelopeTolerance` or `fieldWeights`; "
         "leave them out");
-  if (isPaper && fusion.bands.cellsPerPacket > 0)
-    return bad("`algorithm` paper knows no `layout` regions; leave it out");
-  if (fusion.bands.cellsPerPacket > 0 && fusion.bands.cellsPerPacket < kMinCellsPerPacket)
-    return bad("`cellsPerPacket` is below " + std::to_string(kMinCellsPerPacket));
   for (const auto& [name, weight] : options.fieldWeights)
     if (!(weight >= 0) || std::isinf(weight))
       return bad("`fieldWeights` of " + name + " is negative or not finite");

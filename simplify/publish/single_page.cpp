@@ -156,9 +156,6 @@ Result<std::uint32_t> cutLog(Bytes& content, const fs::path& path, std::uint64_t
   const Result<OpenedLog> log = openLog(path);
   if (!log) return std::unexpected(log.error());
   const LogIndex& index = log->file.index();
-  if (index.layout == Layout::kRegions)
-    return fail(ErrorCode::kBadInput,
-                "a log of the layout `regions` cannot be cut; make one of the layout `stream`");
   const std::uint32_t chunks = chunksWithin(index, room);
   if (chunks == 0) {
     const std::uint64_t base = index.chunks.front().offset + index.chunks.front().size();

@@ -15,7 +15,7 @@ from stream import Stream
 
 ADDRESSES, CONNECTIONS, PIPELINED = 8, 8, 8
 READ_BYTES = 1 << 18
-VIEWS, VIEWS_EVERY = 8, 0.04  # of a stream at once, and seconds between: below the bound of 250/s
+TARGETS, TARGETS_EVERY = 8, 0.04  # of a stream at once, and seconds between: below the bound of 250/s
 ANSWER = re.compile(rb"HTTP/1\.1 (\d{3}) ")
 
 
@@ -97,28 +97,26 @@ def attack(port, targets, until, results):
     results.put(statuses)
 
 
-def look(port, mesh, until, results):
-    """View upon view, each with another isovalue."""
+def aim(port, mesh, until, results):
+    """Target upon target."""
     os.nice(10)
     statuses, streams = collections.Counter(), []
     for i in range(ADDRESSES * CONNECTIONS):
         streams.append(Stream("127.0.0.1", port, f"127.0.0.{11 + i % ADDRESSES}"))
         streams[-1].say(type="open", mesh=mesh["id"], fields=[], credit=1)
-    field = next(f["name"] for f in mesh["fields"] if f["components"] == 1)
     value = 0
     while time.monotonic() < until:
         begun = time.monotonic()
         for stream in list(streams):
             try:
-                for _ in range(VIEWS):
+                for _ in range(TARGETS):
                     value += 1
-                    stream.say(type="view", view={"point": [value % 7, 0, 0], "isovalue":
-                                                  {"field": field, "values": [value % 1000]}})
+                    stream.say(type="target", target={"tetrahedra": value % 1000})
                 statuses.update(f.text["type"] for f in stream.take() if f.text)
             except OSError:
                 statuses["broken"] += 1
                 streams.remove(stream)
-        time.sleep(max(0, begun + VIEWS_EVERY - time.monotonic()))
+        time.sleep(max(0, begun + TARGETS_EVERY - time.monotonic()))
     results.put(statuses)
 
 
@@ -190,7 +188,7 @@ def attacks(port, digest, size):
         ],
         "several ranges": [request(log, ranges)],
         "metrics": [request("/metrics")],
-        "views with isovalues": look,
+        "targets": aim,
         "TLS handshakes": None,
     }
 

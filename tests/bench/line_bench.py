@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""qtet-server on slow lines: how soon a changed view takes effect, what throughput is left, and how
+"""qtet-server on slow lines: how soon a changed target takes effect, what throughput is left, and how
 evenly many clients share a line. The lines are tests/support/line's, so no netem is needed.
 
   line_bench.py --bin build/release/bin --log LOG.qtet [--before SERVER] [--only latency,share]
@@ -21,7 +21,7 @@ RATES = {"0.4": 50_000, "2": 250_000, "20": 2_500_000}  # Mbit/s, and bytes a se
 QUEUES = (100, 1000)  # packets
 SHARED, CLIENTS = "20", 20
 SETTLE = 3.0  # seconds until a stream is measured
-VIEW_EVERY = 1.5
+TARGET_EVERY = 1.5
 # the server measured
 OPTIONS = "--threads 1 --max-connections-per-address 0 --max-requests-per-second 0".split()
 
@@ -37,12 +37,12 @@ def refusalOf(congestion):
 
 
 def longEnough(logBytes, rate, seconds):
-    """Whether a stream at the line's full rate lasts until its last view has been watched."""
-    return logBytes > rate * (seconds + VIEW_EVERY + 10 * RTT)
+    """Whether a stream at the line's full rate lasts until its last target has been watched."""
+    return logBytes > rate * (seconds + TARGET_EVERY + 10 * RTT)
 
 
-def view_changes(program, folder, rate, queue, congestion, seconds):
-    """For each view that is changed: ms to the first byte of the first frame of the new order and to
+def target_changes(program, folder, rate, queue, congestion, seconds):
+    """For each target that is changed: ms to the first byte of the first frame of the new plan and to
     its last, KB that came meanwhile before it. And bytes a second of the whole stream."""
     out = []
     with lines.Line(rate, RTT / 2, queue, congestion) as line, running(
@@ -54,17 +54,16 @@ def view_changes(program, folder, rate, queue, congestion, seconds):
         with line.client():
             stream = Stream(lines.SERVER, port)
         stream.open(*mesh)
-        stream.until(lambda f: f.kind == BINARY, 60)  # the head, which has no order
-        began, before, views = time.monotonic(), stream.received, 0
+        stream.until(lambda f: f.kind == BINARY, 60)  # the head, which is in every plan
+        began, before = time.monotonic(), stream.received
         stream.until(lambda f: time.monotonic() > began + SETTLE, 60)
         while time.monotonic() < began + seconds:
-            views += 1
             asked, had = time.monotonic(), stream.received
-            stream.say(type="view", view={"point": [views % 7, 0, 0]})
-            stream.until(lambda f: f.text and f.text.get("view") == views, 60)
+            stream.say(type="target", target=None)
+            stream.until(lambda f: f.text and f.text["type"] == "planned", 60)
             first = stream.until(lambda f: f.kind == BINARY, 60)
             out.append((first.began - asked, first.ended - asked, first.first - had))
-            for frame in stream.frames(asked + VIEW_EVERY):
+            for frame in stream.frames(asked + TARGET_EVERY):
                 if frame.text and frame.text["type"] == "done":
                     raise RuntimeError("the log is too short for this line")
         return out, (stream.received - before) / (time.monotonic() - began)
@@ -108,14 +107,14 @@ def latency_table(servers, folder, args):
                 ways = {}
                 for _ in range(args.rounds):
                     for which, program in servers.items():
-                        views, rate = view_changes(
+                        targets, rate = target_changes(
                             program, folder, RATES[name], queue, congestion, args.seconds
                         )
-                        ways.setdefault(which, []).append((views, rate))
+                        ways.setdefault(which, []).append((targets, rate))
                 cells = []
                 for i, scale in ((0, 1e3), (1, 1e3), (2, 1e-3)):
                     medians = [
-                        statistics.median(v[i] for views, _ in ways[w] for v in views)
+                        statistics.median(t[i] for targets, _ in ways[w] for t in targets)
                         for w in servers
                     ]
                     cells.append(" -> ".join(f"{scale * median:.0f}" for median in medians))

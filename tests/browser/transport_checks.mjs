@@ -7,7 +7,7 @@ import {kDesktop, kTimeoutMs} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {coloredShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
-import {makeLog, Server} from './programs.mjs';
+import {Server} from './programs.mjs';
 import {hostFolder, makeSite} from './static_host.mjs';
 import {kStrictPolicy} from './strict_policy.mjs';
 
@@ -97,84 +97,19 @@ async function goesOnOverHttpWhereTheSocketIsBlocked({server, browser, logs}) {
   }
 }
 
-/**
- * A log of regions first refines where it is cut and where an isosurface passes. In every order it
- * ends as the same mesh. All bytes have arrived before the mesh is decoded again, from nothing to
- * 100,000 cells. So only the order decides what it has, and not the network or the processors.
- */
-async function refinesWhatIsLookedAtFirst({server, browser, out, bin}) {
-  const log = makeLog(bin, 'regions', out, 'fin', [
-    '--layout',
-    'regions',
-    '--cells-per-packet',
-    '1500',
-  ]);
-  server.kill();
-  await server.start();
-  const lookedAt = (viewer) =>
-    viewer.inView(({parts: {cuts, layers}}) =>
-      [cuts[0], ...layers.values()].reduce((sum, {shown}) => sum + shown.positions.length / 9, 0),
-    );
-  const open = async (query) => {
-    const viewer = await browser.open(`${server.url}?mesh=regions&${query}`);
-    await viewer.waitForState('complete');
-    await viewer.waitForPicture();
-    return viewer;
-  };
-  /**
-   * The visible part of the cut and the isosurface with 100,000 cells, and how many cells that
-   * took.
-   */
-  const coarser = async (viewer, late = null) => {
-    await viewer.page.evaluate(() => window.qtetViewer.setAttribute('quality', 'cells:100000'));
-    await viewer.waitForState('held');
-    if (late) await viewer.page.evaluate((words) => window.qtetViewer.setAttribute(...words), late);
-    await viewer.settle();
-    await viewer.screenshot('regions-held');
-    return {looked: await lookedAt(viewer), cells: (await viewer.counts()).tetrahedra};
-  };
-  const cutting = await open('clip=x:0.8');
-  const whole = {looked: await lookedAt(cutting), cells: (await cutting.counts()).tetrahedra};
-  const cut = await coarser(cutting);
-  const share = cut.looked / whole.looked;
-  const cells = cut.cells / whole.cells;
-  assert.ok(
-    share > 0.9 && cells < 0.6,
-    `the cut has ${share} of its cells when the mesh has ${cells}`,
-  );
-  // The curve shows the log's errors to the end, where only rounding is left, and the part that is
-  // here.
-  await cutting.page.getByText('Level of detail').click();
+/** The curve shows the log's errors to the end, where only rounding is left, and the part here. */
+async function showsWhichPartOfTheCurveIsHere({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&quality=cells:20000`);
+  await viewer.waitForState('held');
+  await viewer.page.getByText('Level of detail').click();
   assert.match(
-    await cutting.text('.curve figcaption'),
+    await viewer.text('.curve figcaption'),
     /^Error against bytes: [\d.]+\u202f% at .*, [\d.]+\u202f% at .*, 0\.00\d\u202f% at /,
   );
-  const [ahead, reached] = await cutting.page
+  const [ahead, reached] = await viewer.page
     .locator('qtet-viewer .curve path')
     .evaluateAll((paths) => paths.map((path) => path.getAttribute('d').split('L').length));
   assert.ok(reached > 2 && reached < ahead, `${reached} of ${ahead} points are reached`);
-  await cutting.page.getByRole('button', {name: 'Continue'}).click();
-  await cutting.waitForState('complete');
-  await cutting.settle();
-  await expectWhole(cutting, log);
-  assert.equal(await lookedAt(cutting), whole.looked);
-  // An isosurface passes more cells than that. A bit more of it must be here than without any
-  // request for it.
-  const iso = await coarser(await open('surface=off&iso=Density=2.5'));
-  const unasked = await coarser(await open('surface=off'), ['iso', 'Density=2.5']);
-  const more = iso.looked / unasked.looked;
-  assert.ok(
-    more > 1.08 && iso.cells < 1.02 * unasked.cells,
-    `the isosurface has ${more} times the triangles with ${iso.cells} instead of ` +
-      `${unasked.cells} cells`,
-  );
-  const viewer = await browser.open(`${server.url}?mesh=regions&clip=y:0.3`);
-  await viewer.waitForState('complete');
-  await expectWhole(viewer, log);
-  return (
-    `${Math.round(100 * share)} % of the cut is there with ${Math.round(100 * cells)} % of the ` +
-    `cells, of an isosurface ${more.toFixed(2)} times as much as unasked`
-  );
 }
 
 /** Guarded meshes: the page says so, and shows them once it has the token, with every transport. */
@@ -272,8 +207,8 @@ export const transportChecks = {
   worksUnderAStrictPolicy,
   namesEachFault,
   showsWhatATokenOpens,
+  showsWhichPartOfTheCurveIsHere,
   readsAFileOnlySoFar,
-  refinesWhatIsLookedAtFirst,
   readsALogFromAPlainWebServer,
   saysThatAFileIsMissing,
   takesRangesAndChunksFromAServer,

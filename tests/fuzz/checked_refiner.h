@@ -18,12 +18,9 @@ inline void abortUnlessSound(const Refiner& refiner) {
     for (const VertexId v : triangle)
       if (v >= vertices) std::abort();
   const std::int32_t size = std::int32_t{1} << refiner.index().positionBits;
-  const bool mayHaveHoles = refiner.index().layout == Layout::kRegions;
-  for (const LatticePoint& p : refiner.points()) {
-    if (mayHaveHoles && p == kHolePoint) continue;
+  for (const LatticePoint& p : refiner.points())
     for (const std::int32_t x : p)
       if (x < 0 || x >= size) std::abort();
-  }
 }
 
 /// REQUIRES: every chunk and this field's part of it were applied without an error.

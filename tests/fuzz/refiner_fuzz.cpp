@@ -41,13 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   index.positionBits = 10;
   index.fields = {{2, qtet::Association::kPoint}, {1, qtet::Association::kCell}};
   const std::uint32_t chunks = 1 + in.next() % kMaxChunks;
-  for (std::uint32_t c = 0; c < chunks; ++c) {
-    index.chunks.push_back(entryFrom(in, c));
-    if (c == 0) continue;
-    index.chunks[c].firstDependency = c - 1;
-    index.chunks[c].dependencyCount = 1;
-    index.dependencies.push_back(c - 1);
-  }
+  for (std::uint32_t c = 0; c < chunks; ++c) index.chunks.push_back(entryFrom(in, c));
   qtet::Refiner refiner(index);
   if (const std::uint8_t stop = in.next(); stop < 128) refiner.stopAtLevel(stop);
   bool whole[2] = {true, true};

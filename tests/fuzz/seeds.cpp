@@ -132,10 +132,8 @@ int main(int argc, char** argv) {
                    .fields = {"Velocity", "cell:Region"},
                    .have = {},
                    .target = {},
-                   .view = {},
                    .credit = 1 << 20};
-  open.have.mesh.leading = 3;
-  open.have.fields = {{"Velocity", HeldChunks{2}}};
+  open.have = {3, {{"Velocity", 2}}};
   write(folder / "message" / "open", toJson(ClientMessage(open)));
   write(folder / "message" / "credit", toJson(ClientMessage(CreditMessage{65536})));
   write(folder / "message" / "cancel", toJson(ClientMessage(CancelMessage{})));

@@ -270,11 +270,14 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   const LogIndex index = LogIndex::parse(good).value();
   Bytes reserved = patched(15, 1);
   testing::mendChecksums(reserved);
+  Bytes dependencies = patched(48, static_cast<std::uint8_t>(good[48] + 1));
+  testing::mendChecksums(dependencies);
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
   write(folder / "bad-version.major-3.qtet", patched(8, 3));
-  write(folder / "bad-value.regions-without-packets.qtet",
-        forged(good, [](LogIndex& i) { i.layout = Layout::kRegions; }));
+  Bytes regions = patched(12, 1);
+  testing::mendChecksums(regions);
+  write(folder / "bad-version.layout-1.qtet", regions);
   write(folder / "truncated.header.qtet", cut(63));
   write(folder / "truncated.manifest.qtet", cut(100));
   write(folder / "truncated.last-byte.qtet", cut(good.size() - 1));
@@ -301,8 +304,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
         forged(good, [](LogIndex& i) { i.fields[0].association = Association::kCell; }));
   write(folder / "bad-value.block-size.qtet",
         entry(1, [](ChunkEntry& e) { e.blocks[0].size += 8; }));
-  write(folder / "bad-value.dependencies.qtet",
-        forged(good, [](LogIndex& i) { i.dependencies.push_back(1); }));
+  write(folder / "bad-value.dependencies.qtet", dependencies);
   write(folder / "bad-value.reserved-bytes.qtet", reserved);
   write(folder / "bad-value.ends-within-a-level.qtet",
         entry(index.chunks.size() - 1, [](ChunkEntry& e) { e.endSlot = 1000; }));
@@ -361,10 +363,6 @@ int main(int argc, char** argv) {
   qtet::write(folder / "valid" / "gaps.qtet", qtet::logWithMissingValues());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);
   qtet::write(folder / "valid" / "original-cells.qtet", qtet::logWithOriginalCells());
-  qtet::FusionOptions bands;
-  bands.targetRatio = 0;
-  bands.bands = {100, 2, 1, 1};
-  qtet::write(folder / "valid" / "regions.qtet", qtet::logOf(gridMesh(4, 6), 800, bands));
   qtet::writeMustFail(folder / "must-fail", solid);
   qtet::writeBadClosing(folder / "must-fail", kept);
   qtet::write(folder / "must-fail" / "limit-exceeded.work.qtet",

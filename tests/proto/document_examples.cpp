@@ -47,9 +47,6 @@ std::string judgeHave(const std::string& text) {
 std::string judgeTarget(const std::string& text) {
   return judgeClient(R"({"type":"target","target":)" + text + "}");
 }
-std::string judgeView(const std::string& text) {
-  return judgeClient(R"({"type":"view","view":)" + text + "}");
-}
 
 const OpenapiSchemas& schemas() {
   static const OpenapiSchemas kSchemas;
@@ -75,9 +72,9 @@ std::string judgeTurn(const std::string& text) {
 }
 
 const std::map<std::string, std::function<std::string(const std::string&)>> kJudges{
-    {"json client", judgeClient}, {"json server", judgeServer},     {"json have", judgeHave},
-    {"json target", judgeTarget}, {"json view", judgeView},         {"json list", judgeList},
-    {"json mesh", judgeMesh},     {"json manifest", judgeManifest}, {"text transcript", judgeTurn}};
+    {"json client", judgeClient},     {"json server", judgeServer},  {"json have", judgeHave},
+    {"json target", judgeTarget},     {"json list", judgeList},      {"json mesh", judgeMesh},
+    {"json manifest", judgeManifest}, {"text transcript", judgeTurn}};
 
 /// A value or a turn, and the line that it begins in.
 struct Example {

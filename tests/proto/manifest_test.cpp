@@ -23,7 +23,6 @@ Json sampleJson() { return Json::parse(manifestToJson(sample())); }
 TEST(Manifest, isWrittenAsTheDocumentSays) {
   const Json json = sampleJson();
   EXPECT_EQ(json["generator"], "qtet 0.1.0");
-  EXPECT_EQ(json["layout"], "stream");
   EXPECT_EQ(json["source"], "comb.vtu");
   EXPECT_EQ(json["lattice"],
             (Json{{"bits", 16}, {"step", 0.1 + 0.2}, {"origin", {-1.5, 1e-17, 3.0}}}));

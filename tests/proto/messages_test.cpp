@@ -13,13 +13,8 @@ OpenMessage sampleOpen() {
   return {.mesh = "comb",
           .digest = std::string(64, 'a'),
           .fields = {"density", "velocity"},
-          .have = {{7, {{9, 12}, {20, 21}}}, {{"density", {3}}, {"velocity", {7, {{10, 12}}}}}},
+          .have = {7, {{"density", 3}, {"velocity", 7}}},
           .target = FieldErrorTarget{0.01, "density"},
-          .view = {{{1, 0, 0, 2}},
-                   {{0, 1, 0, 3}},
-                   std::array<double, 6>{0, 0, 0, 1, 2, 3},
-                   Isovalue{"density", {}, {0.5}},
-                   std::array<double, 3>{4, 5, 6}},
           .credit = 1 << 20};
 }
 
@@ -36,19 +31,12 @@ TEST(Messages, openIsReadBack) {
   EXPECT_EQ(open.mesh, "comb");
   EXPECT_EQ(open.digest, std::string(64, 'a'));
   EXPECT_EQ(open.fields, (std::vector<std::string>{"density", "velocity"}));
-  EXPECT_EQ(open.have.mesh.leading, 7u);
-  EXPECT_EQ(open.have.mesh.ranges, (std::vector<ChunkRange>{{9, 12}, {20, 21}}));
+  EXPECT_EQ(open.have.chunks, 7u);
   ASSERT_EQ(open.have.fields.size(), 2u);
   EXPECT_EQ(open.have.fields[0].first, "density");
-  EXPECT_EQ(open.have.fields[0].second.leading, 3u);
-  EXPECT_EQ(open.have.fields[1].second.ranges, (std::vector<ChunkRange>{{10, 12}}));
+  EXPECT_EQ(open.have.fields[0].second, 3u);
   EXPECT_EQ(std::get<FieldErrorTarget>(open.target).field, "density");
   EXPECT_EQ(std::get<FieldErrorTarget>(open.target).error, 0.01);
-  EXPECT_EQ(open.view.frustum, (std::vector<Plane>{{1, 0, 0, 2}}));
-  EXPECT_EQ(open.view.planes, (std::vector<Plane>{{0, 1, 0, 3}}));
-  EXPECT_EQ((*open.view.box)[5], 3);
-  EXPECT_EQ(open.view.isovalue->values, (std::vector<double>{0.5}));
-  EXPECT_EQ((*open.view.point)[2], 6);
   EXPECT_EQ(open.credit, 1u << 20);
 }
 
@@ -61,7 +49,7 @@ TEST(Messages, creditAndStopAreUnderstood) {
   EXPECT_TRUE(std::holds_alternative<CancelMessage>(*stop));
 }
 
-TEST(Messages, viewRequestsAreReadBack) {
+TEST(Messages, requestsAreReadBack) {
   const auto again = [](const std::string& json) {
     const auto message = parseClientMessage(json);
     return message ? toJson(*message) : message.error().message;
@@ -72,20 +60,9 @@ TEST(Messages, viewRequestsAreReadBack) {
         R"({"target":{"tetrahedra":9},"type":"target"})",
         R"({"target":{"error":0.5,"field":"a"},"type":"target"})",
         R"({"target":{"boundaryError":0.25},"type":"target"})",
-        R"({"target":null,"type":"target"})", R"({"type":"view","view":null})",
-        R"({"type":"view","view":{"point":[1.0,2.0,3.0]}})",
-        R"({"type":"view","view":{"isovalue":{"component":2,"field":"a","values":[0.5,1.0]}}})",
-        R"({"type":"pause"})", R"({"type":"resume"})",
-        R"({"have":{"chunks":1,"fields":{"a":1},"ranges":[[3,4]]},"type":"resume"})",
-        R"({"type":"cancel"})"})
+        R"({"target":null,"type":"target"})", R"({"type":"pause"})", R"({"type":"resume"})",
+        R"({"have":{"chunks":1,"fields":{"a":1}},"type":"resume"})", R"({"type":"cancel"})"})
     EXPECT_EQ(again(json), json);
-}
-
-TEST(Messages, neighbouringRangesBecomeOne) {
-  const auto message =
-      parseClientMessage(R"({"type":"resume","have":{"chunks":1,"ranges":[[3,4],[4,9]]}})");
-  ASSERT_TRUE(message);
-  EXPECT_EQ(std::get<ResumeMessage>(*message).have->mesh.ranges, (std::vector<ChunkRange>{{3, 9}}));
 }
 
 /// At the last legal nesting a message is only strange, past it it is refused before anything is
@@ -107,57 +84,41 @@ TEST(Messages, membersOfLaterVersionsAreIgnored) {
 }
 
 TEST(Messages, wrongShapesAreBadValues) {
-  for (
-      const char* json :
-      {"",
-       "{",
-       "null",
-       "7",
-       "[]",
-       "\"stop\"",
-       "{}",
-       R"({"type":7})",
-       R"({"type":"jump"})",
-       R"({"type":"credit"})",
-       R"({"type":"credit","bytes":-1})",
-       R"({"type":"credit","bytes":1.5})",
-       R"({"type":"credit","bytes":"1"})",
-       R"({"type":"credit","bytes":9007199254740992})",
-       R"({"type":"open","credit":1})",
-       R"({"type":"open","mesh":"a"})",
-       R"({"type":"open","mesh":"","credit":1})",
-       R"({"type":"open","mesh":["a"],"credit":1})",
-       R"({"type":"open","mesh":"a","fields":"x","credit":1})",
-       R"({"type":"open","mesh":"a","fields":[1],"credit":1})",
-       R"({"type":"open","mesh":"a","have":5,"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":-1},"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":1048577},"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":1,"fields":{"x":2}},"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"fields":[]},"credit":1})",
-       R"({"type":"open","mesh":"a","digest":"abc","credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[3,5]]},"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,5]]},"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[6,8],[5,6]]},"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5]]},"credit":1})",
-       R"({"type":"open","mesh":"a","have":{"chunks":3,"ranges":[[5,8]],"fields":{"x":{"chunks":3,"ranges":[[7,9]]}}},"credit":1})",
-       R"({"type":"view"})",
-       R"({"type":"view","view":[]})",
-       R"({"type":"view","view":{"frustum":[[1,2,3]]}})",
-       R"({"type":"view","view":{"frustum":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
-       R"({"type":"view","view":{"planes":[[1,2,3,4],[1,2,3,4],[1,2,3,4],[1,2,3,4]]}})",
-       R"({"type":"view","view":{"box":[0,0,0,1,1]}})",
-       R"({"type":"view","view":{"box":[0,0,2,1,1,1]}})",
-       R"({"type":"view","view":{"isovalue":{"field":"a","values":[1,2,3,4,5,6,7,8,9]}}})",
-       R"({"type":"view","view":{"isovalue":{"field":"a","component":16,"values":[1]}}})",
-       R"({"type":"view","view":{"isovalue":{"field":"a","component":-1,"values":[1]}}})",
-       R"({"type":"view","view":{"point":[1,2,null]}})",
-       R"({"type":"target"})",
-       R"({"type":"target","target":{}})",
-       R"({"type":"target","target":{"level":1,"bytes":2}})",
-       R"({"type":"target","target":{"error":0.1}})",
-       R"({"type":"target","target":{"boundaryError":-1}})",
-       R"({"type":"stop"} {"type":"stop"})",
-       "{\"type\":\"stop\xFF\"}"})
+  for (const char* json :
+       {"",
+        "{",
+        "null",
+        "7",
+        "[]",
+        "\"stop\"",
+        "{}",
+        R"({"type":7})",
+        R"({"type":"jump"})",
+        R"({"type":"credit"})",
+        R"({"type":"credit","bytes":-1})",
+        R"({"type":"credit","bytes":1.5})",
+        R"({"type":"credit","bytes":"1"})",
+        R"({"type":"credit","bytes":9007199254740992})",
+        R"({"type":"open","credit":1})",
+        R"({"type":"open","mesh":"a"})",
+        R"({"type":"open","mesh":"","credit":1})",
+        R"({"type":"open","mesh":["a"],"credit":1})",
+        R"({"type":"open","mesh":"a","fields":"x","credit":1})",
+        R"({"type":"open","mesh":"a","fields":[1],"credit":1})",
+        R"({"type":"open","mesh":"a","have":5,"credit":1})",
+        R"({"type":"open","mesh":"a","have":{"chunks":-1},"credit":1})",
+        R"({"type":"open","mesh":"a","have":{"chunks":1048577},"credit":1})",
+        R"({"type":"open","mesh":"a","have":{"chunks":1,"fields":{"x":2}},"credit":1})",
+        R"({"type":"open","mesh":"a","have":{"fields":[]},"credit":1})",
+        R"({"type":"open","mesh":"a","digest":"abc","credit":1})",
+        R"({"type":"view","view":null})",
+        R"({"type":"target"})",
+        R"({"type":"target","target":{}})",
+        R"({"type":"target","target":{"level":1,"bytes":2}})",
+        R"({"type":"target","target":{"error":0.1}})",
+        R"({"type":"target","target":{"boundaryError":-1}})",
+        R"({"type":"stop"} {"type":"stop"})",
+        "{\"type\":\"stop\xFF\"}"})
     EXPECT_EQ(refusal(json), ErrorCode::kBadValue) << json;
 }
 
@@ -190,17 +151,15 @@ TEST(Messages, everyTruncationIsRefused) {
 }
 
 TEST(Messages, theServersWordsAreReadBack) {
-  const auto opened = parseServerMessage(
-      toJson(OpenedMessage{3, "comb", std::string(64, '0'), 5000000000ull, 77, "regions"}));
+  const auto opened =
+      parseServerMessage(toJson(OpenedMessage{3, "comb", std::string(64, '0'), 5000000000ull, 77}));
   ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ(std::get<OpenedMessage>(*opened).bytes, 5000000000ull);
   EXPECT_EQ(std::get<OpenedMessage>(*opened).stream, 3u);
   EXPECT_EQ(std::get<OpenedMessage>(*opened).planned, 77u);
-  EXPECT_EQ(std::get<OpenedMessage>(*opened).layout, "regions");
-  const auto planned = parseServerMessage(toJson(PlannedMessage{3, 5000000000ull, 2}));
+  const auto planned = parseServerMessage(toJson(PlannedMessage{3, 5000000000ull}));
   ASSERT_TRUE(planned);
   EXPECT_EQ(std::get<PlannedMessage>(*planned).planned, 5000000000ull);
-  EXPECT_EQ(std::get<PlannedMessage>(*planned).view, 2u);
   EXPECT_EQ(std::get<DoneMessage>(*parseServerMessage(toJson(DoneMessage{4}))).stream, 4u);
   EXPECT_EQ(std::get<StoppedMessage>(*parseServerMessage(toJson(StoppedMessage{5}))).stream, 5u);
   EXPECT_EQ(std::get<ErrorMessage>(

@@ -27,8 +27,6 @@ class CheapLog {
   explicit CheapLog(std::uint32_t levels) {
     index.positionBits = kBits;
     index.chunks.resize(2);
-    index.dependencies = {0};
-    index.chunks[1].dependencyCount = 1;
     index.chunks[1].firstLevel = 1;
     index.chunks[1].lastLevel = levels;
     index.chunks[1].records = levels;

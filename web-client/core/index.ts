@@ -37,5 +37,4 @@ export {logTicks, niceTicks, type Tick, type Ticks} from './picture/ticks';
 export {kOpacityPath, transferTables, type TransferTables} from './picture/transfer';
 export type {TriangleSoup} from './picture/triangle_soup';
 export type {CoarseCells, VolumeCells} from './picture/volume';
-export {kNoViewRequest, type ViewRequest} from './protocol/view_request';
 export type {FromWorker, Snapshot, Source, StreamState} from './session/worker_messages';

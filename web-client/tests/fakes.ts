@@ -189,23 +189,8 @@ export class FakeCodec implements Codec {
   fieldChunksApplied(field: number): number {
     return this.fieldChunks[field]!;
   }
-  get headChunks(): number {
-    return this.log.chunks;
-  }
-  dependency(chunk: number): number {
-    return Math.max(0, chunk - 1);
-  }
-  packetBox(): number[] {
-    return [0, 0, 0, 255, 255, 255];
-  }
   brings(): {tetrahedra: number; vertices: number; boundaryTriangles: number} {
     return {tetrahedra: 1, vertices: 0, boundaryTriangles: 0};
-  }
-  applied(chunk: number): boolean {
-    return chunk < this.chunksApplied;
-  }
-  fieldApplied(field: number, chunk: number): boolean {
-    return chunk < this.fieldChunks[field]!;
   }
   get level(): number {
     return Math.max(0, this.chunksApplied - 1);

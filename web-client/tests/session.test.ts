@@ -8,7 +8,6 @@ import {parseFrame} from '../core/protocol/messages';
 import {Session} from '../core/session/session';
 import {SocketTransport} from '../core/transport/socket_transport';
 import type {Transport} from '../core/transport/transport';
-import {kNoViewRequest, type ViewRequest} from '../core/protocol/view_request';
 import type {FromWorker, Snapshot, Source} from '../core/session/worker_messages';
 import {
   errorsOf,
@@ -70,8 +69,7 @@ function start(source: Partial<Source> = {}): FakeSocket {
   return sockets.at(-1)!;
 }
 
-/** Servers that know targets and pauses report the layout. */
-function opened(socket: FakeSocket, stream: number, layout?: string): void {
+function opened(socket: FakeSocket, stream: number): void {
   socket.deliver(
     JSON.stringify({
       type: 'opened',
@@ -80,7 +78,6 @@ function opened(socket: FakeSocket, stream: number, layout?: string): void {
       digest: 'd1',
       bytes: 1000,
       planned: 100,
-      layout,
     }),
   );
 }
@@ -396,10 +393,10 @@ describe('a limit', () => {
 describe('a target', () => {
   test('stopsTheServerAtTheLevelThatTheLimitReaches', () => {
     const socket = start({limit: {kind: 'cells', value: 2}});
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
     expect(opens()).toMatchObject([{credit: 1}, {target: {level: 1}}]);
-    opened(socket, 2, 'stream');
+    opened(socket, 2);
     for (const chunk of [0, 1]) {
       socket.deliver(meshFrame(2, chunk));
       socket.deliver(fieldFrame(2, chunk, 0));
@@ -414,7 +411,7 @@ describe('a target', () => {
 
   test('thatWasNotReachedIsAnError', () => {
     const socket = start({limit: {kind: 'bytes', value: fakeHead(kLog).length + 50}});
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
     socket.deliver(meshFrame(2, 0));
     socket.deliver(JSON.stringify({type: 'done', stream: 2}));
@@ -423,23 +420,23 @@ describe('a target', () => {
 
   test('ofBeforeMayBeDoneWhileTheNewOneIsOnItsWay', () => {
     const socket = start({limit: {kind: 'cells', value: 1}});
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
-    opened(socket, 2, 'stream');
+    opened(socket, 2);
     session.setLimit({kind: 'cells', value: 2});
     socket.deliver(meshFrame(2, 0));
     socket.deliver(fieldFrame(2, 0, 0));
     socket.deliver(JSON.stringify({type: 'done', stream: 2}));
     expect(errors()).toEqual([]);
     expect(opens().at(-1)).toMatchObject({target: {level: 1}, have: {chunks: 1, fields: {p: 1}}});
-    opened(socket, 3, 'stream');
+    opened(socket, 3);
     socket.deliver(JSON.stringify({type: 'done', stream: 3})); // the current one
     expect(errors()).toEqual(['incomplete']);
   });
 
   test('standsInTheOpenOfAConnectionThatComesBack', () => {
     const socket = start({limit: {kind: 'cells', value: 3}});
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
     socket.lose(1006);
     vi.advanceTimersByTime(kLongestDelayMs);
@@ -449,7 +446,7 @@ describe('a target', () => {
 
   test('aPauseKeepsTheStreamAndTheCreditOfWhatCameMeanwhile', () => {
     const socket = start();
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
     session.pause();
     expect(socket.sentOf('pause')).toHaveLength(1);
@@ -466,7 +463,7 @@ describe('a target', () => {
 
   test('aPauseBeforeTheHeadIsHereGoesOnWithTheSameStream', () => {
     const socket = start({fields: null});
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     session.pause();
     session.resume();
     expect([opens().length, socket.sentOf('resume').length]).toEqual([1, 1]);
@@ -488,7 +485,7 @@ describe('a target', () => {
 
   test('aPauseInWhichAnotherFieldWasAskedForEndsWithAnOpen', () => {
     const socket = start();
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
     session.pause();
     session.want([1]);
@@ -498,7 +495,7 @@ describe('a target', () => {
 
   test('aLimitThatIsSetDuringAPauseEndsIt', () => {
     const socket = start();
-    opened(socket, 1, 'stream');
+    opened(socket, 1);
     socket.deliver(headFrame(1, kLog));
     session.pause();
     session.setLimit({kind: 'cells', value: 1});
@@ -517,10 +514,10 @@ describe('pausing', () => {
     socket.deliver(meshFrame(1, 0));
     socket.deliver(fieldFrame(1, 0, 0));
     session.pause();
-    expect([socket.sentOf('stop').length, states().at(-1)]).toEqual([1, 'paused']);
+    expect([socket.sentOf('pause').length, states().at(-1)]).toEqual([1, 'paused']);
     session.resume();
-    expect(opens().at(-1)).toMatchObject({have: {chunks: 1, fields: {p: 1}}});
-    sendAll(socket, 2, 0, 1);
+    expect([socket.sentOf('resume').length, opens().length]).toEqual([1, 1]);
+    sendAll(socket, 1, 0, 1);
     expect(states().at(-1)).toBe('complete');
   });
 
@@ -541,7 +538,7 @@ describe('pausing', () => {
     sockets[0]!.deliver(headFrame(1, kLog));
     session.pause();
     session.resume();
-    sendAll(sockets[0]!, 3, 0);
+    sendAll(sockets[0]!, 2, 0);
     expect(states().at(-1)).toBe('complete');
   });
 
@@ -645,7 +642,6 @@ function carrier(what: Partial<Transport>): Transport {
     resume: () => true,
     aim: () => undefined,
     applied: () => undefined,
-    look: () => undefined,
     disconnect: () => undefined,
     ...what,
   };
@@ -667,68 +663,4 @@ test('creditIsGivenBackOnceForWhatWasApplied', () => {
   giving.frame(parseFrame(fieldFrame(1, 0, 0)));
   giving.setLimit(kFull); // decoding continues without a new byte
   expect(given).toEqual([fakeHead(kLog).length, 2 * kFakeBlockBytes, kFakeBlockBytes]);
-});
-
-/** Chunk 0 is the head, the others are packets. The transport only notes view requests. */
-function telling(log: FakeLog): {session: Session; publisher: Publisher; views: ViewRequest[]} {
-  const parts = new FakeCodec(log);
-  Object.defineProperty(parts, 'headChunks', {value: 1});
-  const assembler = new Assembler(parts, kFakeValues);
-  const its = new Publisher(assembler, () => undefined);
-  const views: ViewRequest[] = [];
-  const started = new Session(
-    assembler,
-    its,
-    () => undefined,
-    () => carrier({look: (view) => views.push(view)}),
-  );
-  started.start({
-    url: 'ws://x',
-    log: '',
-    transport: 'auto',
-    mesh: 'm',
-    fields: ['p'],
-    limit: kFull,
-  });
-  started.connected();
-  return {session: started, publisher: its, views};
-}
-
-test('aViewFromBeforeTheHeadIsToldBehindIt', () => {
-  const log: FakeLog = {fields: ['p'], chunks: 3};
-  const {session: its, views} = telling(log);
-  its.look({...kNoViewRequest, point: [1, 2, 3]});
-  expect(views).toEqual([]);
-  its.frame(parseFrame(headFrame(1, log)));
-  expect(views).toMatchObject([{point: [1, 2, 3]}]);
-});
-
-test('whatIsosurfacesAreShownIsToldByFieldAndValue', () => {
-  const log: FakeLog = {fields: ['p'], cellFields: ['p'], chunks: 3};
-  const {session: its, publisher: publishing, views} = telling(log);
-  its.frame(parseFrame(headFrame(1, log)));
-  views.length = 0; // without that of the head
-  const show = (field: number, values: number[]): void => {
-    publishing.show({...kPlainDisplay, isosurfaces: {scalar: {field, component: -1}, values}});
-    publishing.onLayers(Float32Array.of(1, 1, 1));
-  };
-  show(0, [0, 0.5]);
-  // the field's range is 0 to 255
-  expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [0, 127.5]});
-  show(0, [0, 0.5]);
-  expect(views).toHaveLength(1);
-  publishing.onLayers(Float32Array.of(60000, 1, 1)); // the same one, after refining
-  expect(views).toHaveLength(2);
-  show(0, [0.2]);
-  expect(views.at(-1)!.isovalue).toEqual({field: 'p', values: [51]});
-  show(
-    0,
-    Array.from({length: 9}, (_, i) => i / 9),
-  ); // more than a view may have: the box has to do
-  expect(views.at(-1)!.isovalue).toBeNull();
-  show(1, [0.5]); // a cell field
-  expect(views.at(-1)!).toMatchObject({
-    isovalue: null,
-    surfaceBoxes: expect.any(Uint8Array) as unknown,
-  });
 });

@@ -3,7 +3,6 @@ import {kFirstDelayMs, kLongestDelayMs, reconnectDelayMs} from '../core/transpor
 import type {Frame, OpenRequest} from '../core/protocol/messages';
 import {kCreditShare, SocketTransport} from '../core/transport/socket_transport';
 import type {TransportHandlers} from '../core/transport/transport';
-import {kNoViewRequest, type ViewRequest} from '../core/protocol/view_request';
 import {FakeSocket, frame} from './fakes';
 
 const kOpen: OpenRequest = {mesh: 'm', fields: [], have: {chunks: 0, fields: {}}, credit: 80};
@@ -79,67 +78,6 @@ test('anotherStreamForgetsThePiecesOfTheOneBefore', () => {
   transport.open(kOpen);
   sockets[0]!.deliver(frame({...piece, stream: 2, parts: 1}));
   expect(frames.map(({payload}) => [...payload])).toEqual([[1]]);
-});
-
-test('aViewIsToldOnceAndOnlyWhereItMatters', () => {
-  const socket = new FakeSocket();
-  const seeing = new SocketTransport(
-    'ws://x/v1/stream',
-    handlers,
-    () => socket,
-    () => 0.5,
-    {lattice: {origin: [0, 0, 0], step: 1, size: 256}},
-  );
-  seeing.connect();
-  socket.accept();
-  seeing.open(kOpen);
-  const near = (x: number): ViewRequest => ({...kNoViewRequest, point: [x, 0, 0]});
-  seeing.look(near(1));
-  expect(socket.sentOf('view')).toEqual([]); // the layout is not known yet
-  socket.deliver(
-    '{"type":"opened","stream":1,"mesh":"m","digest":"d","bytes":1,"planned":1,"layout":"regions"}',
-  );
-  for (const x of [2, 2, 3]) seeing.look(near(x));
-  // The boxes follow from the isovalue that the server knows.
-  for (const inside of [0, 1])
-    seeing.look({
-      ...kNoViewRequest,
-      surfaceBoxes: Uint8Array.of(inside),
-      isovalue: {field: 'p', values: [1]},
-    });
-  expect(socket.sentOf('view').map(({view}) => view)).toEqual([
-    {point: [1, 0, 0]},
-    {point: [2, 0, 0]},
-    {point: [3, 0, 0]},
-    {isovalue: {field: 'p', values: [1]}},
-  ]);
-});
-
-test('aViewThatTheOpenHasToldIsNotToldAgain', () => {
-  const socket = new FakeSocket();
-  const seeing = new SocketTransport(
-    'ws://x/v1/stream',
-    handlers,
-    () => socket,
-    () => 0.5,
-    {lattice: {origin: [0, 0, 0], step: 1, size: 256}},
-  );
-  seeing.connect();
-  socket.accept();
-  const view: ViewRequest = {...kNoViewRequest, point: [4, 0, 0]};
-  const openedAgain = (stream: number): void => {
-    seeing.open({...kOpen, view});
-    const about = {mesh: 'm', digest: 'd', bytes: 1, planned: 1, layout: 'regions'};
-    socket.deliver(JSON.stringify({type: 'opened', stream, ...about}));
-    seeing.look({...view});
-  };
-  openedAgain(1);
-  openedAgain(2);
-  expect(socket.sentOf('open').map((open) => open.view)).toEqual([
-    {point: [4, 0, 0]},
-    {point: [4, 0, 0]},
-  ]);
-  expect(socket.sentOf('view')).toEqual([]);
 });
 
 test('creditGoesBackInPortionsOfAnEighthOfTheWindow', () => {

@@ -1,26 +1,22 @@
-// A viewer's requests to its worker: what to show, and what to refine first. Each request is sent
-// only if it has changed.
+// A viewer's requests to its worker: what to show. A request is sent only if it has changed.
 
 import {sharesOf} from '../core/layers/field_values';
 import {fieldLayers} from '../core/layers/layers';
 import {kPlainDisplay, type Display} from '../core/picture/display';
-import type {Vector, Plane} from '../core/protocol/geometry';
+import type {Plane} from '../core/protocol/geometry';
 import type {Client} from '../core/session/client';
 import type {ShownMesh} from './page/shown_mesh';
 import {planeOf} from './settings/clip_plane';
 import {shownScalar, type Settings, type ViewAttribute} from './settings/settings';
 
 export class Requests {
-  /** The place that is pointed at, on the lattice. */
-  point: Vector | null = null;
   private display = '';
-  private view = '';
 
   constructor(private readonly client: Client) {}
 
   /** Must be called before another mesh: the worker knows nothing about it. */
   forget(): void {
-    this.display = this.view = '';
+    this.display = '';
   }
 
   /** Returns true if the display has changed. */
@@ -30,13 +26,6 @@ export class Requests {
     this.display = text;
     this.client.show(display);
     return true;
-  }
-
-  look(frustum: Plane[], planes: Plane[]): void {
-    const view = {frustum, planes, point: this.point};
-    const text = JSON.stringify(view);
-    if (text !== this.view) this.client.look(view);
-    this.view = text;
   }
 }
 

@@ -15,7 +15,7 @@ import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
 import {rangeOf, settingsFor, ShownMesh} from './page/shown_mesh';
 import {Shell} from './panels/shell';
-import {displayOf, planesOf, Requests} from './requests';
+import {displayOf, Requests} from './requests';
 import {readSettings, type Settings, type ShownRange} from './settings/settings';
 import type {Later, LaterHost} from './later';
 import {StreamControl} from './stream_control';
@@ -31,6 +31,8 @@ export class Viewing implements LaterHost {
   settings: Settings;
   /** The values that the colours span; null if nothing is coloured. */
   range: ShownRange | null = null;
+  /** The place that is pointed at, on the lattice. */
+  private pointed: Vector | null = null;
   readonly stream: StreamControl;
   readonly notices: Notices;
   private readonly graphics: Graphics;
@@ -59,10 +61,7 @@ export class Viewing implements LaterHost {
     );
     this.camera = new CameraWatch(
       () => (this.view && this.mesh.snapshot ? this.view.cameraState : null),
-      (state) => {
-        this.lookAt();
-        page.dispatch('camera-change', state);
-      },
+      (state) => page.dispatch('camera-change', state),
     );
     this.graphics = new Graphics(page.root, this.notices, {
       opened: (view) => this.begin(view),
@@ -145,8 +144,7 @@ export class Viewing implements LaterHost {
   }
 
   centre(): void {
-    const {point} = this.requests;
-    if (point) this.view?.centre(point);
+    if (this.pointed) this.view?.centre(this.pointed);
     else this.look(null);
   }
 
@@ -164,8 +162,7 @@ export class Viewing implements LaterHost {
   }
 
   pointAt(point: Vector | null): void {
-    this.requests.point = point;
-    this.lookAt();
+    this.pointed = point;
   }
 
   failed(code: string, message: string): void {
@@ -304,12 +301,6 @@ export class Viewing implements LaterHost {
     const display = displayOf(settings, mesh, (name) => page.read(name));
     if (!this.requests.show(display)) return;
     shell?.progress.follow(display.color ? [display.color.field] : [], settings.limit);
-    this.lookAt();
-  }
-
-  /** Tells a log of regions what to refine first. */
-  private lookAt(): void {
-    this.requests.look(this.view?.pose.frustum ?? [], planesOf(this.settings, this.mesh));
   }
 
   private showRange(): void {

@@ -1,7 +1,7 @@
 // The camera of one mesh: where the mesh lies, and from where it is seen.
 
 import type {TriangleSoup} from '../core/picture/triangle_soup';
-import type {Plane, Vector} from '../core/protocol/geometry';
+import type {Vector} from '../core/protocol/geometry';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
 import type {Eye, Lens} from './lens';
@@ -187,7 +187,6 @@ export class MeshCamera {
       camera: state,
       fitted,
       direction: scaled(lens.axes[2], -1),
-      frustum: fitted || !this.hasMesh ? [] : frustumOf(toCanvas),
       frameMs,
     };
   }
@@ -243,25 +242,4 @@ function seenPart(focus: number[], bounds: number[], direction: Vector): number[
   const seen = [...focus];
   seen[axis] = seen[axis + 3] = bounds[sides[axis]!]!;
   return seen;
-}
-
-/** The planes of a canvas's cube, with the inside above. */
-function frustumOf(toCanvas: Matrix): Plane[] {
-  const row = (i: number): number[] => [0, 4, 8, 12].map((column) => toCanvas[column + i]!);
-  const w = row(3);
-  return [0, 1, 2].flatMap((i) =>
-    [1, -1].map((sign) => {
-      const [x, y, z, constant] = row(i).map((value, k) => w[k]! + sign * value) as [
-        number,
-        number,
-        number,
-        number,
-      ];
-      const length = Math.hypot(x, y, z);
-      return {
-        normal: [x / length, y / length, z / length] as Vector,
-        offset: -constant / length,
-      };
-    }),
-  );
 }

@@ -1,7 +1,7 @@
 // The pose of a view: it turns points of the lattice into places on the canvas and back. It is
 // plain data, so that it can pass between threads.
 
-import type {Vector, Plane} from '../core/protocol/geometry';
+import type {Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
 import type {CameraState} from './camera';
 import type {Axes} from './lens';
@@ -18,11 +18,6 @@ export interface Pose {
   fitted: boolean;
   /** The direction of the camera, as a unit normal in lattice coordinates. */
   direction: Vector;
-  /**
-   * The frustum, as planes in lattice coordinates with the inside above; empty while the whole mesh
-   * is fitted into the picture.
-   */
-  frustum: Plane[];
   /** The time of the last frame on the thread that draws. */
   frameMs: number;
 }

@@ -10,9 +10,6 @@ from .log import POINT, Log
 
 __all__ = ["Arrays", "arrays_of"]
 
-# The content of a slot whose chunk has not arrived (qtet.h, "Sizes").
-_NO_POINT = 0xFFFFFFFF
-
 
 @dataclass
 class Arrays:
@@ -60,16 +57,8 @@ def arrays_of(log: Log, fields=None) -> Arrays:
         log.copy_points(points.ctypes.data_as(ctypes.c_void_p), 3 * vertices, True)
     cells = _copied(log.c.qtet_log_tetrahedra(log.handle), tetrahedra, 4)
     boundary = _copied(log.c.qtet_log_boundary(log.handle), triangles, 3)
-    # Logs of the layout `regions` have empty slots between their bands.
-    lattice = _copied(log.c.qtet_log_lattice_points(log.handle), vertices, 3)
-    is_point, is_cell = (lattice != _NO_POINT).any(axis=1), cells.any(axis=1)
-    numbers = numpy.cumsum(is_point, dtype="int32") - 1
-    out = Arrays(
-        points[is_point], numbers[cells[is_cell]], numbers[boundary[boundary.any(axis=1)]], {}, {}
-    )
+    out = Arrays(points, cells.view("int32"), boundary.view("int32"), {}, {})
     for number, name, info in wanted:
-        if info.association == POINT:
-            out.point_data[name] = _field(log, number)[is_point]
-        else:
-            out.cell_data[name] = _field(log, number)[is_cell]
+        data = out.point_data if info.association == POINT else out.cell_data
+        data[name] = _field(log, number)
     return out

@@ -101,7 +101,7 @@ class _Options(ctypes.Structure):
         ("valueCodec", _u32),
         ("keepOrder", _u32),
         ("lossless", _u32),
-        ("cellsPerPacket", _u32),
+        ("reserved", _u32),
         ("threads", _u32),
         ("maxBoundaryError", _f64),
         ("maxFieldErrors", ctypes.POINTER(_NamedNumber)),
@@ -276,10 +276,8 @@ def _tool_words(options):
     for key, value in options.items():
         name = "--" + names.get(key, key.removesuffix("s") if isinstance(value, dict) else key)
         name = name.replace("_", "-")
-        if value is None or value is False or (key == "cells_per_packet" and value == 0):
+        if value is None or value is False:
             continue
-        if key == "cells_per_packet":
-            words += ["--layout", "regions"]
         if value is True:
             words += [name]
         elif isinstance(value, dict):
@@ -326,7 +324,6 @@ def simplify(
     keep_order: bool = False,
     lossless: bool = False,
     original_ids: bool = False,
-    cells_per_packet: int = 0,
     threads: int = 1,
     max_boundary_error: float | None = None,
     max_field_errors: Mapping[str, float] | None = None,
@@ -354,7 +351,6 @@ def simplify(
     algorithm, placement, measure, value_codec   the words of `qtet simplify --help`
     keep_order, lossless  keep the input's numbering; its own numbers
     original_ids          keep the cell field OriginalCellId (int32) for the last level alone
-    cells_per_packet      100 and more: the layout `regions`, with packets of so many cells
     threads               the log does not depend on it
     max_boundary_error    coarsest level: the boundary's distance, over the diagonal
     max_field_errors      {name: rms error over the field's range}
@@ -408,7 +404,7 @@ def simplify(
     options.keepOrder, options.lossless = bool(keep_order), bool(lossless)
     options.originalIds = bool(original_ids)
     options.baseCells = int(base_cells or 0)
-    options.cellsPerPacket, options.threads = cells_per_packet, threads
+    options.threads = threads
     options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
     options.fieldWeights, options.fieldWeightCount = _named(field_weights)
     options.regions = regions.encode() if regions is not None else None

@@ -22,8 +22,6 @@ __all__ = ["Log", "QtetError", "grid_of", "read", "surface_of"]
 
 # A float keeps a lattice of this many bits apart where the origin is not far off.
 _FLOAT_BITS = 20
-# The content of a slot whose chunk has not arrived (qtet.h, "Sizes").
-_NO_POINT, _NO_TETRAHEDRON, _NO_TRIANGLE = b"\xff" * 12, bytes(16), bytes(12)
 _ARRAYS = {
     "float32": core.vtkFloatArray,
     "float64": core.vtkDoubleArray,
@@ -54,32 +52,7 @@ def _memory(values):
     )
 
 
-class _Kept:
-    """Which slots of one kind hold something, in logs of layout `regions` between bands; everywhere
-    else all do, and nothing is looked at one by one."""
-
-    def __init__(self, address, count, width, hole):
-        self.ids = None  # all
-        packed = ctypes.string_at(address, 4 * width * count) if count else b""
-        if hole in packed:
-            words = array.array("i", packed)
-            holes = array.array("i", hole)
-            self.ids = [i for i in range(count) if words[width * i : width * i + width] != holes]
-        self.count = count if self.ids is None else len(self.ids)
-
-    def of(self, values):
-        """The tuples of a VTK array that stay."""
-        if self.ids is None:
-            return values
-        wanted = core.vtkIdList()
-        for i in self.ids:
-            wanted.InsertNextId(i)
-        kept = _sized(values.NewInstance(), values.GetNumberOfComponents(), self.count)
-        values.GetTuples(wanted, kept)
-        return kept
-
-
-def _points(log, kept):
+def _points(log):
     info, vertices = log.info, log.counts()[0]
     far = max(abs(x) for x in info.latticeOrigin) > info.latticeStep * 2**_FLOAT_BITS
     is_double = info.latticeBits > _FLOAT_BITS or far
@@ -87,24 +60,17 @@ def _points(log, kept):
     if vertices:
         log.copy_points(_memory(values), 3 * vertices, is_double)
     points = core.vtkPoints()
-    points.SetData(kept.of(values))
+    points.SetData(values)
     return points
 
 
-def _cells(source, kept, corners, count, vertices):
-    """vtkCellArray of the kept ones of `count` cells, from the library's own indices; `vertices`
-    are those kept."""
-    connectivity = _sized(core.vtkTypeInt32Array(), corners, count)
+def _cells(source, corners, count):
+    """vtkCellArray of `count` cells, from the library's own indices."""
+    connectivity = _sized(core.vtkTypeInt32Array(), 1, corners * count)
     if count:
         ctypes.memmove(_memory(connectivity), source, 4 * corners * count)
-    connectivity = kept.of(connectivity)
-    if vertices.ids is not None:
-        numbers = {slot: i for i, slot in enumerate(vertices.ids)}
-        for i in range(corners * kept.count):
-            connectivity.SetValue(i, numbers[connectivity.GetValue(i)])
-    connectivity.SetNumberOfComponents(1)
-    offsets = _sized(core.vtkTypeInt32Array(), 1, kept.count + 1)
-    starts = array.array("i", range(0, corners * kept.count + 1, corners))
+    offsets = _sized(core.vtkTypeInt32Array(), 1, count + 1)
+    starts = array.array("i", range(0, corners * count + 1, corners))
     ctypes.memmove(_memory(offsets), starts.buffer_info()[0], 4 * len(starts))
     cells = model.vtkCellArray()
     cells.SetData(offsets, connectivity)
@@ -128,44 +94,36 @@ def _field(log, number):
     return values
 
 
-def _add_fields(log, grid, fields, kept):
-    """`kept` by association: what of its slots stays."""
+def _add_fields(log, grid, fields, associations):
     for number, name, info in log.fields_of(fields):
-        if info.association not in kept:
+        if info.association not in associations:
             continue
         data = grid.GetCellData() if info.association == CELL else grid.GetPointData()
-        values = kept[info.association].of(_field(log, number))
+        values = _field(log, number)
         values.SetName(name)
         data.AddArray(values)
         if info.components == 1 and data.GetScalars() is None:
             data.SetActiveScalars(values.GetName())
 
 
-def _vertices(log):
-    return _Kept(log.c.qtet_log_lattice_points(log.handle), log.counts()[0], 3, _NO_POINT)
-
-
 def grid_of(log, fields=None):
     """The log's present mesh as a vtkUnstructuredGrid of tetrahedra, with the named fields (None:
     all)."""
-    source, count = log.c.qtet_log_tetrahedra(log.handle), log.counts()[1]
-    vertices, cells = _vertices(log), _Kept(source, count, 4, _NO_TETRAHEDRON)
     grid = model.vtkUnstructuredGrid()
-    grid.SetPoints(_points(log, vertices))
-    grid.SetCells(model.VTK_TETRA, _cells(source, cells, 4, count, vertices))
-    _add_fields(log, grid, fields, {POINT: vertices, CELL: cells})
+    grid.SetPoints(_points(log))
+    cells = _cells(log.c.qtet_log_tetrahedra(log.handle), 4, log.counts()[1])
+    grid.SetCells(model.VTK_TETRA, cells)
+    _add_fields(log, grid, fields, (POINT, CELL))
     return grid
 
 
 def surface_of(log, fields=None):
     """The log's present boundary as a vtkPolyData of triangles, with the points of the whole mesh
     and its point fields."""
-    source, count = log.c.qtet_log_boundary(log.handle), log.counts()[2]
-    vertices, triangles = _vertices(log), _Kept(source, count, 3, _NO_TRIANGLE)
     surface = model.vtkPolyData()
-    surface.SetPoints(_points(log, vertices))
-    surface.SetPolys(_cells(source, triangles, 3, count, vertices))
-    _add_fields(log, surface, fields, {POINT: vertices})
+    surface.SetPoints(_points(log))
+    surface.SetPolys(_cells(log.c.qtet_log_boundary(log.handle), 3, log.counts()[2]))
+    _add_fields(log, surface, fields, (POINT,))
     return surface
 
 

@@ -92,7 +92,7 @@ TEST(QtetC, everyLevelForwardIsTheRefinersMesh) {
 }
 
 TEST(QtetC, levelsMayBeAskedForInAnyOrder) {
-  for (const auto& path : {smallChunks(), golden("valid/regions.qtet")}) {
+  for (const auto& path : {smallChunks(), golden("valid/gaps.qtet")}) {
     const Handle log = opened(path);
     const Result<LogFile> file = LogFile::open(path);
     ASSERT_TRUE(file);

@@ -32,22 +32,18 @@ void compare(const LogFile& log, const std::string& what, double maxTimes) {
 
 TEST(DecodingBytes, areAtLeastWhatDecodingTakesAndNotFarFromIt) {
   for (const bool cellFields : {false, true})
-    for (const double ratio : {0.0, 0.5, 1.0})
-      for (const bool regions : {false, true}) {
-        LatticeMesh mesh = testing::soundMesh(14, 1);
-        if (cellFields) testing::addCellFields(mesh);
-        FusionOptions options;
-        options.targetRatio = ratio;
-        if (regions) options.bands.cellsPerPacket = 2000;
-        const auto history = simplify(mesh, options);
-        ASSERT_TRUE(history) << history.error().text();
-        auto log = encodeLog(*history, {});
-        ASSERT_TRUE(log) << log.error().text();
-        const std::string what = std::string(regions ? "regions" : "stream") +
-                                 (cellFields ? " with cell fields, " : ", ") +
-                                 std::to_string(ratio);
-        compare(LogFile::fromBytes(std::move(log->bytes)).value(), what, 2.5);
-      }
+    for (const double ratio : {0.0, 0.5, 1.0}) {
+      LatticeMesh mesh = testing::soundMesh(14, 1);
+      if (cellFields) testing::addCellFields(mesh);
+      FusionOptions options;
+      options.targetRatio = ratio;
+      const auto history = simplify(mesh, options);
+      ASSERT_TRUE(history) << history.error().text();
+      auto log = encodeLog(*history, {});
+      ASSERT_TRUE(log) << log.error().text();
+      const std::string what = (cellFields ? "with cell fields, " : "") + std::to_string(ratio);
+      compare(LogFile::fromBytes(std::move(log->bytes)).value(), what, 2.5);
+    }
 }
 
 TEST(DecodingBytes, areEnoughForEveryGoldenLog) {
@@ -71,7 +67,7 @@ std::uint64_t bytesOfBase(std::uint32_t structureBytes, std::uint32_t elements,
 }
 
 TEST(DecodingBytes, countAMeshThriceWhereItsBytesAreTooFewToMakeRoomForIt) {
-  constexpr std::uint32_t kBytes = 1000, kMost = kMaxElementsPerPacketByte * kBytes;
+  constexpr std::uint32_t kBytes = 1000, kMost = kMaxElementsPerByte * kBytes;
   for (const std::uint32_t elements : {kMost - 1, kMost, kMost + 1}) {
     const std::uint64_t roomy = bytesOfBase(2 * kBytes, elements);
     const std::uint64_t grown = elements > kMost ? 2 : 0;
@@ -91,26 +87,22 @@ TEST(DecodingBytes, countAFieldsIntegersThriceAndItsBlock) {
 // The base mesh and a level of one chunk each, so that whoever asks for the end is asked in the
 // midst of a chunk.
 TEST(DecodeVerified, endsBeforeTheNextLevelWhereNobodyWaits) {
-  for (const bool regions : {false, true}) {
-    FusionOptions options;
-    if (regions) options.bands.cellsPerPacket = 200;
-    const auto history = simplify(testing::soundMesh(5, 1), options);
-    ASSERT_TRUE(history) << history.error().text();
-    auto encoded = encodeLog(*history, {});
-    ASSERT_TRUE(encoded) << encoded.error().text();
-    const LogFile log = LogFile::fromBytes(std::move(encoded->bytes)).value();
-    const Manifest manifest = manifestOf(log.index()).value();
-    int asked = 0;
-    ASSERT_TRUE(decodeVerified(log, manifest, [&](double) { return ++asked, true; }));
-    ASSERT_GT(static_cast<std::size_t>(asked), log.index().chunks.size()) << "also within chunks";
-    for (int most = 0; most < asked; ++most) {
-      int left = most;
-      const Result<Refiner> decoded =
-          decodeVerified(log, manifest, [&](double) { return left-- > 0; });
-      ASSERT_FALSE(decoded);
-      EXPECT_EQ(decoded.error().code, ErrorCode::kIo);
-      EXPECT_EQ(left, -1) << "it was asked again";
-    }
+  const auto history = simplify(testing::soundMesh(5, 1), {});
+  ASSERT_TRUE(history) << history.error().text();
+  auto encoded = encodeLog(*history, {});
+  ASSERT_TRUE(encoded) << encoded.error().text();
+  const LogFile log = LogFile::fromBytes(std::move(encoded->bytes)).value();
+  const Manifest manifest = manifestOf(log.index()).value();
+  int asked = 0;
+  ASSERT_TRUE(decodeVerified(log, manifest, [&](double) { return ++asked, true; }));
+  ASSERT_GT(static_cast<std::size_t>(asked), log.index().chunks.size()) << "also within chunks";
+  for (int most = 0; most < asked; ++most) {
+    int left = most;
+    const Result<Refiner> decoded =
+        decodeVerified(log, manifest, [&](double) { return left-- > 0; });
+    ASSERT_FALSE(decoded);
+    EXPECT_EQ(decoded.error().code, ErrorCode::kIo);
+    EXPECT_EQ(left, -1) << "it was asked again";
   }
 }
 

@@ -32,7 +32,7 @@ class TargetChoice : public ::testing::Test {
     return levelFor(target, manifest_, index_).value();
   }
   std::uint32_t lastChunk(const Target& target) const {
-    return chunksFor(target, manifest_, index_)->lastChunk;
+    return lastChunkFor(target, manifest_, index_).value();
   }
 
   LogIndex index_;
@@ -93,7 +93,7 @@ TEST_F(TargetChoice, aFieldThatIsNotThereIsRefusedWithThoseThatAre) {
   for (const bool isMeasured : {false, true}) {
     encode(isMeasured);
     const Target target = FieldErrorTarget{0.1, "heat"};
-    const auto chunks = chunksFor(target, manifest_, index_);
+    const auto chunks = lastChunkFor(target, manifest_, index_);
     ASSERT_FALSE(chunks);
     EXPECT_EQ(chunks.error().code, ErrorCode::kNotFound);
     EXPECT_NE(chunks.error().message.find(fieldKey(manifest_, 0)), std::string::npos);

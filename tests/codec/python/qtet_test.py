@@ -125,10 +125,6 @@ def logs_are_the_tools():
                 "max_field_errors": {"Heat": 0.1},
             },
         ),
-        (
-            "--layout regions --cells-per-packet 200 --measure none",
-            {"cells_per_packet": 200, "measure": "none"},
-        ),
         ("--algorithm paper", {"algorithm": "paper"}),
         ("--base-cells 300", {"base_cells": 300}),
         ("--base-error 0.02", {"base_error": 0.02}),

@@ -88,9 +88,7 @@ def every_log_is_what_extract_writes():
     for path in sorted(LOGS.glob("*.qtet")):
         with qtet_vtk.Log(path) as log:
             last = [] if path.stem in EXTRACTED_OTHERWISE else [log.last_level]
-            # Where slots are empty.
-            between = range(3, log.last_level, 3) if path.stem == "regions" else []
-            for level in [*last, 2, *between, 0]:
+            for level in [*last, 2, 0]:
                 if level > log.last_level:  # some logs have one level
                     continue
                 log.refine(level)

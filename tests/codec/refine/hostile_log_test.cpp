@@ -183,14 +183,12 @@ TEST_F(HostileLog, aTableThatContradictsItselfIsRefused) {
   expectRefused(ErrorCode::kLimitExceeded,
                 [](LogIndex& i) { i.chunks[2].lastLevel = i.chunks[2].firstLevel - 1; });
   expectRefused(ErrorCode::kLimitExceeded, [](LogIndex& i) { i.chunks.back().lastLevel = 5000; });
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.dependencies.push_back(1); });
   expectRefused(ErrorCode::kBadCodec,
                 [](LogIndex& i) { i.chunks[1].valueCodec = static_cast<CodecId>(9); });
   expectRefused(ErrorCode::kBadCodec,
                 [](LogIndex& i) { i.chunks[1].structureCodec = CodecId::kDraco; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.fields[0].components = 17; });
   expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.positionBits = 29; });
-  expectRefused(ErrorCode::kBadValue, [](LogIndex& i) { i.layout = Layout::kRegions; });
 }
 
 TEST_F(HostileLog, aLatticeTooSmallForItsPointsIsRefused) {
@@ -230,8 +228,6 @@ TEST(Refiner, aLinkOfTwoSpheresIsRefused) {
   LogIndex index;
   index.positionBits = 10;
   index.chunks.resize(2);
-  index.dependencies = {0};
-  index.chunks[1].dependencyCount = 1;
   index.chunks[0].newVertices = 7;
   index.chunks[0].newTetrahedra = 2;
   index.chunks[0].newBoundaryTriangles = 8;

@@ -84,7 +84,7 @@ TEST(Refiner, takesInTheBeginningOfALogThatNoMemoryHolds) {
   const auto positions =
       decodeValueBlock(file->block(0, kPositionsPart), 3, file->index().tuples(0, kPositionsPart));
   // enough bytes to make such a log credible, though they contain nothing
-  const Bytes credible(kMaxElements / kMaxElementsPerPacketByte + 1);
+  const Bytes credible(kMaxElements / kMaxElementsPerByte + 1);
   const AddressLimit limit(rlim_t{4} << 30);
   EXPECT_NO_THROW(EXPECT_FALSE(refiner.apply(0, credible, *positions)));
 }

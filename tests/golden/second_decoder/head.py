@@ -6,17 +6,17 @@ from conventions import LEVEL_END, Reader, refuse_unless
 
 
 class Row:
-    """A row of the chunk table; a packet has a node."""
+    """A row of the chunk table."""
 
 
 class Log:
     def __init__(self, data, misreading=""):
         self.data, self.misreading = data, misreading
         header = struct.unpack("<8sHHBBHQIIIIIIIIII", data[:64])
-        (_, major, self.minor, self.layout, self.bits, _, size, manifest, table) = header[:9]
+        (_, major, self.minor, layout, self.bits, _, size, manifest, table) = header[:9]
         self.chunks, self.fields = header[11], header[12]
         closing = header[14]
-        refuse_unless(major == 2 and size == len(data), "another version or length")
+        refuse_unless((major, layout, size) == (2, 0, len(data)), "another version or length")
         self.manifest = data[64 : 64 + manifest]
         self.offset = 64 + manifest + table
         reader = Reader(data[64 + manifest : self.offset])
@@ -36,15 +36,7 @@ class Log:
     def read_row(self, reader):
         row = Row()
         before = self.rows[-1] if self.rows else None
-        row.node = reader.varint() if self.layout == 1 else 0
-        if row.node:
-            reader.take(6)
-        if before is None:
-            row.first = 0
-        elif row.node and row.node & (row.node - 1):
-            row.first = before.first
-        else:
-            row.first = before.last + (before.end is LEVEL_END)
+        row.first = before.last + (before.end is LEVEL_END) if before else 0
         row.last = row.first + reader.varint()
         end = reader.varint()
         row.end = LEVEL_END if end == 0 else end - 1

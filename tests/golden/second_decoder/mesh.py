@@ -11,14 +11,13 @@ from deleted import DeletedCells, is_prey
 from labels import Labels
 from link import Link, faces, with_last
 from positions import Positions
-from regions import Regions
 
 
 class Split:
     """A record, and what fields need of it."""
 
 
-class Mesh(Labels, DeletedCells, Positions, Ancestry, Regions):
+class Mesh(Labels, DeletedCells, Positions, Ancestry):
     def __init__(self, log):
         self.log, self.wrong = log, log.misreading
         self.points, self.tetrahedra, self.triangles = [], [], []
@@ -238,8 +237,7 @@ class Mesh(Labels, DeletedCells, Positions, Ancestry, Regions):
         self.split_chunks = [(0, 0)]
         self.digests[0] = self.digest()
         level, visited, last, taken = 0, None, 0, set()
-        head = sum(1 for row in rows if row.node == 0)
-        for number, row in enumerate(rows[1:head], 1):
+        for row in rows[1:]:
             stream, told = self.stream(row), iter(self.values(row))
             first = len(self.splits)
             for level in range(row.first, row.last + 1):
@@ -258,9 +256,5 @@ class Mesh(Labels, DeletedCells, Positions, Ancestry, Regions):
                     self.digests[level] = self.digest()
             self.split_chunks.append((first, len(self.splits)))
             refuse_unless(len(self.splits) - first == row.records, "records")
-            if number == head - 1 and head < len(rows):
-                self.end_head(stream, rows[head].node)
             refuse_unless(stream.at_end() and next(told, None) is None, "a chunk is too long")
-        if head < len(rows):
-            self.packets(rows, head)
             self.digests = {rows[-1].last: self.digest()}

@@ -248,20 +248,6 @@ class Stream:
         return True
 
 
-def someView(rng):
-    point = [rng.uniform(-1, 2) for _ in range(3)]
-    plane = [rng.uniform(-1, 1) for _ in range(3)] + [rng.uniform(-1, 1)]
-    return rng.choice(
-        [
-            None,
-            {"point": point},
-            {"planes": [plane]},
-            {"frustum": [plane, [-x for x in plane]], "point": point},
-            {"box": point + [x + rng.random() for x in point]},
-        ]
-    )
-
-
 def someTarget(rng):
     return rng.choice(
         [
@@ -292,7 +278,6 @@ def streams(life, rng):
         mesh=mesh["id"],
         fields=fields,
         target=someTarget(rng),
-        view=someView(rng),
         credit=rng.randrange(1, 400_000),
     )
     opens()
@@ -300,9 +285,7 @@ def streams(life, rng):
         came = client.listen(rng.choice([0.001, 0.01, 0.05]))
         client.say(type="credit", bytes=came + 1)
         what = rng.randrange(12)
-        if what < 5:
-            client.say(type="view", view=someView(rng))
-        elif what < 7:
+        if what < 7:
             client.say(type="target", target=someTarget(rng))
         elif what < 9:
             client.say(type="pause")
@@ -467,7 +450,7 @@ def prepare(options):
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
-    for i, (cells, layout) in enumerate(((2000, "stream"), (10000, "stream"), (20000, "regions"))):
+    for i, cells in enumerate((2000, 10000, 20000)):
         run(options.tool, "sample", "fin", "--cells", cells, "-o", options.made / "fin.vtu")
         run(
             options.tool,
@@ -475,8 +458,6 @@ def prepare(options):
             options.made / "fin.vtu",
             "-o",
             options.made / f"fin{i}.qtet",
-            "--layout",
-            layout,
         )
     for name in "ab":
         run(

@@ -51,7 +51,6 @@ for line in 'qtet_build_info{version="[^"]*"} 1' 'qtet_uploads_failed_total 2' \
   'qtet_refusals_total{reason="places"} 0' 'qtet_disk_free_bytes [0-9]*' \
   'qtet_uploads_part_bytes 0' 'qtet_cache_bytes{cache="pages"} [1-9][0-9]*' \
   'qtet_cache_bytes{cache="levels"} [1-9][0-9]*' 'qtet_cache_bytes{cache="copies"} [1-9][0-9]*' \
-  'qtet_cache_bytes{cache="intervals"} 0' \
   'qtet_http_request_duration_seconds_bucket{route="mesh",method="PUT",le="0.005"} [0-9]*' \
   'qtet_http_request_duration_seconds_count{route="level",method="GET"} [1-9][0-9]*' \
   'qtet_http_request_duration_seconds_count{route="preview",method="GET"} [1-9][0-9]*' \

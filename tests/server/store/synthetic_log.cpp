@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -35,10 +34,6 @@ Manifest makeManifest(const SyntheticLog& options) {
   }
   for (std::uint32_t k = 0; k < options.chunks; ++k)
     out.levels.push_back({k, 100 + 10 * k, 50 + 5 * k, 60 + k, k});
-  for (std::uint32_t b = 0; b < options.bands; ++b) {
-    const std::uint32_t k = options.chunks + b;
-    out.levels.push_back({k, 100 + 10 * k, 50 + 5 * k, 60 + k, options.chunks + (4u << b) - 3});
-  }
   if (options.errors)
     for (ManifestLevel& level : out.levels) {
       const double error = level.level + 1 == out.levels.size()
@@ -51,22 +46,6 @@ Manifest makeManifest(const SyntheticLog& options) {
                                std::vector<FieldError>(out.fields.size(), {error, error})};
     }
   return out;
-}
-
-/// That of a node: the lattice halved at each step down from the root.
-PacketBox boxOf(std::uint32_t node) {
-  PacketBox box{{0, 0, 0}, {255, 255, 255}};
-  const int depth = std::bit_width(node) - 1;
-  for (int d = 0; d < depth; ++d) {
-    const auto axis = static_cast<std::size_t>(d % 3);
-    const auto half = static_cast<std::uint8_t>((box.least[axis] + box.most[axis]) / 2);
-    if ((node >> (depth - 1 - d) & 1) != 0) {
-      box.least[axis] = static_cast<std::uint8_t>(half + 1);
-    } else {
-      box.most[axis] = half;
-    }
-  }
-  return box;
 }
 
 struct Built {
@@ -83,26 +62,12 @@ Built build(const SyntheticLog& options) {
   out.index.manifestMinor = minorOf(manifest);
   for (const ManifestField& field : manifest.fields)
     out.index.fields.push_back({field.components, Association::kPoint});
-  if (options.bands > 0) out.index.layout = Layout::kRegions;
-  const std::uint32_t packets = options.bands > 0 ? (2u << options.bands) - 2 : 0;
-  for (std::uint32_t k = 0; k < options.chunks + packets; ++k) {
+  for (std::uint32_t k = 0; k < options.chunks; ++k) {
     ChunkEntry chunk;
-    if (k >= options.chunks) {
-      chunk.node = k - options.chunks + 2;
-      chunk.box = boxOf(chunk.node);
-    }
-    chunk.firstLevel = chunk.lastLevel =
-        k < options.chunks
-            ? k
-            : options.chunks + static_cast<std::uint32_t>(std::bit_width(chunk.node)) - 2;
+    chunk.firstLevel = chunk.lastLevel = k;
     chunk.newVertices = 5;
     chunk.newTetrahedra = 10;
     chunk.records = k == 0 ? 0 : 5;
-    chunk.firstDependency = k == 0 ? 0 : k - 1;
-    chunk.dependencyCount = k > 0;
-    const std::uint32_t parent =
-        chunk.node >= 4 ? options.chunks + chunk.node / 2 - 2 : std::min(k, options.chunks) - 1;
-    if (k > 0) out.index.dependencies.push_back(parent);
     for (std::uint32_t part = 0; part < out.index.parts(); ++part) {
       BlockEntry block;
       block.size =

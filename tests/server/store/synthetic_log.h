@@ -17,14 +17,11 @@ struct SyntheticLog {
   /// Bytes; some blocks of values are empty, none of structure.
   std::uint32_t largestBlock = 5000;
   std::uint32_t seed = 1;
-  /// Layout `regions`: `chunks` become the head, then follow this many bands of 2, 4, 8, ...
-  /// packets. Boxes halve the lattice's x, then y, z, x, ...
-  std::uint32_t bands = 0;
   /// Levels have errors, halved from each to the next; the last level's are 0.
   bool errors = false;
 };
 
-/// The whole file. Level k ends in chunk k; in `regions` each band is one level.
+/// The whole file. Level k ends in chunk k.
 [[nodiscard]] Bytes makeLog(const SyntheticLog& options);
 /// Its front alone, for tests of code that only looks at the table.
 [[nodiscard]] LogIndex makeIndex(const SyntheticLog& options);

@@ -15,7 +15,7 @@ class StreamProtocolTest : public testing::Test {
  protected:
   void SetUp() override {
     folder_.write("noise.qtet", test::makeLog({.chunks = 6}));
-    folder_.write("places.qtet", test::makeLog({.chunks = 2, .bands = 3, .errors = true}));
+    folder_.write("known.qtet", test::makeLog({.chunks = 16, .seed = 2, .errors = true}));
     Result<MeshStore> store = MeshStore::open(folder_.path());
     ASSERT_TRUE(store);
     store_.emplace(std::move(*store));
@@ -54,8 +54,8 @@ class StreamProtocolTest : public testing::Test {
                ? std::get<PlannedMessage>(*message)
                : PlannedMessage{};
   }
-  void openPlaces(const std::string& more) {
-    say(R"({"type":"open","mesh":"places","fields":["density"],"credit":9007199254740991)" + more +
+  void openKnown(const std::string& more) {
+    say(R"({"type":"open","mesh":"known","fields":["density"],"credit":9007199254740991)" + more +
         "}");
   }
   /// The chunks of all frames up to the next word.
@@ -152,7 +152,7 @@ TEST_F(StreamProtocolTest, aSlowLineGetsBlocksInPiecesThatMakeTheFile) {
 }
 
 TEST_F(StreamProtocolTest, aBlockThatWasBegunGoesOnWhereItStoppedWhenItsTurnComesAgain) {
-  openPlaces("");
+  openKnown("");
   (void)opened();
   (void)frame();  // the head
   const auto piece = [&] { return std::get<OutgoingFrame>(*protocol_->next(10, 10)); };
@@ -210,8 +210,8 @@ TEST_F(StreamProtocolTest, aFrameHasNoMoreThanThereIsRoomForOrOneBlock) {
 TEST_F(StreamProtocolTest, withoutRoomAnswersStillCome) {
   open(kMaxCredit);
   EXPECT_EQ(opened().stream, 1u);
-  say(R"({"type":"view","view":{"point":[0,0,1]}})");
-  EXPECT_EQ(planned().view, 1u);
+  say(R"({"type":"target","target":{"level":2}})");
+  EXPECT_GT(planned().planned, 0u);
   EXPECT_FALSE(protocol_->next(0));
 }
 
@@ -263,53 +263,24 @@ TEST_F(StreamProtocolTest, cancelIsStopUnderItsOtherName) {
   EXPECT_TRUE(silent());
 }
 
-TEST_F(StreamProtocolTest, openedTellsTheLayout) {
-  open(0);
-  EXPECT_EQ(opened().layout, "stream");
-  openPlaces("");
-  EXPECT_EQ(opened().layout, "regions");
-}
-
-TEST_F(StreamProtocolTest, aNewViewReordersWhatHasNotBeenSent) {
-  openPlaces(R"(,"view":{"box":[0,0,0,1,1,1]})");
-  const std::uint64_t whole = opened().planned;
-  std::uint64_t sent = 0;
-  for (const std::uint32_t expected : {0u, 0u, 1u, 2u}) {
-    const auto f = frame();
-    ASSERT_TRUE(f);
-    EXPECT_EQ(f->header.chunk, expected);
-    sent += f->header.size;
-  }
-  say(R"({"type":"view","view":{"box":[65000,65000,65000,65001,65001,65001]}})");
-  const PlannedMessage answer = planned();
-  EXPECT_EQ(answer.stream, 1u);
-  EXPECT_EQ(answer.view, 1u);
-  EXPECT_EQ(answer.planned, whole - sent);
-  for (const std::uint32_t expected : {3u, 7u, 15u}) EXPECT_EQ(frame()->header.chunk, expected);
-  EXPECT_EQ(chunks().size(), 10u);
-}
-
-TEST_F(StreamProtocolTest, viewsThatWaitAreAnsweredOnce) {
-  openPlaces("");
+TEST_F(StreamProtocolTest, targetsThatWaitAreAnsweredOnce) {
+  openKnown("");
   EXPECT_EQ(opened().stream, 1u);
-  for (int i = 0; i < 3; ++i)
-    say(R"({"type":"view","view":{"point":[0,0,)" + std::to_string(i) + "]}}");
-  EXPECT_EQ(planned().view, 3u);
-  EXPECT_TRUE(frame());
-  say(R"({"type":"view","view":null})");
-  EXPECT_EQ(planned().view, 4u);
+  for (int level = 3; level > 0; --level)
+    say(R"({"type":"target","target":{"level":)" + std::to_string(level) + "}}");
+  EXPECT_EQ(planned().stream, 1u);
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_TRUE(silent());
 }
 
 TEST_F(StreamProtocolTest, aTargetEndsTheStreamAndALaterOneGoesOn) {
-  openPlaces(R"(,"target":{"level":1},"view":{"box":[0,0,0,1,1,1]})");
+  openKnown(R"(,"target":{"level":1})");
   EXPECT_EQ(opened().stream, 1u);
   EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 1}));
   EXPECT_TRUE(silent());
   say(R"({"type":"target","target":{"level":3}})");
-  const PlannedMessage answer = planned();
-  EXPECT_EQ(answer.view, 0u);
-  EXPECT_GT(answer.planned, 0u);
-  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{2, 4}));
+  EXPECT_GT(planned().planned, 0u);
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{2, 3}));
   say(R"({"type":"target","target":{"level":0}})");
   EXPECT_EQ(planned().planned, 0u);
   EXPECT_EQ(text(), R"({"stream":1,"type":"done"})");
@@ -319,12 +290,12 @@ TEST_F(StreamProtocolTest, aTargetEndsTheStreamAndALaterOneGoesOn) {
 }
 
 TEST_F(StreamProtocolTest, aTargetOfAnUnknownFieldChangesNothing) {
-  openPlaces(R"(,"target":{"level":1})");
+  openKnown(R"(,"target":{"level":1})");
   EXPECT_EQ(opened().stream, 1u);
   say(R"({"type":"target","target":{"error":0.1,"field":"pressure"}})");
   EXPECT_EQ(errorCode(), "unknown-field");
   EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 1}));
-  openPlaces(R"(,"target":{"error":0.1,"field":"pressure"})");
+  openKnown(R"(,"target":{"error":0.1,"field":"pressure"})");
   EXPECT_EQ(errorCode(), "unknown-field");
   EXPECT_TRUE(silent());
 }
@@ -335,8 +306,8 @@ TEST_F(StreamProtocolTest, pauseKeepsTheStreamAndItsCredit) {
   ASSERT_TRUE(frame());
   say(R"({"type":"pause"})");
   EXPECT_TRUE(silent());
-  say(R"({"type":"view","view":null})");
-  EXPECT_EQ(planned().view, 1u);
+  say(R"({"type":"target","target":null})");
+  EXPECT_GT(planned().planned, 0u);
   EXPECT_TRUE(silent());
   say(R"({"type":"resume"})");
   EXPECT_EQ(frame()->header.chunk, 0u);
@@ -344,45 +315,31 @@ TEST_F(StreamProtocolTest, pauseKeepsTheStreamAndItsCredit) {
 }
 
 TEST_F(StreamProtocolTest, resumeMaySayAnewWhatIsThere) {
-  openPlaces("");
+  openKnown("");
   EXPECT_EQ(opened().stream, 1u);
   say(R"({"type":"pause"})");
-  say(R"({"type":"resume","have":{"chunks":2,"ranges":[[3,15]],"fields":{"density":{"chunks":2,"ranges":[[3,14]]}}}})");
+  say(R"({"type":"resume","have":{"chunks":15,"fields":{"density":14}}})");
   EXPECT_EQ(frame()->header.firstPart, FrameHeader::kHead) << "it was not sent before";
-  std::vector<std::uint32_t> sent = chunks();
-  EXPECT_EQ(sent.front(), 14u) << "a field of what is there";
-  std::ranges::sort(sent);
-  EXPECT_EQ(sent, (std::vector<std::uint32_t>{2, 14, 15}));
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{14, 15}));
   say(R"({"type":"resume","have":{"chunks":17}})");
   EXPECT_EQ(errorCode(), "log-changed");
   EXPECT_TRUE(silent()) << "and nothing is sent again";
 }
 
-TEST_F(StreamProtocolTest, anOpenMayHaveRanges) {
-  openPlaces(R"(,"have":{"chunks":4,"ranges":[[5,16]],"fields":{"density":4}})");
-  EXPECT_EQ(opened().stream, 1u);
-  const std::vector<std::uint32_t> sent = chunks();
-  EXPECT_EQ(sent.size(), 12u);
-  EXPECT_EQ(std::ranges::count(sent, 4u), 1) << "its mesh and its field";
-  openPlaces(R"(,"have":{"chunks":4,"ranges":[[5,17]]})");
-  EXPECT_EQ(errorCode(), "log-changed");
-}
-
 TEST_F(StreamProtocolTest, requestsWithoutAStreamAreIgnored) {
   for (const char* request :
-       {R"({"type":"view","view":null})", R"({"type":"target","target":null})",
-        R"({"type":"pause"})", R"({"type":"resume"})"})
+       {R"({"type":"target","target":null})", R"({"type":"pause"})", R"({"type":"resume"})"})
     say(request);
   EXPECT_TRUE(silent());
 }
 
-TEST_F(StreamProtocolTest, viewRequestsBeyondTheirRateClose) {
+TEST_F(StreamProtocolTest, targetsBeyondTheirRateClose) {
   open(0);
   EXPECT_EQ(opened().stream, 1u);
-  for (unsigned i = 0; i < limits::kMaxViewRequestsPerSecond; ++i)
-    say(R"({"type":"view","view":null})");
-  EXPECT_EQ(planned().view, limits::kMaxViewRequestsPerSecond);
-  say(R"({"type":"view","view":null})");
+  for (unsigned i = 0; i < limits::kMaxChangesPerSecond; ++i)
+    say(R"({"type":"target","target":null})");
+  EXPECT_EQ(planned().stream, 1u);
+  say(R"({"type":"target","target":null})");
   EXPECT_EQ(errorCode(), "too-many-messages");
   EXPECT_TRUE(closes());
 }

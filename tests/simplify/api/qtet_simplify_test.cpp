@@ -167,10 +167,8 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
                   o.targetRatio = 0.9;
                   o.measure = QTET_MEASURE_ALL;
                 }},
-           Case{"--layout regions --cells-per-packet 300 --field-weight Swirl=3 "
-                "--max-boundary-error 0.05 --max-field-error Scalar=0.05",
+           Case{"--field-weight Swirl=3 --max-boundary-error 0.05 --max-field-error Scalar=0.05",
                 [](qtet_simplify_options& o) {
-                  o.cellsPerPacket = 300;
                   o.fieldWeights = kWeights, o.fieldWeightCount = 1;
                   o.maxFieldErrors = kBounds, o.maxFieldErrorCount = 1;
                   o.maxBoundaryError = 0.05;
@@ -403,7 +401,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refused(QTET_BAD_VALUE, "lossless is 2", [](Arrays&, O& o) { o.lossless = 2; });
   refused(QTET_BAD_VALUE, "position bits", [](Arrays&, O& o) { o.positionBits = ~0u; });
   refused(QTET_BAD_VALUE, "field bits", [](Arrays&, O& o) { o.fieldBits = 0; });
-  refused(QTET_BAD_VALUE, "below 100", [](Arrays&, O& o) { o.cellsPerPacket = 1; });
+  refused(QTET_BAD_VALUE, "reserved is 1", [](Arrays&, O& o) { o.reserved = 1; });
   refused(QTET_BAD_INPUT, "0..1", [](Arrays&, O& o) { o.targetRatio = INFINITY; });
   refused(QTET_BAD_INPUT, "weights", [](Arrays&, O& o) { o.shapeWeight = NAN; });
   refused(QTET_BAD_INPUT, "tolerance", [](Arrays&, O& o) { o.envelopeTolerance = -1; });

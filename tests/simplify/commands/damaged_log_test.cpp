@@ -229,12 +229,11 @@ TEST_F(DamagedLog, chunksInAnotherOrderAreFound) {
         std::swap(p.index.chunks[a], p.index.chunks[b]);
       });
       // The rows keep what makes them follow each other: nothing but the records' sense is wrong.
-      expectRefused("", what + ", levels and dependencies mended", [&](TakenApart& p) {
+      expectRefused("", what + ", levels mended", [&](TakenApart& p) {
         std::swap(p.blocks[a], p.blocks[b]);
         std::swap(p.index.chunks[a], p.index.chunks[b]);
         for (const auto member :
-             {&ChunkEntry::firstLevel, &ChunkEntry::lastLevel, &ChunkEntry::endSlot,
-              &ChunkEntry::firstDependency, &ChunkEntry::dependencyCount})
+             {&ChunkEntry::firstLevel, &ChunkEntry::lastLevel, &ChunkEntry::endSlot})
           std::swap(p.index.chunks[a].*member, p.index.chunks[b].*member);
       });
       expectRefused("", what + ", blocks alone",
@@ -255,14 +254,8 @@ TEST_F(DamagedLog, aChunkThatStandsTwiceIsFound) {
       expectRefused("", "chunk " + std::to_string(chunk), [&](TakenApart& p) {
         p.blocks.insert(p.blocks.begin() + chunk, p.blocks[chunk]);
         p.index.chunks.insert(p.index.chunks.begin() + chunk, p.index.chunks[chunk]);
-        p.index.dependencies.clear();
-        for (std::uint32_t c = 0; c < p.index.chunks.size(); ++c) {
-          p.index.chunks[c].firstDependency = c == 0 ? 0 : c - 1;
-          p.index.chunks[c].dependencyCount = c > 0;
-          if (c > 0) p.index.dependencies.push_back(c - 1);
-          if (asNextLevel && c > chunk)
-            ++p.index.chunks[c].firstLevel, ++p.index.chunks[c].lastLevel;
-        }
+        for (std::uint32_t c = chunk + 1; asNextLevel && c < p.index.chunks.size(); ++c)
+          ++p.index.chunks[c].firstLevel, ++p.index.chunks[c].lastLevel;
       });
 }
 
@@ -271,7 +264,6 @@ TEST_F(DamagedLog, chunksThatAreLeftOutAreFound) {
     expectRefused("", "the first " + std::to_string(keep) + " chunks", [&](TakenApart& p) {
       p.blocks.resize(keep);
       p.index.chunks.resize(keep);
-      p.index.dependencies.resize(keep - 1);
     });
 }
 
@@ -370,8 +362,8 @@ TEST_F(DamagedLog, versionsAndFlagsOfTheFutureAreRefused) {
   expectRefused(patched(9, 1), "bad-version", "major 258");
   for (const std::size_t reserved : {14u, 15u, 56u, 57u, 58u, 59u})
     expectRefused(patched(reserved, 1), "reserved", "byte " + std::to_string(reserved));
-  for (const std::uint8_t layout : std::initializer_list<std::uint8_t>{2, 255})
-    expectRefused(patched(12, layout), "unknown layout", "layout");
+  for (const std::uint8_t layout : std::initializer_list<std::uint8_t>{1, 2, 255})
+    expectRefused(patched(12, layout), "bad-version", "layout");
   for (std::size_t chunk = 0; chunk < index_.chunks.size(); ++chunk) {
     for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 2, 3, 7, 15})
       expectTableRefused("codec", "structure codec " + std::to_string(codec), [&](LogIndex& i) {

@@ -27,7 +27,6 @@ while read -r words; do
 done <<'END'
 
 --lossless --keep-order --geometry-codec adaptive --placement optimal --envelope-tolerance 0.01
---layout regions --cells-per-packet 400
 --algorithm paper --measure none
 --placement vertex --boundary-weight 30 --measure none
 END

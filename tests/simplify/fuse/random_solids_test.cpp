@@ -128,7 +128,6 @@ TEST_P(RandomSolids, areTheSameForAnyNumberOfThreadsWhateverTheOptions) {
   options.envelopeTolerance = std::array{0.0, 0.01, 0.05, 0.3}[seed % 4];
   options.placement = std::array{PlacementRule::kAuto, PlacementRule::kOptimal,
                                  PlacementRule::kVertex}[seed / 2 % 3];
-  options.bands.cellsPerPacket = seed % 5 == 0 ? 20 : 0;
   const auto one = simplify(solid.mesh, options);
   ASSERT_TRUE(one) << one.error().text();
   for (const int threads : {2, 5}) {

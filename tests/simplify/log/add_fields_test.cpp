@@ -28,26 +28,18 @@ struct Sample {
   Bytes bytes;
 
   explicit Sample(std::uint32_t seed, std::size_t fields, bool measured = false,
-                  CodecId codec = CodecId::kDraco, BandOptions bands = {})
+                  CodecId codec = CodecId::kDraco)
       : mesh(testing::gridMesh(5, seed)) {
     testing::addCellFields(mesh);
     LatticeMesh carried = mesh;
     carried.fields.resize(fields);
     carried.values.resize(fields);
-    FusionOptions options;
-    options.bands = bands;
-    history = simplify(std::move(carried), options).value();
+    history = simplify(std::move(carried), {}).value();
     LogWriterOptions writer;
     writer.chunkBytes = 200;
     writer.valueCodec = codec;
     if (measured) writer.errors = measureLevels(history, {}).value();
     bytes = encodeLog(history, writer).value().bytes;
-  }
-  /// A log of the layout `regions`.
-  static Sample ofRegions(std::uint32_t seed, std::size_t fields, bool measured = false) {
-    Sample sample(seed, fields, measured, CodecId::kDraco, {100, 2, 1, 1});
-    EXPECT_EQ(sample.log().index().layout, Layout::kRegions);
-    return sample;
   }
   [[nodiscard]] LogFile log() const { return LogFile::fromBytes(bytes).value(); }
 };
@@ -97,15 +89,14 @@ Bytes withAdded(const LogFile& log, const TetMesh& mesh) {
 }
 
 TEST(LogHistory, holdsEveryLevelOfTheLog) {
-  for (const Sample& sample : {Sample(1, 0), Sample::ofRegions(1, 0)}) {
-    const LogFile log = sample.log();
-    auto decoded = historyOf(log);
-    ASSERT_TRUE(decoded) << decoded.error().text();
-    for (std::uint32_t undone = 0; undone <= sample.history.levels; ++undone) {
-      LatticeMesh expected = meshAtLevel(log, undone).value();
-      const auto same = sameMesh(testing::meshOfHistory(decoded->history, undone), expected);
-      ASSERT_TRUE(same) << "level " << undone << ": " << same.error().text();
-    }
+  const Sample sample(1, 0);
+  const LogFile log = sample.log();
+  auto decoded = historyOf(log);
+  ASSERT_TRUE(decoded) << decoded.error().text();
+  for (std::uint32_t undone = 0; undone <= sample.history.levels; ++undone) {
+    LatticeMesh expected = meshAtLevel(log, undone).value();
+    const auto same = sameMesh(testing::meshOfHistory(decoded->history, undone), expected);
+    ASSERT_TRUE(same) << "level " << undone << ": " << same.error().text();
   }
 }
 
@@ -125,10 +116,7 @@ TEST(LogHistory, isWrittenAsALogOfTheSameLevelsAgain) {
 class AddFields : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(AddFields, theLastLevelHasThemAndTheGeometryStaysByteForByte) {
-  const Sample sample =
-      GetParam() == 4
-          ? Sample::ofRegions(4, 1)
-          : Sample(GetParam(), 1, false, GetParam() == 3 ? CodecId::kAdaptive : CodecId::kDraco);
+  const Sample sample(GetParam(), 1, false, GetParam() == 3 ? CodecId::kAdaptive : CodecId::kDraco);
   const LogFile before = sample.log();
   const LogFile after =
       LogFile::fromBytes(withAdded(before, shuffled(sample.mesh, 1, GetParam()))).value();
@@ -155,7 +143,7 @@ TEST_P(AddFields, theLastLevelHasThemAndTheGeometryStaysByteForByte) {
 }
 
 TEST_P(AddFields, fusedVerticesLieBetweenTheirPrey) {
-  const Sample sample = GetParam() == 4 ? Sample::ofRegions(4, 0) : Sample(GetParam(), 0);
+  const Sample sample(GetParam(), 0);
   const auto decoded = historyOf(sample.log());
   ASSERT_TRUE(decoded);
   std::vector<std::int32_t> values;
@@ -180,7 +168,7 @@ TEST_P(AddFields, fusedVerticesLieBetweenTheirPrey) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, AddFields, ::testing::Values(1u, 2u, 3u, 4u));
+INSTANTIATE_TEST_SUITE_P(Seeds, AddFields, ::testing::Values(1u, 2u, 3u));
 
 TEST(AddFields, errorsAreMeasuredWhereTheLogKnowsThemAndAbsentElsewhere) {
   for (const bool measured : {false, true}) {
@@ -234,29 +222,6 @@ TEST(AddFields, aMeshThatIsNotTheLogsIsRefusedByName) {
   TetMesh rewired = good;
   std::swap(rewired.tetrahedra[3][0], rewired.tetrahedra[4][0]);
   EXPECT_NE(refusal(rewired).find("is no cell of the log"), std::string::npos) << refusal(rewired);
-}
-
-TEST(AddFields, aFieldOfALogOfRegionsComesInAnyOrderOfPackets) {
-  const Sample sample = Sample::ofRegions(7, 1, true);
-  const LogFile after =
-      LogFile::fromBytes(withAdded(sample.log(), shuffled(sample.mesh, 1, 7))).value();
-  const LatticeMesh whole = meshAtLevel(after, sample.history.levels).value();
-  Refiner refiner(after.index());
-  const auto chunks = static_cast<std::uint32_t>(after.index().chunks.size());
-  std::vector<std::uint32_t> waiting(chunks);
-  std::iota(waiting.rbegin(), waiting.rend(), 0u);
-  while (!waiting.empty()) {  // the last of those that may come
-    const auto next = std::ranges::find_if(waiting, [&](std::uint32_t chunk) {
-      return chunk == 0 ||
-             refiner.applied(
-                 after.index().dependencies[after.index().chunks[chunk].firstDependency]);
-    });
-    ASSERT_TRUE(applyChunk(after, refiner, *next, allFields(after)));
-    waiting.erase(next);
-  }
-  for (std::uint32_t f = 0; f < whole.fields.size(); ++f)
-    EXPECT_TRUE(std::ranges::equal(refiner.fieldValues(f), whole.values[f]))
-        << whole.fields[f].name;
 }
 
 TEST(MatchMesh, pointsAtOnePlaceAreToldApartByTheirCells) {

@@ -138,13 +138,6 @@ TEST(Pipeline, optionsThatDoNotGoTogetherAreRefused) {
   };
   refused([](PipelineOptions& o) { o.algorithm = Algorithm::kPaper, o.regions = "Label"; },
           ErrorCode::kBadValue, "paper knows no");
-  refused(
-      [](PipelineOptions& o) {
-        o.algorithm = Algorithm::kPaper, o.fusion.bands.cellsPerPacket = 1000;
-      },
-      ErrorCode::kBadValue, "regions");
-  refused([](PipelineOptions& o) { o.fusion.bands.cellsPerPacket = 99; }, ErrorCode::kBadValue,
-          "below 100");
   refused([](PipelineOptions& o) { o.fieldWeights = {{"Scalar", -1}}; }, ErrorCode::kBadValue,
           "Scalar");
   refused([](PipelineOptions& o) { o.fieldWeights = {{"Label", 1}}; }, ErrorCode::kNotFound,

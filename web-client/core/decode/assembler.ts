@@ -7,15 +7,7 @@ import type {Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import {fieldKeys, readManifest, type Manifest} from '../protocol/manifest';
 import type {Frame, Target} from '../protocol/messages';
-import type {Packet} from '../protocol/packet';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from '../protocol/parts';
-import {
-  inOrder,
-  kNoViewRequest,
-  type WireLattice,
-  type ViewRequest,
-} from '../protocol/view_request';
-import {ChunkQueue} from './chunk_queue';
 import type {BlockValues, Codec} from './codec';
 import type {ValueDecoder} from './draco';
 import {targetOf, planOf, type LevelBytes} from './plan';
@@ -30,19 +22,6 @@ export class Assembler implements LogTable {
   /** By chunk and part. */
   private blocks: (Uint8Array | undefined)[][] = [];
   private received: number[] = [];
-  private packetList: Packet[] = [];
-  private rank = new Map<number, number>();
-  /** By chunk: those that depend on it. */
-  private dependents: number[][] = [];
-  /**
-   * Chunks of a log of regions that can be applied now: their blocks are here, and what they depend
-   * on is applied. A chunk is examined only when one of the two becomes true, so that the work for
-   * a log is linear in its chunks.
-   */
-  private readonly ready = new ChunkQueue((chunk) => this.rankOf(chunk));
-  /** The same by field: packets whose values can be applied now. */
-  private readyValues: ChunkQueue[] = [];
-
   constructor(
     readonly codec: Codec,
     private readonly values: ValueDecoder,
@@ -52,8 +31,6 @@ export class Assembler implements LogTable {
     this.manifest = this.ledger = this.head = null;
     this.blocks = [];
     this.received = [];
-    this.packetList = [];
-    this.clearQueues();
   }
 
   // ---- LogTable
@@ -72,14 +49,6 @@ export class Assembler implements LogTable {
   }
   blockSize(chunk: number, part: number): number {
     return this.codec.blockSize(chunk, part);
-  }
-
-  get packets(): readonly Packet[] {
-    return this.packetList;
-  }
-  get lattice(): WireLattice | null {
-    const lattice = this.manifest?.lattice;
-    return lattice ? {origin: lattice.origin, step: lattice.step, size: 2 ** lattice.bits} : null;
   }
 
   // ---- blocks
@@ -124,7 +93,6 @@ export class Assembler implements LogTable {
     const [structure, positions] = this.blocks[chunk] as [Uint8Array, Uint8Array];
     this.codec.apply(chunk, structure, this.decode(chunk, kPositionsPart, positions, 3));
     this.ledger!.addChunk(chunk);
-    this.afterChunk(chunk);
     return true;
   }
 
@@ -140,39 +108,6 @@ export class Assembler implements LogTable {
     if (!this.head) return;
     this.codec.open(this.head);
     this.ledger!.clear();
-    this.clearQueues();
-    this.considerChunk(0);
-  }
-
-  /** The chunks from `count` on that are here, as ranges [first, end). */
-  rangesBeyond(count: number, part: number): [number, number][] {
-    const ranges: [number, number][] = [];
-    for (let chunk = count; chunk < this.blocks.length; ++chunk) {
-      if (!this.blocks[chunk]![part] || !this.blocks[chunk]![kPositionsPart]) continue;
-      const last = ranges.at(-1);
-      if (last?.[1] === chunk) ++last[1];
-      else ranges.push([chunk, chunk + 1]);
-    }
-    return ranges;
-  }
-
-  /** Decodes in the order of the view request from now on. */
-  look(view: ViewRequest): void {
-    const {lattice, packets} = this;
-    this.rank = new Map(
-      lattice ? inOrder(packets, view, lattice.size).map(({chunk}, i) => [chunk, i]) : [],
-    );
-    this.ready.reorder();
-  }
-
-  /** Chunks of the head come before every packet. */
-  private rankOf(chunk: number): number {
-    return this.rank.get(chunk) ?? chunk - this.codec.chunkCount;
-  }
-
-  /** The layout `stream`: each chunk follows the one before it. */
-  private get isStream(): boolean {
-    return this.codec.headChunks === this.codec.chunkCount;
   }
 
   /** Structure and positions are here. */
@@ -181,45 +116,11 @@ export class Assembler implements LogTable {
     return parts?.[kStructurePart] !== undefined && parts[kPositionsPart] !== undefined;
   }
 
-  /** The most urgent chunk that is here and whose parent is applied; -1 if there is none. */
+  /** The next chunk, if it is here; else -1. */
   private nextChunk(): number {
     if (!this.codec.isWhole && this.codec.chunksApplied > 0) return -1;
-    if (!this.isStream) return this.ready.first;
     const next = this.codec.chunksApplied;
     return this.isHere(next) ? next : -1;
-  }
-
-  private clearQueues(): void {
-    this.ready.clear();
-    for (const queue of this.readyValues) queue.clear();
-  }
-
-  /** Queues the chunk if it can be applied now. */
-  private considerChunk(chunk: number): void {
-    const {codec} = this;
-    if (this.isStream || !this.isHere(chunk) || codec.applied(chunk)) return;
-    if (chunk === 0 || codec.applied(codec.dependency(chunk))) this.ready.add(chunk);
-  }
-
-  /** The chunk has been applied: its values and its dependents may have waited for it. */
-  private afterChunk(chunk: number): void {
-    if (this.isStream) return;
-    this.ready.removeFirst();
-    for (const dependent of this.dependents[chunk]!) this.considerChunk(dependent);
-    this.readyValues.forEach((_, field) => this.considerValues(field, chunk));
-  }
-
-  /** Queues the packet's values of the field if they can be applied now. */
-  private considerValues(field: number, chunk: number): void {
-    const {codec} = this;
-    if (
-      chunk >= codec.headChunks &&
-      this.blocks[chunk]![kFirstFieldPart + field] &&
-      codec.applied(chunk) &&
-      !codec.fieldApplied(field, chunk) &&
-      codec.fieldApplied(field, codec.dependency(chunk))
-    )
-      this.readyValues[field]!.add(chunk);
   }
 
   /**
@@ -260,11 +161,6 @@ export class Assembler implements LogTable {
     );
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
-    this.packetList = packetsOf(this.codec);
-    this.dependents = dependentsOf(this.codec);
-    this.ready.clear();
-    this.readyValues = this.manifest.fields.map(() => new ChunkQueue((chunk) => chunk));
-    this.look(kNoViewRequest);
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
     this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
   }
@@ -272,8 +168,6 @@ export class Assembler implements LogTable {
   private keep(chunk: number, part: number, bytes: Uint8Array): void {
     this.codec.checkBlock(chunk, part, bytes);
     this.blocks[chunk]![part] = bytes;
-    if (part < kFirstFieldPart) this.considerChunk(chunk);
-    else this.considerValues(part - kFirstFieldPart, chunk);
   }
 
   private leading(part: number): number {
@@ -297,8 +191,6 @@ export class Assembler implements LogTable {
       ),
     );
     this.ledger!.addField(field, chunk);
-    if (chunk >= this.codec.headChunks) this.readyValues[field]!.removeFirst();
-    for (const dependent of this.dependents[chunk]!) this.considerValues(field, dependent);
     return true;
   }
 
@@ -308,27 +200,7 @@ export class Assembler implements LogTable {
 
   private nextOfField(field: number): number {
     const {codec} = this;
-    const part = kFirstFieldPart + field;
-    const count = codec.fieldChunksApplied(field);
-    if (count < codec.headChunks)
-      return count < codec.chunksApplied && this.blocks[count]?.[part] ? count : -1;
-    return this.readyValues[field]!.first;
+    const next = codec.fieldChunksApplied(field);
+    return next < codec.chunksApplied && this.blocks[next]?.[kFirstFieldPart + field] ? next : -1;
   }
-}
-
-function packetsOf(codec: Codec): Packet[] {
-  const packets: Packet[] = [];
-  for (let chunk = codec.headChunks; chunk < codec.chunkCount; ++chunk) {
-    const parent = packets[codec.dependency(chunk) - codec.headChunks];
-    packets.push({chunk, depth: parent ? parent.depth + 1 : 0, box: codec.packetBox(chunk)});
-  }
-  return packets;
-}
-
-/** Linear in the chunks. Chunk 0 depends on itself and is nobody's dependent. */
-function dependentsOf(codec: Codec): number[][] {
-  const dependents = Array.from({length: codec.chunkCount}, (): number[] => []);
-  for (let chunk = 1; chunk < codec.chunkCount; ++chunk)
-    dependents[codec.dependency(chunk)]!.push(chunk);
-  return dependents;
 }

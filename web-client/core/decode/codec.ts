@@ -5,7 +5,6 @@ import type {Counts} from '../protocol/counts';
 import {kErrorCodes} from '../protocol/error_codes';
 import {QtetError} from '../protocol/errors';
 import type {KnownErrors} from '../protocol/manifest';
-import type {PacketBox} from '../protocol/packet';
 
 /** The codec as the session needs it. Tests bring their own. */
 export interface Codec {
@@ -30,14 +29,7 @@ export interface Codec {
   checkBlock(chunk: number, part: number, bytes: Uint8Array): void;
   apply(chunk: number, structure: Uint8Array, positions: BlockValues): void;
   applyField(field: number, chunk: number, values: BlockValues): void;
-  /** Chunks before the first packet: all of them in the layout `stream`. */
-  readonly headChunks: number;
-  /** The chunk that this one depends on. Chunk 0 depends on itself. */
-  dependency(chunk: number): number;
-  packetBox(chunk: number): PacketBox;
   brings(chunk: number): Counts;
-  applied(chunk: number): boolean;
-  fieldApplied(field: number, chunk: number): boolean;
   readonly chunksApplied: number;
   fieldChunksApplied(field: number): number;
   readonly level: number;
@@ -106,12 +98,7 @@ interface Exports {
     digits: number,
     digitBytes: number,
   ): number;
-  qtet_head_chunks(): number;
-  qtet_dependency(chunk: number): number;
-  qtet_packet_box(chunk: number): number;
   qtet_chunk_brings(chunk: number): number;
-  qtet_applied(chunk: number): number;
-  qtet_field_applied(field: number, chunk: number): number;
   qtet_chunks_applied(): number;
   qtet_field_chunks_applied(field: number): number;
   qtet_level(): number;
@@ -203,19 +190,6 @@ export class WasmCodec implements Codec {
     );
   }
 
-  get headChunks(): number {
-    return this.wasm.qtet_head_chunks() >>> 0;
-  }
-  dependency(chunk: number): number {
-    return this.wasm.qtet_dependency(chunk) >>> 0;
-  }
-  packetBox(chunk: number): PacketBox {
-    return new Uint8Array(
-      this.wasm.memory.buffer,
-      this.wasm.qtet_packet_box(chunk) >>> 0,
-      6,
-    ).slice();
-  }
   brings(chunk: number): Counts {
     const [tetrahedra, vertices, boundaryTriangles] = new Uint32Array(
       this.wasm.memory.buffer,
@@ -223,12 +197,6 @@ export class WasmCodec implements Codec {
       3,
     );
     return {tetrahedra: tetrahedra!, vertices: vertices!, boundaryTriangles: boundaryTriangles!};
-  }
-  applied(chunk: number): boolean {
-    return this.wasm.qtet_applied(chunk) !== 0;
-  }
-  fieldApplied(field: number, chunk: number): boolean {
-    return this.wasm.qtet_field_applied(field, chunk) !== 0;
   }
   get chunksApplied(): number {
     return this.wasm.qtet_chunks_applied() >>> 0;

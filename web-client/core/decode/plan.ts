@@ -1,4 +1,4 @@
-// The targets that the chunks of a `stream` log reach, one after the other. They decide where a
+// The targets that the chunks of a log reach, one after the other. They decide where a
 // stream may stop, so that nothing behind a limit is sent or fetched.
 
 import {errorOfLevel, limitReached, type Limit} from '../protocol/limit';
@@ -16,10 +16,7 @@ export interface LevelBytes {
   level: number;
 }
 
-/**
- * Returns null if everything is wanted. That includes logs of regions: their limits concern what
- * the user looks at. `headBytes` is the size of the log's head.
- */
+/** Returns null if everything is wanted. `headBytes` is the size of the log's head. */
 export function targetOf(
   limit: Limit,
   codec: Codec,
@@ -27,7 +24,7 @@ export function targetOf(
   fields: readonly number[],
   headBytes: number,
 ): Target | null {
-  if (limit.kind === 'full' || codec.headChunks < codec.chunkCount) return null;
+  if (limit.kind === 'full') return null;
   for (const {chunks, tetrahedra, bytes, level} of stepsOf(codec, levels, fields, headBytes)) {
     if (!limitReached(limit, {tetrahedra, bytes}, errorOfLevel(levels, level, fields))) continue;
     const holding = levels.find((info) => info.tetrahedra >= tetrahedra);
@@ -36,26 +33,14 @@ export function targetOf(
   return null;
 }
 
-/**
- * The least bytes with which each level is complete, ascending, for the levels that a chunk ends.
- *
- * In a log of regions, packets that do not depend on one another end a level together. The view
- * request changes their order, so a level may be complete later than this, but never sooner.
- */
+/** The bytes with which each level is complete, ascending, for the levels that a chunk ends. */
 export function planOf(
   codec: Codec,
   {levels}: Manifest,
   fields: readonly number[],
   headBytes: number,
 ): LevelBytes[] {
-  let first = 0; // the first of the chunks that end a level together
-  return [...stepsOf(codec, levels, fields, headBytes)]
-    .filter(({chunks}) => {
-      const ends = chunks === codec.chunkCount || codec.dependency(chunks) >= first;
-      if (ends) first = chunks;
-      return ends;
-    })
-    .map(({bytes, level}) => ({bytes, level}));
+  return [...stepsOf(codec, levels, fields, headBytes)].map(({bytes, level}) => ({bytes, level}));
 }
 
 interface Step extends LevelBytes {

@@ -30,10 +30,7 @@ export const kNoStatistics: Statistics = {
   bytesNeeded: 0,
 };
 
-/**
- * Counts what is applied, as it comes. The codec's arrays cannot tell: packets come in any order,
- * and the arrays have holes until all are here.
- */
+/** Counts what is applied, as it comes. */
 export class Ledger {
   counts: Counts = {tetrahedra: 0, vertices: 0, boundaryTriangles: 0};
   private meshBytes = 0;

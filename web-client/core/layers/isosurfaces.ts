@@ -2,17 +2,11 @@
 
 import {along, valueAt, type Ray, type Stretch} from '../picture/cell_ray';
 import type {Display, MeshArrays} from '../picture/display';
-import {scalarRange} from '../picture/field_scale';
 import {isosurface} from '../picture/slice';
 import {joinSoups, type TriangleSoup} from '../picture/triangle_soup';
-import {fieldKeys, type FieldInfo} from '../protocol/manifest';
-import type {Isovalue} from '../protocol/view_request';
 import {fieldLayer} from './field_layer';
 import type {FieldValues} from './field_values';
 import type {Control, FieldLayer} from './layer';
-
-/** The protocol allows no more (proto/STREAM.md, "View"). */
-const kMaxIsovalues = 8;
 
 const control: Control = {
   title: 'Isosurfaces',
@@ -59,17 +53,5 @@ export const isosurfaces = {
       if (share >= 0 && share <= 1) t = Math.min(t, seen.from + share * (seen.to - seen.from));
     }
     return t;
-  },
-
-  isovalueOf({isosurfaces: request}: Display, fields: readonly FieldInfo[]): Isovalue | null {
-    const info = request && fields[request.scalar.field];
-    if (!info || info.association === 'cell' || request.values.length > kMaxIsovalues) return null;
-    const {field, component} = request.scalar;
-    const [low, high] = scalarRange(info, component);
-    return {
-      field: fieldKeys(fields)[field]!,
-      ...(component >= 0 && {component}),
-      values: request.values.map((share) => low + share * (high - low)),
-    };
   },
 } as const satisfies FieldLayer;

@@ -6,7 +6,6 @@ import type {Display, MeshArrays} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {TriangleSoup} from '../picture/triangle_soup';
 import type {FieldInfo} from '../protocol/manifest';
-import type {Isovalue} from '../protocol/view_request';
 import type {FieldValues} from './field_values';
 
 export interface Attribute {
@@ -31,12 +30,6 @@ export interface Layer extends Attribute {
   make?(mesh: MeshArrays, display: Display, kept: Uint8Array | null): TriangleSoup | null;
   /** The t at which the ray first sees its triangles in this stretch; Infinity if it never does. */
   seenFrom?(mesh: MeshArrays, display: Display, ray: Ray, stretch: Stretch): number;
-  /**
-   * For layers near whose triangles a log of regions is refined first: the same in the server's
-   * terms; null if it would not understand.
-   */
-  isovalueOf?(display: Display, fields: readonly FieldInfo[]): Isovalue | null;
-
   // ---- in the page
 
   /** How its triangles are drawn. */

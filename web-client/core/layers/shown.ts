@@ -4,7 +4,6 @@ import type {Display, MeshArrays} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import {noSoup, type TriangleSoup} from '../picture/triangle_soup';
 import type {FieldInfo} from '../protocol/manifest';
-import type {Isovalue} from '../protocol/view_request';
 import type {Layer} from './layer';
 import {fieldLayers, kLayers, type LayerAttribute} from './layers';
 
@@ -72,28 +71,4 @@ export function layerSoups(
 
 export function soupOf(soups: LayerSoups, {name, draw}: Layer): TriangleSoup | undefined {
   return draw?.member ? soups[draw.member] : soups.layers?.[name];
-}
-
-/** The corners of the triangles near which a log of regions is refined first. */
-export function refinedCorners(soups: LayerSoups): Float32Array {
-  const parts = kLayers
-    .filter((layer) => layer.isovalueOf !== undefined)
-    .flatMap((layer) => soupOf(soups, layer)?.positions ?? []);
-  if (parts.length === 1) return parts[0]!;
-  const corners = new Float32Array(parts.reduce((sum, {length}) => sum + length, 0));
-  let at = 0;
-  for (const part of parts) {
-    corners.set(part, at);
-    at += part.length;
-  }
-  return corners;
-}
-
-/** The same in the server's terms. It takes one; of several layers the first counts. */
-export function isovalueOf(display: Display, fields: readonly FieldInfo[]): Isovalue | null {
-  for (const layer of kLayers) {
-    const isovalue = layer.isovalueOf?.(display, fields);
-    if (isovalue) return isovalue;
-  }
-  return null;
 }

@@ -1,21 +1,9 @@
 // The messages and the binary frame of proto/STREAM.md. Every count that is read is checked.
 
 import {QtetError} from './errors';
-import type {ViewRequest} from './view_request';
 
 export const kSubprotocol = 'qtet.v1';
 export const kFrameHeaderBytes = 16;
-/** [first, end) of chunks */
-export type ChunkRange = [number, number];
-/**
- * How many leading chunks are here, and which packets beyond them, since packets may come out of
- * order.
- */
-export interface HaveChunks {
-  chunks: number;
-  ranges: ChunkRange[];
-}
-
 /** Where a stream may stop. */
 export interface Target {
   /** How many leading chunks. */
@@ -27,10 +15,10 @@ export interface Target {
 export interface OpenRequest {
   mesh: string;
   fields: string[];
-  have: {chunks: number; ranges?: ChunkRange[]; fields: Record<string, number | HaveChunks>};
+  /** How many leading chunks are here: of the mesh, and of each field. */
+  have: {chunks: number; fields: Record<string, number>};
   credit: number;
   digest?: string;
-  view?: ViewRequest;
   /** Where the stream may stop; null means at its end. */
   target?: Target | null;
 }
@@ -43,7 +31,6 @@ export type ServerMessage =
       digest: string;
       bytes: number;
       planned: number;
-      layout?: string;
     }
   | {type: 'done'; stream: number}
   | {type: 'stopped'; stream: number}
@@ -58,11 +45,7 @@ export interface Frame {
   payload: Uint8Array;
 }
 
-export function openMessage(
-  request: OpenRequest,
-  view: Record<string, unknown> | null = null,
-): string {
-  const {mesh, fields, credit, have, digest, target} = request;
+export function openMessage({mesh, fields, credit, have, digest, target}: OpenRequest): string {
   return JSON.stringify({
     type: 'open',
     mesh,
@@ -71,7 +54,6 @@ export function openMessage(
     have,
     digest,
     ...(target ? {target: wireTarget(target)} : {}),
-    ...(view ? {view} : {}),
   });
 }
 
@@ -92,10 +74,6 @@ export function pauseMessage(): string {
  */
 export function resumeMessage(): string {
   return JSON.stringify({type: 'resume'});
-}
-
-export function viewMessage(view: Record<string, unknown> | null): string {
-  return JSON.stringify({type: 'view', view});
 }
 
 export function creditMessage(bytes: number): string {
@@ -150,7 +128,6 @@ export function parseServerMessage(text: string): ServerMessage | null {
         digest: textOf(message, 'digest'),
         bytes: numberOf(message, 'bytes'),
         planned: numberOf(message, 'planned'),
-        ...(typeof message.layout === 'string' ? {layout: message.layout} : {}),
       };
     case 'done':
     case 'stopped':

@@ -8,7 +8,6 @@ import type {Axis, Histogram} from '../picture/histogram';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
 import {kFull, type Limit} from '../protocol/limit';
-import type {ViewRequest} from '../protocol/view_request';
 import type {LineValues, Pick, Probe} from './inspector';
 import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
 
@@ -72,10 +71,6 @@ export class Client {
   }
   setLimit(limit: Limit): void {
     this.post({type: 'limit', limit});
-  }
-  /** Sets the user's view: logs of regions refine it first. */
-  look(view: ViewRequest): void {
-    this.post({type: 'look', view});
   }
   pause(): void {
     this.post({type: 'pause'});

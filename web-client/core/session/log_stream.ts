@@ -1,6 +1,5 @@
 // A session's connection, and the stream that was opened on it last.
 
-import type {ViewRequest} from '../protocol/view_request';
 import type {Transport} from '../transport/transport';
 import type {RequestedPart} from './requested_part';
 
@@ -62,7 +61,7 @@ export class LogStream {
     this.transport?.disconnect();
   }
 
-  open(mesh: string, {needsHead, keys, have, view, target}: RequestedPart): void {
+  open(mesh: string, {needsHead, keys, have, target}: RequestedPart): void {
     const fields = keys.filter((name) => name !== '');
     this.keys = fields;
     this.end = needsHead ? 'head' : 'limit';
@@ -72,7 +71,6 @@ export class LogStream {
       fields,
       credit: needsHead ? 1 : kWindowBytes, // one byte buys the head and nothing more
       have,
-      view,
       target,
       ...(this.digest ? {digest: this.digest} : {}),
     });
@@ -82,10 +80,6 @@ export class LogStream {
   aim({target}: RequestedPart): void {
     if (!this.endsAtHead) this.end = 'later limit';
     this.transport?.aim(target);
-  }
-
-  look(view: ViewRequest): void {
-    this.transport?.look(view);
   }
 
   /** Returns false if there is nothing to pause. */

@@ -1,7 +1,7 @@
 // Turns the growing mesh into pictures for the page.
 
 import type {Assembler} from '../decode/assembler';
-import {fieldsOf, keptCells, layerSoups, refinedCorners} from '../layers/shown';
+import {fieldsOf, keptCells, layerSoups} from '../layers/shown';
 import {
   cutsOf,
   cuttingPlanes,
@@ -25,8 +25,6 @@ export class Publisher {
   hasPublished = false;
   /** Called after the first picture of a mesh has been sent. */
   onFirst: () => void = () => undefined;
-  /** Called with refinedCorners of each new mesh. */
-  onLayers: (positions: Float32Array) => void = () => undefined;
   /** Null: pictures have no creases yet. */
   private creasesOf: CreasesOf | null = null;
   private meshChanged = false;
@@ -148,7 +146,6 @@ export class Publisher {
           ? surfaceOf(mesh, display, kept, this.creasesOf)
           : noSoup();
       Object.assign(snapshot, layerSoups(mesh, display, kept));
-      this.onLayers(refinedCorners(snapshot));
       snapshot.volume = this.volumeOf(mesh, kept);
     }
     this.meshChanged = this.cutChanged = this.isLast = false;

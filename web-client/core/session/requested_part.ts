@@ -2,12 +2,9 @@
 
 import type {Assembler} from '../decode/assembler';
 import type {Statistics} from '../decode/statistics';
-import {kNoSurfaceRequest, type SurfaceRequest} from '../picture/surface_request';
 import {errorOfLevel, kFull, limitReached, type Limit} from '../protocol/limit';
 import {fieldKeys} from '../protocol/manifest';
 import type {OpenRequest, Target} from '../protocol/messages';
-import {kFirstFieldPart, kStructurePart} from '../protocol/parts';
-import {kNoViewRequest, type ViewRequest} from '../protocol/view_request';
 import type {Source} from './worker_messages';
 
 export class RequestedPart {
@@ -18,7 +15,6 @@ export class RequestedPart {
   /** Indexes into the manifest. */
   fields: readonly number[] = [];
   limit: Limit = kFull;
-  view: ViewRequest = kNoViewRequest;
   /** The chunks that the log's copy holds. */
   private chunks = Infinity;
 
@@ -30,10 +26,9 @@ export class RequestedPart {
     this.chunks = chunks;
   }
 
-  /** Must be called before another log: its fields and surfaces may be elsewhere. */
+  /** Must be called before another log. */
   forget(): void {
     this.fields = [];
-    this.look(this.view, kNoSurfaceRequest);
   }
 
   /**
@@ -58,10 +53,6 @@ export class RequestedPart {
     this.fields = fields;
     this.names = this.keys;
     return true;
-  }
-
-  look(page: ViewRequest, {surfaceBoxes, isovalue}: SurfaceRequest): void {
-    this.view = {...page, surfaceBoxes, isovalue};
   }
 
   /** The server's keys of the fields. */
@@ -121,15 +112,9 @@ export class RequestedPart {
   get have(): OpenRequest['have'] {
     const {assembler, keys} = this;
     if (!assembler.manifest) return {chunks: 0, fields: {}};
-    const beyond = (count: number, part: number): [number, number][] =>
-      assembler.packets.length > 0 ? assembler.rangesBeyond(count, part) : [];
-    const chunks = assembler.receivedChunks;
-    const ranges = beyond(chunks, kStructurePart);
-    const fields = this.fields.map((field, i) => {
-      const count = assembler.receivedOfField(field);
-      const its = beyond(count, kFirstFieldPart + field);
-      return [keys[i]!, its.length > 0 ? {chunks: count, ranges: its} : count] as const;
-    });
-    return {chunks, ...(ranges.length > 0 ? {ranges} : {}), fields: Object.fromEntries(fields)};
+    const fields = this.fields.map(
+      (field, i) => [keys[i]!, assembler.receivedOfField(field)] as const,
+    );
+    return {chunks: assembler.receivedChunks, fields: Object.fromEntries(fields)};
   }
 }

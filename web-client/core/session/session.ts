@@ -2,15 +2,12 @@
 // as far as is asked for, and reports its state.
 
 import type {Assembler} from '../decode/assembler';
-import {isovalueOf} from '../layers/shown';
 import {baseFigures} from '../picture/base_figures';
 import {meshArrays} from '../picture/mesh_arrays';
-import {asksForTheSame, surfaceRequest, surfaceRequestOf} from '../picture/surface_request';
 import {errorCode, errorText, QtetError} from '../protocol/errors';
 import {kFull, type Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import type {Frame, ServerMessage} from '../protocol/messages';
-import type {ViewRequest} from '../protocol/view_request';
 import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
 import type {CoarseVolume} from './coarse_volume';
@@ -82,7 +79,6 @@ export class Session implements TransportHandlers {
     this.progress = new ProgressReporter(() => this.sendProgress());
     publisher.onFirst = () => this.advance();
     publisher.pace.untilLast = () => this.untilDecoded();
-    publisher.onLayers = (positions) => this.lookAtSurface(positions);
   }
 
   /** Messages and frames wait until the assembler is ready. */
@@ -131,12 +127,6 @@ export class Session implements TransportHandlers {
       else this.goOn(wasPaused);
       this.progress.changed();
     });
-  }
-
-  /** Sets the user's view. */
-  look(view: ViewRequest): void {
-    this.requested.look(view, surfaceRequestOf(this.requested.view));
-    this.follow();
   }
 
   /** The codec has become a whole one: decoding goes on from the base mesh. */
@@ -275,33 +265,12 @@ export class Session implements TransportHandlers {
       const message = `The mesh has no field "${unknown}". The first one is shown instead.`;
       this.send({type: 'error', code: 'unknown-field', message});
     }
-    this.assembler.look(this.requested.view);
     const {fields} = this.requested;
     this.send({type: 'manifest', manifest, digest: this.stream.digest, fields: [...fields]});
     this.sendPlan();
-    if (!this.stream.endsAtHead && this.stream.brings(this.requested.keys)) {
-      this.follow(); // the `open` could not tell the view: its lattice was unknown
-      return false;
-    }
+    if (!this.stream.endsAtHead && this.stream.brings(this.requested.keys)) return false;
     this.open();
     return true;
-  }
-
-  private lookAtSurface(positions: Float32Array): void {
-    const {lattice, packets, manifest} = this.assembler;
-    if (packets.length === 0 || !lattice || !manifest) return;
-    const {display} = this.publisher;
-    const isovalue = isovalueOf(display, manifest.fields);
-    const request = surfaceRequest(positions, isovalue, lattice.size);
-    if (asksForTheSame(request, surfaceRequestOf(this.requested.view))) return;
-    this.requested.look(this.requested.view, request);
-    this.follow();
-  }
-
-  private follow(): void {
-    if (this.assembler.packets.length === 0) return;
-    this.assembler.look(this.requested.view);
-    if (this.state.name !== 'paused') this.stream.look(this.requested.view);
   }
 
   // ---- decoding

@@ -112,8 +112,6 @@ function obey(
       return session.want(fieldsOf(message.display));
     case 'limit':
       return session.setLimit(message.limit);
-    case 'look':
-      return session.look(message.view);
     case 'pause':
       return session.pause();
     case 'resume':

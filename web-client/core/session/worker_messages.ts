@@ -14,7 +14,6 @@ import type {CoarseCells, VolumeCells} from '../picture/volume';
 import type {Vector, Plane} from '../protocol/geometry';
 import type {Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
-import type {ViewRequest} from '../protocol/view_request';
 import type {LogAddress} from '../transport/transports';
 import type {LineValues, Pick, Probe} from './inspector';
 
@@ -40,7 +39,6 @@ export type ToWorker =
   | {type: 'start'; source: Source; run: number}
   | {type: 'display'; display: Display}
   | {type: 'limit'; limit: Limit}
-  | {type: 'look'; view: ViewRequest}
   | {type: 'pause'}
   | {type: 'resume'}
   /** The last snapshot is on the screen, so that the next may come. */

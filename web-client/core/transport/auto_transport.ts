@@ -3,7 +3,6 @@
 
 import type {QtetError} from '../protocol/errors';
 import type {Frame, OpenRequest, ServerMessage, Target} from '../protocol/messages';
-import type {ViewRequest} from '../protocol/view_request';
 import type {Transport, TransportHandlers} from './transport';
 
 export type TransportKind = 'websocket' | 'range' | 'chunks';
@@ -54,9 +53,6 @@ export class AutoTransport implements Transport, TransportHandlers {
   }
   applied(bytes: number): void {
     this.current.applied(bytes);
-  }
-  look(view: ViewRequest): void {
-    this.current.look(view);
   }
   disconnect(): void {
     clearTimeout(this.timer);

@@ -3,9 +3,8 @@
 
 import {errorCode, errorText, QtetError} from '../protocol/errors';
 import type {LogTable} from '../protocol/log_table';
-import type {ChunkRange, OpenRequest, Target} from '../protocol/messages';
+import type {OpenRequest, Target} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart, kStructurePart} from '../protocol/parts';
-import {inOrder, kNoViewRequest, type ViewRequest} from '../protocol/view_request';
 import {reconnectDelayMs} from './backoff';
 import type {BlockSource, Piece} from './block_source';
 import type {Transport, TransportHandlers} from './transport';
@@ -85,15 +84,6 @@ export class HttpTransport implements Transport {
   applied(bytes: number): void {
     this.credit += bytes;
     this.creditCame();
-  }
-
-  /** Requests that are under way come first all the same. */
-  look(view: ViewRequest): void {
-    if (!this.table.isKnown || this.table.packets.length === 0) return;
-    const rank = new Map(chunkOrder(this.table, view).map((chunk, i) => [chunk, i]));
-    this.pieces.sort(
-      (a, b) => rank.get(a.chunk)! - rank.get(b.chunk)! || a.firstPart - b.firstPart,
-    );
   }
 
   disconnect(): void {
@@ -212,37 +202,22 @@ const kMaxPieces = 256;
 
 /**
  * The pieces that `request` lacks, in the order of proto/STREAM.md: chunk by chunk, structure
- * before fields. A log of regions has its head first, then its packets in the order of the view
- * request.
+ * before fields.
  */
 export function piecesOf(
   table: LogTable,
-  {fields, have, view}: Pick<OpenRequest, 'fields' | 'have' | 'view'>,
+  {fields, have}: Pick<OpenRequest, 'fields' | 'have'>,
 ): Piece[] {
   const wanted = fields
     .map((key) => ({field: table.fieldKeys.indexOf(key), here: have.fields[key] ?? 0}))
     .filter(({field}) => field >= 0);
   const pieces: Piece[] = [];
-  for (const chunk of chunkOrder(table, view)) {
-    if (!isHere(have, chunk)) pieces.push({chunk, firstPart: kStructurePart, parts: 2});
+  for (let chunk = 0; chunk < table.chunkCount; ++chunk) {
+    if (chunk >= have.chunks) pieces.push({chunk, firstPart: kStructurePart, parts: 2});
     for (const {field, here} of wanted)
-      if (!isHere(here, chunk)) pieces.push({chunk, firstPart: kFirstFieldPart + field, parts: 1});
+      if (chunk >= here) pieces.push({chunk, firstPart: kFirstFieldPart + field, parts: 1});
   }
   return pieces;
-}
-
-function chunkOrder({chunkCount, packets, lattice}: LogTable, view = kNoViewRequest): number[] {
-  const order = Array.from({length: chunkCount - packets.length}, (_, chunk) => chunk);
-  return packets.length > 0
-    ? [...order, ...inOrder(packets, view, lattice!.size).map(({chunk}) => chunk)]
-    : order;
-}
-
-function isHere(have: number | {chunks: number; ranges?: ChunkRange[]}, chunk: number): boolean {
-  if (typeof have === 'number') return chunk < have;
-  return (
-    chunk < have.chunks || (have.ranges ?? []).some(([first, end]) => first <= chunk && chunk < end)
-  );
 }
 
 function sizeOf(table: LogTable, {chunk, firstPart, parts}: Piece): number {

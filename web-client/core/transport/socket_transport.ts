@@ -1,7 +1,6 @@
 // Streams from one WebSocket to /v1/stream. It counts streams and credit, and does not look into
 // the blocks.
 
-import type {LogTable} from '../protocol/log_table';
 import {
   creditMessage,
   kSubprotocol,
@@ -12,11 +11,9 @@ import {
   resumeMessage,
   stopMessage,
   targetMessage,
-  viewMessage,
   type OpenRequest,
   type Target,
 } from '../protocol/messages';
-import {kNoViewRequest, wireView, type ViewRequest} from '../protocol/view_request';
 import {Pieces} from './pieces';
 import {ReconnectingSocket, type SocketFactory} from './reconnecting_socket';
 import type {Transport, TransportHandlers} from './transport';
@@ -33,20 +30,14 @@ interface Stream {
   window: number;
   /** Applied bytes whose credit has not been returned. */
   owed: number;
-  /** Empty if the server has not said. It then knows no views, targets and pauses. */
-  layout: string;
   isPaused: boolean;
-  /** The last view that the server was sent. */
-  sentView: string;
   pieces: Pieces;
 }
 
 const noStream = (): Stream => ({
   window: 0,
   owed: 0,
-  layout: '',
   isPaused: false,
-  sentView: '',
   pieces: new Pieces(),
 });
 
@@ -55,7 +46,6 @@ export class SocketTransport implements Transport {
   private stream = noStream();
   /** The number of the stream in this connection; 0: none was opened. */
   private number = 0;
-  private view: ViewRequest = kNoViewRequest;
 
   /** As ReconnectingSocket. */
   constructor(
@@ -63,7 +53,6 @@ export class SocketTransport implements Transport {
     private readonly handlers: TransportHandlers,
     makeSocket?: SocketFactory,
     random?: () => number,
-    private readonly table: Pick<LogTable, 'lattice'> | null = null,
   ) {
     const socketHandlers = {
       connected: () => {
@@ -90,19 +79,8 @@ export class SocketTransport implements Transport {
   open(request: OpenRequest): void {
     if (!this.isConnected) return;
     ++this.number;
-    this.view = request.view ?? this.view;
-    const wire = this.wire();
-    this.stream = {...noStream(), window: request.credit, sentView: viewMessage(wire)};
-    this.socket.send(openMessage(request, wire));
-  }
-
-  look(view: ViewRequest): void {
-    this.view = view;
-    const text = viewMessage(this.wire());
-    const {layout, sentView} = this.stream;
-    if (!this.isConnected || layout !== 'regions' || text === sentView) return;
-    this.stream.sentView = text;
-    this.socket.send(text);
+    this.stream = {...noStream(), window: request.credit};
+    this.socket.send(openMessage(request));
   }
 
   stop(): void {
@@ -110,7 +88,7 @@ export class SocketTransport implements Transport {
   }
 
   pause(): void {
-    if (!this.isConnected || this.stream.layout === '') return this.stop();
+    if (!this.isConnected) return;
     this.stream.isPaused = true;
     this.socket.send(pauseMessage());
   }
@@ -123,7 +101,7 @@ export class SocketTransport implements Transport {
   }
 
   aim(target: Target | null): void {
-    if (this.stream.layout !== '') this.socket.send(targetMessage(target));
+    this.socket.send(targetMessage(target));
   }
 
   /**
@@ -144,18 +122,9 @@ export class SocketTransport implements Transport {
     this.socket.disconnect();
   }
 
-  private wire(): Record<string, unknown> | null {
-    const lattice = this.table?.lattice;
-    return lattice ? wireView(this.view, lattice) : null;
-  }
-
   private receive(data: unknown): void {
     if (typeof data === 'string') {
       const message = parseServerMessage(data);
-      if (message?.type === 'opened') {
-        this.stream.layout = message.layout ?? '';
-        this.look(this.view); // it may have changed since the `open`
-      }
       // Replies to an earlier `open` do not concern the current one.
       if (message && (message.type === 'error' || message.stream === this.number))
         this.handlers.message(message);

@@ -4,7 +4,6 @@
 
 import type {QtetError} from '../protocol/errors';
 import type {Frame, OpenRequest, ServerMessage, Target} from '../protocol/messages';
-import type {ViewRequest} from '../protocol/view_request';
 
 export interface TransportHandlers {
   /** Connected, or reconnected: the moment to `open`. */
@@ -32,8 +31,6 @@ export interface Transport {
   aim(target: Target | null): void;
   /** Returns the credit of `bytes` applied payload bytes. */
   applied(bytes: number): void;
-  /** Changes the order in which the packets of a log of regions come. */
-  look(view: ViewRequest): void;
   /** Disconnects; `connect` may be called again. */
   disconnect(): void;
 }

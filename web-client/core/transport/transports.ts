@@ -49,13 +49,7 @@ export function makeTransport(
     (kind, its) => {
       switch (kind) {
         case 'websocket':
-          return new SocketTransport(
-            token ? () => ticketUrl(url, token) : url,
-            its,
-            undefined,
-            undefined,
-            table,
-          );
+          return new SocketTransport(token ? () => ticketUrl(url, token) : url, its);
         case 'range':
           return new HttpTransport(
             () => new RangeSource(log, table, fetch, firstBytes),

@@ -17,8 +17,7 @@ export class ErrorCurve {
 
   /**
    * Both axes are logarithmic, from the first level's error to the last one that is not 0. Behind
-   * it the line goes to the ground. The reached point has the bytes that are here. In a log of
-   * regions these may be more than the level needs, because what is looked at comes first.
+   * it the line goes to the ground. The reached point has the bytes that are here.
    */
   draw(
     plan: readonly LevelBytes[],

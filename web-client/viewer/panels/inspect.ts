@@ -36,7 +36,7 @@ export interface InspectHost {
   /** The title of the coloured field, for the plot. */
   readonly fieldTitle: string;
   announce(text: string): void;
-  /** The place that is pointed at, in lattice coordinates, is refined first; null for none. */
+  /** The place that is pointed at, in lattice coordinates; null for none. */
   pointAt(point: Vector | null): void;
 }
 

@@ -29,7 +29,7 @@ export interface PanelsHost {
   readonly client: Client;
   readonly view: View | null;
   readonly mesh: ShownMesh;
-  /** The place that is pointed at, in lattice coordinates, is refined first; null for none. */
+  /** The place that is pointed at, in lattice coordinates; null for none. */
   pointAt(point: Vector | null): void;
 }
 
