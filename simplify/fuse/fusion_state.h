@@ -17,7 +17,7 @@ namespace qtet {
 
 class FusionState {
  public:
-  /// REQUIRES: as FusionMesh and FusionCost; `workers` outlive this.
+  /// REQUIRES: as FusionMesh and FusionCost.
   FusionState(const LatticeMesh& lattice, std::size_t regionField, const CostOptions& cost,
               Workers& workers);
   FusionState(const FusionState&) = delete;
@@ -34,27 +34,22 @@ class FusionState {
   /// dropped. Threads may ask at once, each for owners of its own.
   const Candidate* bestAlive(VertexId owner);
 
-  /// Does fusions in this order; the fused vertices are numbered in it, from vertexSlots() on.
-  /// REQUIRES: as FusionMesh::fuse.
-  void fuse(std::span<const PlannedFusion> planned, std::uint32_t level);
+  /// Fuses the prey into a vertex at `point`. REQUIRES: as FusionMesh::fuse.
+  void fuse(const Prey& prey, const LatticePoint& point, const Star& star, std::uint32_t level);
 
   [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels) {
     return mesh_.takeHistory(levels);
   }
 
  private:
-  void prefetch(const Prey& prey) const;
-  void fuseCosts(const PlannedFusion& planned, VertexId fused, std::span<std::int32_t> integers);
-  void findIntegers(const PlannedFusion& planned, std::span<const double> values,
-                    std::span<std::int32_t> integers) const;
-  [[nodiscard]] VertexId nearest(const PlannedFusion& planned) const;
+  void findIntegers(const Prey& prey, const LatticePoint& point, std::span<const double> values);
+  [[nodiscard]] VertexId nearest(const Prey& prey, const LatticePoint& point) const;
 
-  Workers& workers_;
   FusionMesh mesh_;
   FusionCost cost_;
   ChangeTimes changes_;
   Candidates candidates_;
-  std::vector<std::int32_t> integers_;  // fuse's own
+  std::vector<std::int32_t> integers_;  // of the vertex that is fused: FusedVertex::values
 };
 
 }  // namespace qtet

@@ -4,32 +4,25 @@
 #include <cassert>
 
 namespace qtet {
+namespace {
+
+// A fusion that turns out to cost this much more than its key waits for those that cost less.
+constexpr float kDearer = 1.25f;
+
+}  // namespace
 
 void LevelDecider::run(LevelQueue& queue, LevelFusions& fusions, std::size_t goal) {
-  assert(proposers_.size() == workers_.count() && fusions.fused().empty());
+  assert(fusions.fused().empty());
   state_.changes().beginLevel();
-  proposals_.begin(queue.entries(), queue.limit(), proposers_);
-  workers_.beside([this](std::size_t worker) { proposals_.serve(worker); },
-                  [&] { decide(queue, fusions, goal); });
-  fusions.carryOut();
-  proposals_.end();
-}
-
-// The mesh changes afterwards: nothing that is decided here depends on it (ALGORITHM.md,
-// "Threads").
-void LevelDecider::decide(LevelQueue& queue, LevelFusions& fusions, std::size_t goal) {
-  struct Stop {
-    LevelProposals& proposals;
-    ~Stop() { proposals.stop(); }
-  } const stop{proposals_};
-  while (queue.nextKey() <= queue.limit() &&
-         state_.mesh().liveTetrahedra() - fusions.going() > goal) {
+  proposals_.begin(queue.entries());
+  while (queue.nextKey() <= queue.limit() && state_.mesh().liveTetrahedra() > goal) {
     workers_.throwIfStopped();
     const auto [owner, entry] = queue.pop();
     if (state_.changes().isLocked(owner)) continue;
     if (entry != LevelQueue::kBack) proposals_.comeTo(entry);
     process(owner, queue, fusions);
   }
+  proposals_.end();
 }
 
 void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusions) {
@@ -40,9 +33,7 @@ void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusi
   const float most = std::min(queue.limit(), std::max(kDearer * candidate.key, queue.nextKey()));
   const Outcome outcome = propose(owner, candidate.partner, most);
   if (outcome.cost <= most && outcome.proposal && !fusions.isMet(*outcome.proposal)) {
-    fusions.decideOn(*outcome.proposal);
-    if (workers_.count() > 1) return;
-    fusions.carryOut();  // while the processor has the star near
+    fusions.carryOut(*outcome.proposal);
     proposals_.giveBack(owner);
     return;
   }

@@ -16,14 +16,14 @@ namespace qtet {
 class LevelDecider {
  public:
   /// REQUIRES: all outlive this.
-  LevelDecider(FusionState& state, Workers& workers, const Proposers& proposers)
+  LevelDecider(FusionState& state, const Workers& workers, const Proposers& proposers)
       : state_(state),
         workers_(workers),
         proposers_(proposers),
         proposals_(state.mesh(), state.cost(), state.candidates(), state.changes()) {}
 
-  /// Decides on the fusions of a level and carries them out, until so many tetrahedra are left or
-  /// the queue is through. REQUIRES: both have begun the level, a proposer a worker.
+  /// Decides on the fusions of a level and carries each out, until so many tetrahedra are left or
+  /// the queue is through. REQUIRES: both have begun the level, a proposer.
   void run(LevelQueue& queue, LevelFusions& fusions, std::size_t goal);
 
  private:
@@ -33,12 +33,11 @@ class LevelDecider {
     const Proposal* proposal;
     float cost;
   };
-  void decide(LevelQueue& queue, LevelFusions& fusions, std::size_t goal);
   void process(VertexId owner, LevelQueue& queue, LevelFusions& fusions);
   [[nodiscard]] Outcome propose(VertexId owner, VertexId partner, float most);
 
   FusionState& state_;
-  Workers& workers_;
+  const Workers& workers_;
   const Proposers& proposers_;
   LevelProposals proposals_;
 };

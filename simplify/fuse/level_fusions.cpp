@@ -10,7 +10,7 @@ void LevelFusions::begin(std::uint32_t level) {
   fused_.clear(), links_.clear(), linkEnds_.clear();
 }
 
-void LevelFusions::decideOn(const Proposal& proposal) {
+void LevelFusions::carryOut(const Proposal& proposal) {
   const std::vector<VertexId>& link = proposal.star.link;
   for (const VertexId v : proposal.prey.vertices()) {
     assert(!state_.changes().isLocked(v));
@@ -19,18 +19,11 @@ void LevelFusions::decideOn(const Proposal& proposal) {
   for (const VertexId v : link)
     if (v != kGhost) state_.changes().touch(v);
   state_.changes().next();
-  going_ += proposal.tetrahedra;
-  fused_.push_back(static_cast<VertexId>(state_.mesh().vertexSlots() + planned_.size()));
+  fused_.push_back(static_cast<VertexId>(state_.mesh().vertexSlots()));
   if (boundary_) boundary_->decideOn(proposal, fused_.back());
   links_.insert(links_.end(), link.begin(), link.end());
   linkEnds_.push_back(links_.size());
-  planned_.push_back({proposal.prey, proposal.where.point, &proposal.star});
-}
-
-void LevelFusions::carryOut() {
-  state_.fuse(planned_, level_);
-  planned_.clear();
-  going_ = 0;
+  state_.fuse(proposal.prey, proposal.where.point, proposal.star, level_);
 }
 
 }  // namespace qtet

@@ -1,5 +1,4 @@
-// The fusions of a level: decided on first, and done afterwards by all threads. No decision of a
-// level depends on its fusions having been done (THREADS.md).
+// The fusions of a level. No decision of a level depends on its fusions having been done.
 #pragma once
 
 #include <cstddef>
@@ -23,15 +22,10 @@ class LevelFusions {
   [[nodiscard]] bool isMet(const Proposal& proposal) const {
     return proposal.where.goesOutside && boundary_->isMetBy(proposal);
   }
-  /// Touches the fusion's star. REQUIRES: no vertex of the prey is locked, and the proposal stays
-  /// until carryOut.
-  void decideOn(const Proposal& proposal);
-  /// Tetrahedra that go with what is decided on and not done yet.
-  [[nodiscard]] std::size_t going() const { return going_; }
-  /// Does what was decided on, in that order.
-  void carryOut();
+  /// Does the fusion and touches its star. REQUIRES: no vertex of the prey is locked.
+  void carryOut(const Proposal& proposal);
 
-  /// The fused vertices of the level, those not done yet among them.
+  /// The fused vertices of the level.
   [[nodiscard]] std::span<const VertexId> fused() const { return fused_; }
   /// The link of fused()[i], in which nothing changes until the level ends.
   [[nodiscard]] std::span<const VertexId> linkOf(std::size_t i) const {
@@ -43,8 +37,6 @@ class LevelFusions {
   FusionState& state_;
   LiveBoundary* boundary_;
   std::uint32_t level_ = 0;
-  std::vector<PlannedFusion> planned_;
-  std::size_t going_ = 0;
   std::vector<VertexId> fused_;
   std::vector<VertexId> links_;  // of fused_, back to back
   std::vector<std::size_t> linkEnds_;

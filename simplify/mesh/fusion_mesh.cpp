@@ -1,7 +1,6 @@
 #include "simplify/mesh/fusion_mesh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
 
@@ -137,8 +136,9 @@ FusionMesh::Placed FusionMesh::placed(const Prey& prey, const LatticePoint& poin
   return {Placement::kFree, 0};
 }
 
-// Everything of a record but where its cells begin.
-void FusionMesh::record(Fusion& record, const Prey& prey, const Placed& placed, const Star& star) {
+// All of a record that addRecord() has left open.
+void FusionMesh::fillRecord(Fusion& record, const Prey& prey, const Placed& placed,
+                            const Star& star) {
   record.k = prey.k;
   record.placement = placed.placement;
   record.prey = prey.vertex;
@@ -170,18 +170,10 @@ std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
     const auto first = cells.begin() + (isGhost(c) ? 0 : stars_[v].ghosts);
     return static_cast<std::uint32_t>(std::find(first, cells.end(), c) - cells.begin());
   }
-  Places& places = *placesInHub(v, true);
+  Places& places = placesInHub_[v];
   if (places.empty())
     for (std::uint32_t i = 0; i < cells.size(); ++i) places[cells[i]] = i;
   return places.extract(c).mapped();
-}
-
-/// The places in a hub, null where they are not kept and not wanted.
-FusionMesh::Places* FusionMesh::placesInHub(VertexId v, bool wanted) {
-  const std::lock_guard lock(hubMutex_);
-  if (wanted) return &placesInHub_[v];
-  const auto hub = placesInHub_.find(v);
-  return hub == placesInHub_.end() ? nullptr : &hub->second;
 }
 
 void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
@@ -189,7 +181,7 @@ void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
   CellId* cells = &pool_[stars_[v].first];
   cells[to] = cells[from];
   if (stars_[v].size < kHubCells) return;
-  if (Places* places = placesInHub(v, false)) (*places)[cells[to]] = to;
+  if (const auto hub = placesInHub_.find(v); hub != placesInHub_.end()) hub->second[cells[to]] = to;
 }
 
 void FusionMesh::findPlane(CellId ghost) {
@@ -201,52 +193,35 @@ void FusionMesh::findPlane(CellId ghost) {
 
 VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star,
                           std::uint32_t level) {
-  const PlannedFusion planned{prey, what.point, &star};
-  fuse(std::span(&planned, 1), level, [&](std::size_t, VertexId) { return what.values; });
-  return history_.fusions.back().fused;
-}
-
-void FusionMesh::fuse(std::span<const PlannedFusion> planned, std::uint32_t level,
-                      const ValuesOf& valuesOf, Workers* workers) {
-  const std::uint64_t toPool = pool_.size() - history_.affectedCells.size();  // modulo 2^64
-  makeRoom(planned, level);
-  if (workers && workers->count() > 1) {
-    fuseByThreads(planned, toPool, valuesOf, *workers);
-  } else {
-    const auto records = std::span(history_.fusions).last(planned.size());
-    for (std::size_t i = 0; i < planned.size(); ++i) {
-      const std::vector<VertexId>& link = planned[i].star->link;
-      for (const VertexId v : link)
-        if (v != kGhost) prefetchVertex(v);
-      setValues(records[i].fused, valuesOf(i, records[i].fused));
-      for (const VertexId v : link)
-        if (v != kGhost) prefetchList(v);
-      count(fuse(records[i], planned[i], toPool,
-                 [this](VertexId v, CellId c) { removeFromStar(v, c); }));
-    }
-  }
+  Fusion& record = addRecord(star, level);
+  const VertexId fused = record.fused;
+  const std::uint64_t firstOfStar = pool_.size();
+  pool_.resize(pool_.size() + star.affected.size());
+  livePool_ += star.affected.size();
+  setValues(fused, what.values);
+  for (const VertexId v : star.link)
+    if (v != kGhost) prefetchList(v);
+  fillRecord(record, prey, placed(prey, what.point), star);
+  history_.points[fused] = what.point;
+  fuseCells(prey, star, fused);
+  stars_[fused] = addStar(firstOfStar, star.affected);
   if (pool_.size() > 2 * livePool_ + 4096) compactPool();
+  return fused;
 }
 
-// Records that say where their cells begin, and whatever grows with each fusion as long as it will
-// be.
-void FusionMesh::makeRoom(std::span<const PlannedFusion> planned, std::uint32_t level) {
-  std::uint64_t affected = history_.affectedCells.size(), deleted = history_.deletedCells.size();
-  std::size_t vertices = history_.points.size();
-  for (const PlannedFusion& p : planned) {
-    Fusion& record = history_.fusions.emplace_back();
-    record.level = level;
-    record.fused = static_cast<VertexId>(vertices++);
-    record.firstAffected = affected,
-    record.affectedCount = static_cast<std::uint32_t>(p.star->affected.size());
-    record.firstDeleted = deleted,
-    record.deletedCount = static_cast<std::uint32_t>(p.star->deleted.size());
-    affected += record.affectedCount, deleted += record.deletedCount;
-  }
-  pool_.resize(pool_.size() + (affected - history_.affectedCells.size()));
-  livePool_ += affected - history_.affectedCells.size();
-  history_.affectedCells.resize(affected), history_.affectedLabels.resize(affected),
-      history_.deletedCells.resize(deleted);
+// A record that says where its cells begin, with room for them and for the fused vertex.
+Fusion& FusionMesh::addRecord(const Star& star, std::uint32_t level) {
+  Fusion& record = history_.fusions.emplace_back();
+  record.level = level;
+  record.fused = static_cast<VertexId>(history_.points.size());
+  record.firstAffected = history_.affectedCells.size();
+  record.affectedCount = static_cast<std::uint32_t>(star.affected.size());
+  record.firstDeleted = history_.deletedCells.size();
+  record.deletedCount = static_cast<std::uint32_t>(star.deleted.size());
+  history_.affectedCells.resize(record.firstAffected + record.affectedCount);
+  history_.affectedLabels.resize(record.firstAffected + record.affectedCount);
+  history_.deletedCells.resize(record.firstDeleted + record.deletedCount);
+  const std::size_t vertices = history_.points.size() + 1;
   history_.points.resize(vertices);
   for (std::size_t f = 0; f < history_.fields.size(); ++f)
     if (!isCellField(history_.fields[f]))
@@ -254,83 +229,17 @@ void FusionMesh::makeRoom(std::span<const PlannedFusion> planned, std::uint32_t 
   onBoundary_.resize(vertices), singular_.resize(vertices), aliveVertex_.resize(vertices),
       stars_.resize(vertices);
   if (hasRegions()) onInterface_.resize(vertices);
+  return record;
 }
 
-void FusionMesh::prefetchLists(const Star& star) {
-  prefetchAll(std::span<const CellId>(star.affected)),
-      prefetchAll(std::span<const std::uint8_t>(star.labels));
-  prefetchAll(std::span<const CellId>(star.deleted)),
-      prefetchAll(std::span<const VertexId>(star.link));
-}
-
-// Asks the memory for what the fusion changes.
-void FusionMesh::prefetch(const PlannedFusion& planned) const {
-  for (const VertexId v : planned.prey.vertices()) prefetchVertex(v), prefetchPoint(v);
-  for (const CellId c : planned.star->affected) {
-    qtet::prefetch(&history_.cells[c]);
-    if (isGhost(c)) qtet::prefetch(&planes_[c - firstGhost_]);
-  }
-  for (const CellId c : planned.star->deleted)
-    qtet::prefetch(&history_.cells[c]), qtet::prefetch(&history_.live[c]);
-}
-
-// Cells, prey and what is fused are one fusion's own. The stars round them are not; they change
-// after all of that, each by one thread.
-void FusionMesh::fuseByThreads(std::span<const PlannedFusion> planned, std::uint64_t toPool,
-                               const ValuesOf& valuesOf, Workers& workers) {
-  constexpr std::size_t kRun = 32, kAhead = 2, kLossesAhead = 4;
-  const auto records = std::span(history_.fusions).last(planned.size());
-  const std::size_t runs = (planned.size() + kRun - 1) / kRun;
-  if (losses_.size() < runs) losses_.resize(runs);
-  workers.forRuns(planned.size(), kRun, [&](std::size_t begin, std::size_t end) {
-    Losses& losses = losses_[begin / kRun];
-    for (auto& some : losses) some.clear();
-    Gone gone;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i + 3 * kAhead < end) prefetchAll(std::span(planned[i + 3 * kAhead].star, 1));
-      if (i + 2 * kAhead < end) prefetchLists(*planned[i + 2 * kAhead].star);
-      if (i + kAhead < end) prefetch(planned[i + kAhead]);
-      setValues(records[i].fused, valuesOf(i, records[i].fused));
-      const Gone more = fuse(records[i], planned[i], toPool,
-                             [&](VertexId v, CellId c) { losses[losers(v)].push_back({v, c}); });
-      gone.tetrahedra += more.tetrahedra, gone.fromStars += more.fromStars;
-    }
-    count(gone);
-  });
-  workers.forEach(kLosers, 1, [&](std::size_t, std::size_t some) {
-    for (const Losses& of : std::span(losses_).first(runs)) {
-      const std::vector<Loss>& losses = of[some];
-      for (std::size_t i = 0; i < losses.size(); ++i) {
-        if (i + 2 * kLossesAhead < losses.size())
-          prefetchVertex(losses[i + 2 * kLossesAhead].vertex);
-        if (i + kLossesAhead < losses.size()) prefetchList(losses[i + kLossesAhead].vertex);
-        removeFromStar(losses[i].vertex, losses[i].cell);
-      }
-    }
-  });
-}
-
-void FusionMesh::count(const Gone& gone) {
-  std::atomic_ref(liveTetrahedra_).fetch_sub(gone.tetrahedra, std::memory_order_relaxed);
-  std::atomic_ref(livePool_).fetch_sub(gone.fromStars, std::memory_order_relaxed);
-}
-
-// Calls lose(vertex, cell) for each cell that goes from the star of a vertex which stays.
-template <class Lose>
-FusionMesh::Gone FusionMesh::fuse(Fusion& fusion, const PlannedFusion& planned,
-                                  std::uint64_t toPool, const Lose& lose) {
-  const Prey& prey = planned.prey;
-  const Star& star = *planned.star;
-  const VertexId fused = fusion.fused;
-  Gone gone;
-  record(fusion, prey, placed(prey, planned.point), star);
-  history_.points[fused] = planned.point;
+// The star's cells that stay get the fused vertex, and those that go leave the stars of the others.
+void FusionMesh::fuseCells(const Prey& prey, const Star& star, VertexId fused) {
   for (const VertexId v : prey.vertices()) {
     assert(aliveVertex_[v] && !singular(v));
     onBoundary_[fused] |= onBoundary_[v];
     if (hasRegions()) onInterface_[fused] |= onInterface_[v];
     aliveVertex_[v] = 0;
-    gone.fromStars += stars_[v].size;
+    livePool_ -= stars_[v].size;
     stars_[v].size = stars_[v].ghosts = 0;
   }
   for (std::size_t i = 0; i < star.affected.size(); ++i) {
@@ -341,17 +250,15 @@ FusionMesh::Gone FusionMesh::fuse(Fusion& fusion, const PlannedFusion& planned,
   }
   for (const CellId c : star.deleted) {
     history_.live[c] = 0;
-    gone.tetrahedra += !isGhost(c);
+    liveTetrahedra_ -= !isGhost(c);
     const auto& cell = history_.cells[c];
     unsigned fusing = 0;
     for (const VertexId v : prey.vertices()) fusing |= cornersThatAre(cell, v);
     const OtherCorners& others = kOtherCorners[fusing];
     for (std::size_t i = 0; i < others.count; ++i)
-      if (const VertexId v = cell[others.corner[i]]; v != kGhost) lose(v, c), ++gone.fromStars;
+      if (const VertexId v = cell[others.corner[i]]; v != kGhost) removeFromStar(v, c), --livePool_;
   }
   aliveVertex_[fused] = 1;
-  stars_[fused] = addStar(fusion.firstAffected + toPool, star.affected);
-  return gone;
 }
 
 void FusionMesh::setValues(VertexId fused, std::span<const std::int32_t> values) {

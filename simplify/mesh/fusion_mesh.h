@@ -5,9 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <mutex>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -49,13 +47,6 @@ struct FusedVertex {
   LatticePoint point{};
   /// The integers of every point field, one field after the other.
   std::span<const std::int32_t> values;
-};
-
-/// A fusion that is decided on and not done yet: all but the values of what the prey becomes.
-struct PlannedFusion {
-  Prey prey;
-  LatticePoint point{};
-  const Star* star = nullptr;  ///< the prey's
 };
 
 class FusionMesh {
@@ -150,13 +141,6 @@ class FusionMesh {
 
   /// Fuses the prey. REQUIRES: legal (FusionCheck), `star` the prey's. Returns the fused vertex.
   VertexId fuse(const Prey& prey, const FusedVertex& fused, const Star& star, std::uint32_t level);
-  /// FusedVertex::values of planned[i], which becomes vertex `fused`.
-  using ValuesOf = std::function<std::span<const std::int32_t>(std::size_t i, VertexId fused)>;
-  /// Does fusions in this order; what they fuse is numbered in it, from vertexSlots() on. `workers`
-  /// share the work, valuesOf's too, and change nothing of its outcome. REQUIRES: each legal; no
-  /// prey vertex in another one's star.
-  void fuse(std::span<const PlannedFusion> planned, std::uint32_t level, const ValuesOf& valuesOf,
-            Workers* workers = nullptr);
 
   [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels);
 
@@ -176,38 +160,16 @@ class FusionMesh {
     Placement placement;
     std::uint8_t first;
   };
-  /// A cell that leaves the star of a vertex which stays.
-  struct Loss {
-    VertexId vertex;
-    CellId cell;
-  };
-  /// The losses of neighbouring fusions, in their order, by losers(vertex): a star's losses are one
-  /// thread's.
-  static constexpr std::size_t kLosers = 16;
-  using Losses = std::array<std::vector<Loss>, kLosers>;
-  // most who share a cache line of stars_ are together
-  [[nodiscard]] static std::size_t losers(VertexId v) { return v / 16 % kLosers; }
-
   [[nodiscard]] Placed placed(const Prey& prey, const LatticePoint& point) const;
-  void makeRoom(std::span<const PlannedFusion> planned, std::uint32_t level);
-  void record(Fusion& record, const Prey& prey, const Placed& placed, const Star& star);
-  struct Gone {
-    std::size_t tetrahedra = 0, fromStars = 0;
-  };
-  template <class Lose>
-  Gone fuse(Fusion& record, const PlannedFusion& planned, std::uint64_t toPool, const Lose& lose);
-  void fuseByThreads(std::span<const PlannedFusion> planned, std::uint64_t toPool,
-                     const ValuesOf& valuesOf, Workers& workers);
-  void count(const Gone& gone);
-  static void prefetchLists(const Star& star);
-  void prefetch(const PlannedFusion& planned) const;
+  Fusion& addRecord(const Star& star, std::uint32_t level);
+  void fillRecord(Fusion& record, const Prey& prey, const Placed& placed, const Star& star);
+  void fuseCells(const Prey& prey, const Star& star, VertexId fused);
   void setValues(VertexId fused, std::span<const std::int32_t> values);
   [[nodiscard]] StarRange addStar(std::uint64_t first, std::span<const CellId> cells);
   void removeFromStar(VertexId v, CellId c);
   [[nodiscard]] std::uint32_t placeInStar(VertexId v, CellId c);
   void moveInStar(VertexId v, std::uint32_t from, std::uint32_t to);
   using Places = std::unordered_map<CellId, std::uint32_t>;
-  [[nodiscard]] Places* placesInHub(VertexId v, bool wanted);
   void compactPool();
 
   FusionHistory history_;
@@ -224,12 +186,10 @@ class FusionMesh {
   static constexpr std::size_t kHubCells = 1024;
   // no longer kept once a star, which only shrinks, is smaller
   std::unordered_map<VertexId, Places> placesInHub_;
-  std::mutex hubMutex_;  // of placesInHub_, not of what is in it
   std::vector<StarRange> stars_;
   std::vector<CellId> pool_;  // stars back to back, with holes
   std::size_t livePool_ = 0;
-  std::vector<Losses> losses_;  // fuseByThreads' own
-  bool hasSingular_ = false;    // hardly a mesh does
+  bool hasSingular_ = false;  // hardly a mesh does
   std::size_t liveTetrahedra_ = 0;
 };
 

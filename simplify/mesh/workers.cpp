@@ -16,9 +16,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::microseconds kMoment{50};
 // Looks between two looks at the clock, which takes as long as some pauses.
 constexpr int kLooksAClock = 16;
-// The time that a thread sleeps between two looks where nobody wakes it. The kernel adds half of
-// it, and a look takes a thirtieth.
-constexpr std::chrono::microseconds kNap{100};
 
 inline void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -40,19 +37,12 @@ void spinUntil(const Done& done) {
 
 }  // namespace
 
-void SpinWait::wait() {
-  if (isLong_) return std::this_thread::sleep_for(kNap);
-  if (looks_ == 0) end_ = Clock::now() + kMoment;
-  pause();
-  isLong_ = ++looks_ % kLooksAClock == 0 && Clock::now() >= end_;
-}
-
 int threadsAtOnce(int asked) {
   return std::min(asked, std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
 }
 
 struct Workers::Job {
-  const std::function<void(std::size_t)>& others;
+  const std::function<void(std::size_t)>& take;
   std::exception_ptr failure;  // under the mutex
 };
 
@@ -76,10 +66,10 @@ Workers::~Workers() {
   for (std::thread& t : threads_) t.join();
 }
 
-void Workers::beside(const std::function<void(std::size_t)>& others,
-                     const std::function<void()>& own) {
-  if (threads_.empty()) return own();
-  Job job{others, {}};
+// Calls take(worker) here and in each worker that comes before it has ended here, and returns when
+// all have ended. An exception is thrown on then.
+void Workers::runByAll(const std::function<void(std::size_t)>& take) {
+  Job job{take, {}};
   {
     const std::lock_guard lock(mutex_);
     job_ = &job;
@@ -88,7 +78,7 @@ void Workers::beside(const std::function<void(std::size_t)>& others,
   changed_.notify_all();
   std::exception_ptr failure;
   try {
-    own();
+    take(0);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -127,7 +117,7 @@ void Workers::forEach(std::size_t n, std::size_t grain,
       throw;
     }
   };
-  beside(take, [&] { take(0); });
+  runByAll(take);
 }
 
 void forEach(Workers* workers, std::size_t n, std::size_t grain,
@@ -155,7 +145,7 @@ void Workers::serve(std::size_t worker) {
   std::size_t seen = 0;
   while (Job* job = next(seen)) {
     try {
-      job->others(worker);
+      job->take(worker);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!job->failure) job->failure = std::current_exception();

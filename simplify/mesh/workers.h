@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -20,20 +19,6 @@ namespace qtet {
 /// another, ten times as long with 256 on two cores.
 [[nodiscard]] int threadsAtOnce(int asked);
 
-/// One wait of a thread that looks at something again and again until another thread has done it.
-/// It keeps the processor for a moment and then sleeps between the looks, so that a busy machine
-/// has the processor for others.
-class SpinWait {
- public:
-  /// Between two looks.
-  void wait();
-
- private:
-  std::chrono::steady_clock::time_point end_{};  // of the moment
-  int looks_ = 0;
-  bool isLong_ = false;
-};
-
 class Workers {
  public:
   /// `threads` >= 1, the caller's included; fewer where the system gives no more. Once a stop is
@@ -47,12 +32,6 @@ class Workers {
   void throwIfStopped() const { qtet::throwIfStopped(stop_); }
 
   [[nodiscard]] std::size_t count() const { return threads_.size() + 1; }
-
-  /// Calls own() here, and others(worker) in each of the other workers, from 1 on, that comes
-  /// before own() has ended; returns when all have. An exception of either is thrown on, after the
-  /// others have ended: an own() that others wait for has to tell them of its end.
-  void beside(const std::function<void(std::size_t worker)>& others,
-              const std::function<void()>& own);
 
   /// Calls work(worker, i) for every i below `n`, each once, `grain` neighbours at a time; workers
   /// are numbered 0..count()-1. Returns when all are done. The work's result must not depend on the
@@ -70,6 +49,7 @@ class Workers {
 
  private:
   struct Job;
+  void runByAll(const std::function<void(std::size_t worker)>& take);
   void awaitOthers();
   void serve(std::size_t worker);
   [[nodiscard]] Job* next(std::size_t& seen);

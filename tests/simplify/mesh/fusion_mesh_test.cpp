@@ -91,42 +91,5 @@ TEST(FusionMesh, theBoundaryTrianglesOfAStarComeFirst) {
   }
 }
 
-// Rim edges that do not touch one another, all of which take cells from the same two hubs, and from
-// rim vertices between them.
-TEST(FusionMesh, threadsFuseWhatOneDoes) {
-  constexpr std::uint32_t kCells = 6000, kApart = 4, kLevels = 6;
-  FusionMesh one(testing::fanMesh(kCells)), many(testing::fanMesh(kCells));
-  Workers workers(5);
-  std::vector<VertexId> rim(kCells);
-  std::iota(rim.begin(), rim.end(), 2u);
-  for (std::uint32_t level = 0; level < kLevels; ++level) {
-    std::vector<Star> stars;
-    std::vector<PlannedFusion> planned;
-    std::vector<VertexId> next;
-    stars.reserve(rim.size() / kApart);
-    for (std::size_t i = 0; i + kApart <= rim.size(); i += kApart) {
-      stars.push_back(starOf(one, rim[i], rim[i + 1]));
-      planned.push_back({{2, {rim[i], rim[i + 1], 0, 0}}, one.point(rim[i + 1]), &stars.back()});
-      next.push_back(static_cast<VertexId>(one.vertexSlots() + planned.size() - 1));
-      next.insert(next.end(), {rim[i + 2], rim[i + 3]});
-    }
-    next.insert(next.end(), rim.end() - static_cast<std::ptrdiff_t>(rim.size() % kApart),
-                rim.end());
-    const auto noValues = [](std::size_t, VertexId) { return std::span<const std::int32_t>(); };
-    one.fuse(planned, level, noValues);
-    many.fuse(planned, level, noValues, &workers);
-    rim = next;
-    ASSERT_EQ(one.vertexSlots(), many.vertexSlots());
-    ASSERT_EQ(one.liveTetrahedra(), many.liveTetrahedra());
-    for (VertexId v = 0; v < one.vertexSlots(); ++v) {
-      ASSERT_EQ(one.alive(v), many.alive(v));
-      ASSERT_TRUE(std::ranges::equal(one.star(v), many.star(v)))
-          << "vertex " << v << " at level " << level;
-      ASSERT_EQ(one.boundaryStar(v).size(), many.boundaryStar(v).size());
-    }
-  }
-  testing::expectTheSame(many.takeHistory(kLevels), one.takeHistory(kLevels));
-}
-
 }  // namespace
 }  // namespace qtet

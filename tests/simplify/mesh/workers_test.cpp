@@ -78,60 +78,6 @@ TEST_P(OfThreads, anExceptionEndsTheJobAndNotTheWorkers) {
   EXPECT_EQ(done, 100);
 }
 
-TEST_P(OfThreads, othersWorkBesideTheirOwnerUntilHeIsDone) {
-  Workers workers(GetParam());
-  for (int round = 0; round < 100; ++round) {
-    std::atomic<bool> isOver{false};
-    std::atomic<std::size_t> come{0}, gone{0};
-    std::vector<std::atomic<int>> times(workers.count());
-    const auto others = [&](std::size_t worker) {
-      ++times.at(worker), ++come;
-      for (SpinWait waiting; !isOver;) waiting.wait();
-      ++gone;
-    };
-    workers.beside(others, [&] {
-      ++times[0];
-      // once with all of them
-      for (SpinWait waiting; round == 0 && come + 1 < workers.count();) waiting.wait();
-      isOver = true;
-    });
-    EXPECT_EQ(gone, come) << "nobody is left behind";
-    EXPECT_EQ(times[0], 1);
-    for (const auto& t : times) EXPECT_LE(t, 1);
-  }
-}
-
-TEST_P(OfThreads, anExceptionOfEitherSideIsThrownOnWhenTheOthersHaveEnded) {
-  Workers workers(GetParam());
-  std::atomic<bool> isOver{false};
-  std::atomic<int> inside{0};
-  const auto waits = [&](std::size_t) {
-    ++inside;
-    for (SpinWait waiting; !isOver;) waiting.wait();
-    --inside;
-  };
-  const auto fails = [&] {
-    isOver = true;
-    throw std::runtime_error("own");
-  };
-  EXPECT_THROW(workers.beside(waits, fails), std::runtime_error);
-  EXPECT_EQ(inside, 0);
-  if (workers.count() == 1) return;
-  std::atomic<int> come{0};
-  const auto othersFail = [&](std::size_t) {
-    ++come;
-    throw std::runtime_error("others");
-  };
-  EXPECT_THROW(workers.beside(othersFail,
-                              [&] {
-                                for (SpinWait waiting; come == 0;) waiting.wait();
-                              }),
-               std::runtime_error);
-  std::atomic<int> done{0};
-  workers.forEach(100, 8, [&](std::size_t, std::size_t) { ++done; });
-  EXPECT_EQ(done, 100);
-}
-
 /// Processor time of this process.
 std::chrono::duration<double, std::milli> processorTime() {
   timespec now{};
@@ -147,33 +93,12 @@ double maxMilliseconds(const Workers& workers) {
   return 100.0 * static_cast<double>(std::max<std::size_t>(1, workers.count() - 1));
 }
 
-TEST_P(OfThreads, whoWaitsLongForTheOwnerSleeps) {
+TEST_P(OfThreads, whoWaitsLongForTheOthersSleeps) {
   Workers workers(GetParam());
-  std::atomic<bool> isOver{false};
   const auto before = processorTime();
-  workers.beside(
-      [&](std::size_t) {
-        for (SpinWait waiting; !isOver;) waiting.wait();
-      },
-      [&] {
-        std::this_thread::sleep_for(kLongWait);
-        isOver = true;
-      });
-  EXPECT_LT((processorTime() - before).count(), maxMilliseconds(workers));
-}
-
-TEST_P(OfThreads, anOwnerThatWaitsLongForTheOthersSleeps) {
-  Workers workers(GetParam());
-  std::atomic<bool> isThere{workers.count() == 1};
-  const auto before = processorTime();
-  workers.beside(
-      [&](std::size_t) {
-        isThere = true;
-        std::this_thread::sleep_for(kLongWait);
-      },
-      [&] {
-        for (SpinWait waiting; !isThere;) waiting.wait();
-      });
+  workers.forEach(workers.count(), 1, [&](std::size_t, std::size_t i) {
+    if (i == 0) std::this_thread::sleep_for(kLongWait);
+  });
   EXPECT_LT((processorTime() - before).count(), maxMilliseconds(workers));
 }
 
