@@ -48,14 +48,15 @@ std::size_t fieldCount(const qtet_log& log, std::uint32_t field) {
          (cells ? log.refiner->tetrahedra().size() : log.refiner->points().size());
 }
 
-/// Decodes what the field lacks of the mesh's chunks.
+/// Decodes what the field, and those that it is predicted from, lack of the mesh's chunks.
 qtet_status catchUp(qtet_log* log, std::uint32_t field) {
   if (const qtet_status status = log->needField(field)) return status;
-  while (log->refiner->fieldChunksApplied(field) < log->refiner->chunksApplied()) {
-    const Status status = qtet::applyFieldBlock(*log->file, *log->refiner,
-                                                log->refiner->fieldChunksApplied(field), field);
-    if (!status) return log->refuse(status.error());
-  }
+  for (const std::uint32_t f : log->file->index().withParents(std::span(&field, 1)))
+    while (log->refiner->fieldChunksApplied(f) < log->refiner->chunksApplied()) {
+      const Status status =
+          qtet::applyFieldBlock(*log->file, *log->refiner, log->refiner->fieldChunksApplied(f), f);
+      if (!status) return log->refuse(status.error());
+    }
   return QTET_OK;
 }
 

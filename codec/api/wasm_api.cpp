@@ -107,6 +107,14 @@ std::uint32_t qtet_field_association(std::uint32_t field) {
   return hasField(field) ? static_cast<std::uint32_t>(refiner->index().fields[field].association)
                          : 0;
 }
+std::uint32_t qtet_field_parents(std::uint32_t field) {
+  return hasField(field) ? refiner->index().fields[field].prediction.count : 0;
+}
+std::uint32_t qtet_field_parent(std::uint32_t field, std::uint32_t parent) {
+  return parent < qtet_field_parents(field)
+             ? refiner->index().fields[field].prediction.parents[parent].field
+             : 0;
+}
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   if (!hasBlock(chunk, part)) return 0;
   const qtet::ChunkEntry& e = refiner->index().chunks[chunk];

@@ -53,7 +53,7 @@ std::uint64_t fieldBytes(const LogIndex& index, const Slots& slots) {
     const std::uint64_t bytes =
         sizeof(std::int32_t) * std::uint64_t{field.components} *
         (field.association == Association::kPoint ? slots.vertices : slots.tetrahedra);
-    sum += bytes;
+    sum += field.prediction.isNone() ? bytes : 2 * bytes;
     largest = std::max(largest, bytes);
   }
   const std::uint64_t ancestry =

@@ -17,13 +17,15 @@ constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'Q', 'T', 'E', 'T', '\r', '\n
 
 // Beside a field's association: its values may be missing.
 constexpr std::uint32_t kMissingFlag = 0x80;
+// Likewise: its prediction in time follows.
+constexpr std::uint32_t kPredictedFlag = 0x40;
 
 struct Header {
   std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
   std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0;
   std::uint64_t fileBytes = 0;
   std::uint8_t positionBits = 0;
-  std::uint16_t minor = 0;
+  std::uint16_t major = 0, minor = 0;
 
   [[nodiscard]] std::uint64_t minTableBytes() const {
     return std::uint64_t{fields} * 2 +
@@ -46,15 +48,17 @@ Result<Header> readHeader(ByteView bytes) {
   r.take(kMagic.size());
   const auto major = r.read<std::uint16_t>();
   const auto minor = r.read<std::uint16_t>();
-  if (major != LogIndex::kVersionMajor)
+  if (major != LogIndex::kVersionMajor && major != LogIndex::kVersionOfSeries)
     return fail(ErrorCode::kBadVersion,
-                "version " + std::to_string(major) + " of the format; this build reads version " +
-                    std::to_string(LogIndex::kVersionMajor) +
+                "version " + std::to_string(major) + " of the format; this build reads versions " +
+                    std::to_string(LogIndex::kVersionMajor) + " and " +
+                    std::to_string(LogIndex::kVersionOfSeries) +
                     (major < LogIndex::kVersionMajor
                          ? ": make the log again from its input with qtet simplify"
                          : ": use a newer qtet"),
                 8);
   Header h;
+  h.major = major;
   h.minor = minor;
   const auto layout = r.read<std::uint8_t>();
   h.positionBits = r.read<std::uint8_t>();
@@ -139,6 +143,54 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t f
   return {};
 }
 
+// A field's association and flags, and its prediction in time. Missing bytes stay in `r`.
+Status readShape(ByteReader& r, const Header& header, std::uint32_t field, FieldShape& out) {
+  const auto bad = [&](std::uint64_t before, const std::string& what) {
+    return fail(ErrorCode::kBadValue, "field " + std::to_string(field) + what, r.offset() - before);
+  };
+  const auto components = r.read<std::uint8_t>();
+  const auto association = r.read<std::uint8_t>();
+  if (components == 0 || components > kMaxFieldComponents)
+    return bad(2, " has a number of components outside 1..16");
+  const bool isPredicted =
+      header.major == LogIndex::kVersionOfSeries && (association & kPredictedFlag) != 0;
+  const std::uint32_t kind = association & ~(kMissingFlag | (isPredicted ? kPredictedFlag : 0u));
+  if (kind > static_cast<std::uint32_t>(Association::kCell))
+    return bad(1, " has the association " + std::to_string(association) +
+                      "; this build knows 0 (points) and 1 (cells), and 128 more for missing "
+                      "values: use a newer qtet, or build the log again");
+  out.components = components;
+  out.association = static_cast<Association>(kind);
+  out.hasMissing = (association & kMissingFlag) != 0;
+  if (!isPredicted) return {};
+  const auto parents = r.read<std::uint8_t>();
+  if (parents == 0 || parents > TimePrediction::kMostParents)
+    return bad(1, " is predicted from other than 1 to 4 fields; fetch or build the log again");
+  for (; out.prediction.count < parents; ++out.prediction.count) {
+    const std::uint32_t parent = r.readVarint();
+    if (parent >= field)
+      return bad(1,
+                 " is predicted from a field that does not come before it; fetch or build the "
+                 "log again");
+    out.prediction.parents[out.prediction.count] = {
+        static_cast<std::uint16_t>(parent), static_cast<std::int8_t>(r.read<std::uint8_t>())};
+  }
+  return {};
+}
+
+// A field is predicted from fields of its own kind.
+Status checkPredictions(const LogIndex& index) {
+  for (std::size_t f = 0; f < index.fields.size(); ++f)
+    for (const TimePrediction::Parent& parent : index.fields[f].prediction.all())
+      if (const FieldShape& of = index.fields[parent.field];
+          of.components != index.fields[f].components ||
+          of.association != index.fields[f].association)
+        return fail(ErrorCode::kBadValue, "field " + std::to_string(f) +
+                                              " is predicted from a field of another kind; fetch "
+                                              "or build the log again");
+  return {};
+}
+
 // Checks everything that later steps rely on: blocks that end where the file does, levels in order,
 // counts within limits.
 Status check(const LogIndex& index, const Header& header) {
@@ -215,6 +267,25 @@ bool LogIndex::hasCellField() const {
       fields, [](const FieldShape& field) { return field.association == Association::kCell; });
 }
 
+bool LogIndex::hasSeries() const {
+  return std::ranges::any_of(fields,
+                             [](const FieldShape& field) { return !field.prediction.isNone(); });
+}
+
+std::vector<std::uint32_t> LogIndex::withParents(std::span<const std::uint32_t> wanted) const {
+  std::vector<bool> needed(fields.size());
+  for (const std::uint32_t f : wanted) needed[f] = true;
+  std::vector<std::uint32_t> out;
+  for (auto f = static_cast<std::uint32_t>(fields.size()); f-- > 0;) {
+    if (!needed[f]) continue;
+    out.push_back(f);
+    for (const TimePrediction::Parent& parent : fields[f].prediction.all())
+      needed[parent.field] = true;
+  }
+  std::ranges::reverse(out);
+  return out;
+}
+
 Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
   const Result<Header> header = readHeader(firstBytes);
   if (!header) return std::unexpected(header.error());
@@ -246,22 +317,10 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   index.manifest.assign(manifest.begin(), manifest.end());
   ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
   for (std::uint32_t f = 0; f < header->fields; ++f) {
-    const auto components = r.read<std::uint8_t>();
-    const auto association = r.read<std::uint8_t>();
-    if (components == 0 || components > kMaxFieldComponents)
-      return fail(ErrorCode::kBadValue,
-                  "field " + std::to_string(f) + " has a number of components outside 1..16",
-                  r.offset() - 2);
-    if ((association & ~kMissingFlag) > static_cast<std::uint8_t>(Association::kCell))
-      return fail(ErrorCode::kBadValue,
-                  "field " + std::to_string(f) + " has the association " +
-                      std::to_string(association) +
-                      "; this build knows 0 (points) and 1 (cells), and 128 more for missing "
-                      "values: use a newer qtet, or build the log again",
-                  r.offset() - 1);
-    index.fields.push_back({components, static_cast<Association>(association & ~kMissingFlag),
-                            (association & kMissingFlag) != 0});
+    if (Status s = readShape(r, *header, f, index.fields.emplace_back()); !s || r.failed())
+      return std::unexpected(r.failed() ? r.error() : s.error());
   }
+  if (Status s = checkPredictions(index); !s) return std::unexpected(s.error());
   readChunkRows(r, index, header->chunks, header->headBytes());
   readClosingRows(r, index, header->closing);
   if (!r.failed() && r.remaining() > 0)
@@ -277,14 +336,21 @@ Bytes LogIndex::encode() const {
   for (const FieldShape& field : fields) {
     table.write(static_cast<std::uint8_t>(field.components));
     table.write(static_cast<std::uint8_t>(static_cast<std::uint32_t>(field.association) |
-                                          (field.hasMissing ? kMissingFlag : 0)));
+                                          (field.hasMissing ? kMissingFlag : 0) |
+                                          (field.prediction.isNone() ? 0 : kPredictedFlag)));
+    if (field.prediction.isNone()) continue;
+    table.write(field.prediction.count);
+    for (const TimePrediction::Parent& parent : field.prediction.all()) {
+      table.writeVarint(parent.field);
+      table.write(static_cast<std::uint8_t>(parent.weight));
+    }
   }
   writeChunkRows(table, *this);
   writeClosingRows(table, *this);
 
   ByteWriter w;
   w.append(kMagic);
-  w.write(kVersionMajor);
+  w.write(hasSeries() ? kVersionOfSeries : kVersionMajor);
   const bool hasCells = closingBlock(ClosingKind::kOriginalCells) != nullptr;
   w.write(std::max(manifestMinor, hasCells ? kMinorOfOriginalCells : std::uint16_t{0}));
   w.write(std::uint8_t{0});  // layout

@@ -5,9 +5,11 @@
 
 #include <cassert>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "codec/log/codec_id.h"
+#include "codec/mesh/time_prediction.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 
@@ -21,6 +23,7 @@ struct FieldShape {
   std::uint32_t components = 1;  ///< 1..kMaxFieldComponents
   Association association = Association::kPoint;
   bool hasMissing = false;  ///< values may be missing: Values::codeOrMissing
+  TimePrediction prediction{};
 };
 
 struct BlockEntry {
@@ -79,7 +82,8 @@ struct ClosingBlock {
 
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
-  static constexpr std::uint16_t kVersionMajor = 2;
+  /// Without fields that are predicted in time, and with some.
+  static constexpr std::uint16_t kVersionMajor = 2, kVersionOfSeries = 3;
   /// The minor version of a log with original cells; one without is of 0.
   static constexpr std::uint16_t kMinorOfOriginalCells = 1;
   /// The minor version of a log whose manifest has a focus or an opening.
@@ -114,6 +118,11 @@ struct LogIndex {
     return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
   }
   [[nodiscard]] bool hasCellField() const;
+  /// Some fields are predicted in time.
+  [[nodiscard]] bool hasSeries() const;
+  /// These fields and those that they are predicted from, ascending, each once. REQUIRES: fields of
+  /// the log.
+  [[nodiscard]] std::vector<std::uint32_t> withParents(std::span<const std::uint32_t> wanted) const;
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64
   /// bytes), bad-magic, bad-version, bad-checksum, limit-exceeded, bad-value.
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);

@@ -98,8 +98,8 @@ Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& o
   index.manifest = std::move(*block);
   index.manifestMinor = minorOf(manifest);
   for (const FieldInfo& f : history.fields)
-    index.fields.push_back(
-        {f.components, isCellField(f) ? Association::kCell : Association::kPoint, f.hasMissing});
+    index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint,
+                            f.hasMissing, f.prediction});
   index.chunks = std::move(writer.chunks().rows());
   return index;
 }

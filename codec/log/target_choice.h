@@ -20,9 +20,9 @@ struct Manifest;
 [[nodiscard]] Result<std::uint32_t> levelFor(const Target& target, const Manifest& manifest,
                                              const LogIndex& index);
 
-/// The last chunk that the target takes: that of levelFor, but bytes are counted in whole chunks, not
-/// in levels. If no level's error is known, the last level is good enough. Errors: not-found (no
-/// such field). REQUIRES: as levelFor.
+/// The last chunk that the target takes: that of levelFor, but bytes are counted in whole chunks,
+/// not in levels. If no level's error is known, the last level is good enough. Errors: not-found
+/// (no such field). REQUIRES: as levelFor.
 [[nodiscard]] Result<std::uint32_t> lastChunkFor(const Target& target, const Manifest& manifest,
                                                  const LogIndex& index);
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "codec/mesh/time_prediction.h"
+
 namespace qtet {
 
 using VertexId = std::uint32_t;
@@ -65,6 +67,8 @@ struct FieldInfo {
   std::array<double, 2> range{0, 0};
   /// An integer may be kMissing: a value that is NaN.
   bool hasMissing = false;
+  /// In a history that holds differences in time: what they are differences to.
+  TimePrediction prediction{};
 
   /// The value of an integer of the component; NaN for a missing value.
   [[nodiscard]] double value(std::size_t component, std::int32_t integer) const {

@@ -62,6 +62,23 @@ void keepOpening(Manifest& manifest, const std::vector<std::uint32_t>& kept) {
   }
 }
 
+/// The prediction in the numbers of the fields that are kept. Errors: bad-input (one of those that
+/// it rests on goes, or would come behind it).
+Result<TimePrediction> keptPrediction(const Manifest& manifest, const LogIndex& index,
+                                      const std::vector<std::uint32_t>& kept, std::size_t place) {
+  TimePrediction out = index.fields[kept[place]].prediction;
+  for (std::size_t i = 0; i < out.count; ++i) {
+    const std::uint32_t parent = out.parents[i].field;
+    const auto at = static_cast<std::size_t>(std::ranges::find(kept, parent) - kept.begin());
+    if (at >= place)
+      return fail(ErrorCode::kBadInput,
+                  "field " + fieldKey(manifest, kept[place]) + " is coded as a difference to " +
+                      fieldKey(manifest, parent) + ", which has to stay before it");
+    out.parents[i].field = static_cast<std::uint16_t>(at);
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
@@ -74,10 +91,13 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   LogIndex index = log.index();
   std::vector<ManifestField> fields;
   index.fields.clear();
-  for (const std::uint32_t f : kept) {
-    assert(f < manifest->fields.size());
-    fields.push_back(manifest->fields[f]);
-    index.fields.push_back(log.index().fields[f]);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    assert(kept[i] < manifest->fields.size());
+    const Result<TimePrediction> prediction = keptPrediction(*manifest, log.index(), kept, i);
+    if (!prediction) return std::unexpected(prediction.error());
+    fields.push_back(manifest->fields[kept[i]]);
+    index.fields.push_back(log.index().fields[kept[i]]);
+    index.fields.back().prediction = *prediction;
   }
   for (const NewField& field : added) {
     assert(field.blocks.size() == index.chunks.size());
@@ -85,7 +105,8 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
     index.fields.push_back(
         {field.info.components,
          field.info.association == "cell" ? Association::kCell : Association::kPoint,
-         field.info.hasMissing});
+         field.info.hasMissing,
+         {}});
   }
   manifest->fields = std::move(fields);
   keepOpening(*manifest, kept);

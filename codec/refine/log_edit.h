@@ -32,9 +32,10 @@ struct NewClosing {
 
 /// The log with the fields `kept` (numbers of its own fields, in the order wanted) and then
 /// `added`. Errors: limit-exceeded (too many fields, a block too large), bad-value (the log's
-/// manifest). REQUIRES: fields of the log; a block of each added field for every chunk. If any
-/// level of the log has errors, each added field has some for every level. Closing blocks stay,
-/// except those of fields left out.
+/// manifest), bad-input (a field that another one is predicted from would go, or come behind it).
+/// REQUIRES: fields of the log; a block of each added field for every chunk. If any level of the
+/// log has errors, each added field has some for every level. Closing blocks stay, except those of
+/// fields left out.
 [[nodiscard]] Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
                                        const std::vector<NewField>& added);
 

@@ -202,6 +202,7 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
     wanted = *fields;
   else
     for (std::uint32_t f = 0; f < manifest->fields.size(); ++f) wanted.push_back(f);
+  const std::vector<std::uint32_t> needed = log.index().withParents(wanted);
 
   Refiner refiner(log.index());
   refiner.stopAtLevel(level);
@@ -209,7 +210,7 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
        chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
     if (stop.stop_requested())
       return fail(ErrorCode::kIo, "stopped, because nobody waits for the level any more");
-    if (Status s = applyChunk(log, refiner, chunk, wanted); !s) return std::unexpected(s.error());
+    if (Status s = applyChunk(log, refiner, chunk, needed); !s) return std::unexpected(s.error());
   }
   return latticeMesh(*manifest, refiner, wanted);
 }

@@ -57,7 +57,8 @@ class Refiner {
   Refiner& operator=(Refiner&&) noexcept;
 
   /// Applies chunk `chunk`: `structure` is its structure block, `positions` the decoded positions
-  /// block (3 integers a value). Errors: bad-order (another chunk comes next), bad-checksum is the caller's to find, anything else of FORMAT.md.
+  /// block (3 integers a value). Errors: bad-order (another chunk comes next), bad-checksum is the
+  /// caller's to find, anything else of FORMAT.md.
   Status apply(std::uint32_t chunk, ByteView structure, std::span<const std::int32_t> positions);
   /// Applies field `field` of chunk `chunk`: as many tuples as LogIndex::tuples says. A field may
   /// lag behind the mesh, never run ahead, and takes chunks in file order, like the mesh.

@@ -55,6 +55,11 @@ Status RefinerFields::mayCome(std::uint32_t field, std::uint32_t chunk, std::siz
   if (chunk > f.chunks)
     return refuseChunk(ErrorCode::kBadOrder, chunk,
                        "the field needs chunk " + std::to_string(f.chunks) + " first");
+  for (const TimePrediction::Parent& parent : plan_.index.fields[field].prediction.all())
+    if (fields_[parent.field].chunks <= chunk)
+      return refuseChunk(ErrorCode::kBadOrder, chunk,
+                         "field " + std::to_string(field) + " is predicted from field " +
+                             std::to_string(parent.field) + ", which needs the chunk first");
   if (values != std::size_t{plan_.index.tuples(chunk, kFirstFieldPart + field)} *
                     plan_.index.fields[field].components)
     return refuseChunk(ErrorCode::kBadValue, chunk, "wrong number of field values");
@@ -78,40 +83,72 @@ Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
   return {};
 }
 
+void RefinerFields::restore(Field& f, const FieldShape& shape, std::size_t element,
+                            Values& residuals) const {
+  constexpr std::int64_t kLargest = std::int64_t{1} << 30;
+  for (std::size_t i = element * shape.components; i < (element + 1) * shape.components; ++i) {
+    if (f.differences[i] == kMissing) {
+      f.values[i] = kMissing;
+      continue;
+    }
+    const std::int64_t value =
+        f.differences[i] +
+        shape.prediction.predict([&](std::uint16_t parent) { return fields_[parent].values[i]; },
+                                 kMissing);
+    if (value < -kLargest || value > kLargest) residuals.spoil();
+    f.values[i] = residuals.bad() ? 0 : static_cast<std::int32_t>(value);
+  }
+}
+
 void RefinerFields::codePoints(Field& f, const FieldShape& shape, std::uint32_t chunk,
                                Values& residuals) const {
-  if (chunk == 0) codeBase(f, shape, residuals);
+  const bool isPredicted = !shape.prediction.isNone();
+  std::vector<std::int32_t>& coded = isPredicted ? f.differences : f.values;
   const std::size_t n = shape.components;
-  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return f.values[v * n + c]; };
+  f.values.resize(records_.mesh().points.size() * n);
+  coded.resize(f.values.size());
+  if (chunk == 0) codeBase(coded, shape, residuals);
+  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return coded[v * n + c]; };
   const PointAncestry& ancestry = records_.ancestry().points;
   const AddedElements& b = added_[chunk];
-  for (const Birth& birth : ancestry.births().subspan(b.firstBirth, b.endBirth - b.firstBirth))
+  const std::size_t baseVertices = chunk == 0 ? records_.ancestry().base.size() : 0;
+  for (VertexId v = 0; isPredicted && v < baseVertices; ++v) restore(f, shape, v, residuals);
+  if (chunk == 0) inheritPoints(f, shape.components, 0);
+  for (const Birth& birth : ancestry.births().subspan(b.firstBirth, b.endBirth - b.firstBirth)) {
     ancestry.code<false>(
         birth, residuals, shape.components, at, [](std::size_t, std::uint32_t) { return 0; },
         shape.hasMissing);
+    if (!isPredicted) continue;
+    restore(f, shape, birth.slot, residuals);
+    for (std::size_t j = 0; j + 1 < birth.k; ++j) restore(f, shape, birth.firstNew + j, residuals);
+  }
 }
 
-void RefinerFields::codeBase(Field& f, const FieldShape& shape, Values& residuals) const {
+void RefinerFields::codeBase(std::vector<std::int32_t>& coded, const FieldShape& shape,
+                             Values& residuals) const {
   const std::size_t n = shape.components;
-  f.values.assign(records_.mesh().points.size() * n, 0);
-  const auto at = [&](VertexId u, std::uint32_t c) { return f.values[u * n + c]; };
+  const auto at = [&](VertexId u, std::uint32_t c) { return coded[u * n + c]; };
   const std::vector<BaseBirth>& births = records_.ancestry().base;
   for (VertexId v = 0; v < births.size(); ++v)
     for (std::uint32_t c = 0; c < n; ++c)
-      f.values[v * n + c] = residuals.codeField<false>(
+      coded[v * n + c] = residuals.codeField<false>(
           shape.hasMissing, predictBaseField(births[v], v, c, shape.hasMissing, at), 0);
-  inheritPoints(f, shape.components, 0);
 }
 
 void RefinerFields::codeCells(Field& f, const FieldShape& shape, std::uint32_t chunk,
                               Values& residuals) const {
+  const bool isPredicted = !shape.prediction.isNone();
+  std::vector<std::int32_t>& coded = isPredicted ? f.differences : f.values;
   const std::size_t n = shape.components;
   const CellAncestry& ancestry = *records_.ancestry().cells;
   f.values.resize(records_.mesh().tetrahedra.size() * n);
-  for (CellId t = plan_.slots[chunk].tetrahedra; t < added_[chunk].endTetrahedron; ++t)
+  coded.resize(f.values.size());
+  for (CellId t = plan_.slots[chunk].tetrahedra; t < added_[chunk].endTetrahedron; ++t) {
     for (std::size_t c = 0; c < n; ++c)
-      f.values[t * n + c] = residuals.codeField<false>(
-          shape.hasMissing, ancestry.predict(t, [&](CellId u) { return f.values[u * n + c]; }), 0);
+      coded[t * n + c] = residuals.codeField<false>(
+          shape.hasMissing, ancestry.predict(t, [&](CellId u) { return coded[u * n + c]; }), 0);
+    if (isPredicted) restore(f, shape, t, residuals);
+  }
   if (chunk == 0)
     inheritCells(f, shape, plan_.slots[1].tetrahedra,
                  static_cast<CellId>(records_.mesh().tetrahedra.size()));

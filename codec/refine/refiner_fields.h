@@ -38,6 +38,8 @@ class RefinerFields {
  private:
   struct Field {
     std::vector<std::int32_t> values;
+    // of a field that is predicted in time: what its blocks hold
+    std::vector<std::int32_t> differences;
     std::uint32_t chunks = 0;  // that have come
     bool broken = false;       // a block failed half-way: what it wrote is noise
   };
@@ -47,9 +49,11 @@ class RefinerFields {
   void inheritCells(Field& field, const FieldShape& shape, CellId first, CellId end) const;
   void codePoints(Field& field, const FieldShape& shape, std::uint32_t chunk,
                   Values& residuals) const;
-  void codeBase(Field& field, const FieldShape& shape, Values& residuals) const;
+  void codeBase(std::vector<std::int32_t>& coded, const FieldShape& shape, Values& residuals) const;
   void codeCells(Field& field, const FieldShape& shape, std::uint32_t chunk,
                  Values& residuals) const;
+  /// The values of a point or cell, from its difference and the parents' values.
+  void restore(Field& field, const FieldShape& shape, std::size_t element, Values& residuals) const;
 
   const ChunkPlan& plan_;
   const RecordReader& records_;

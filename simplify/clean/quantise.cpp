@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "codec/mesh/boundary.h"
@@ -14,6 +15,7 @@
 #include "simplify/mesh/missing_values.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/volume_sign.h"
+#include "simplify/series/series.h"
 
 namespace qtet {
 namespace {
@@ -143,11 +145,25 @@ void placePoints(const TetMesh& mesh, const Box& box, const std::stop_token& sto
   }
 }
 
+/// Each field's own box of values, or that of its series, whose instants have one scale.
+std::vector<FieldExtents> extentsOfAll(const std::vector<MeshField>& fields) {
+  std::vector<FieldExtents> out;
+  for (const MeshField& field : fields) out.push_back(extentsOf(field));
+  for (const Series& series : seriesOf(std::span(fields))) {
+    FieldExtents all = out[series.fields[0]];
+    for (const std::size_t f : series.fields) all.include(out[f]);
+    for (const std::size_t f : series.fields) out[f] = all;
+  }
+  return out;
+}
+
 Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, QuantisedMesh& out) {
-  for (const MeshField& field : mesh.fields) {
+  const std::vector<FieldExtents> extents = extentsOfAll(mesh.fields);
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const MeshField& field = mesh.fields[f];
     throwIfStopped(stop);
     const std::string name = (isCellField(field) ? "cell field " : "field ") + field.name;
-    Result<QuantisedField> quantised = quantiseField(field, bits);
+    Result<QuantisedField> quantised = quantiseField(field, extents[f], bits);
     if (!quantised) return std::unexpected(quantised.error());
     out.report.nonFiniteOf.push_back(quantised->nonFinite);
     if (quantised->nonFinite > 0) {

@@ -11,34 +11,6 @@
 namespace qtet {
 namespace {
 
-struct Extents {
-  std::vector<double> minimum, maximum;  ///< of the finite values, 0 where there are none
-  double largest = 0;                    ///< over the components
-  std::uint64_t nonFinite = 0;
-};
-
-Extents extentsOf(const MeshField& field) {
-  const std::size_t components = field.components;
-  Extents out{std::vector<double>(components, std::numeric_limits<double>::infinity()),
-              std::vector<double>(components, -std::numeric_limits<double>::infinity()), 0, 0};
-  for (std::size_t i = 0; i < field.values.size(); ++i) {
-    const double value = field.values[i];
-    if (!std::isfinite(value)) {
-      ++out.nonFinite;
-      continue;
-    }
-    out.minimum[i % components] = std::min(out.minimum[i % components], value);
-    out.maximum[i % components] = std::max(out.maximum[i % components], value);
-  }
-  for (std::size_t c = 0; c < components; ++c) {
-    if (out.minimum[c] > out.maximum[c]) out.minimum[c] = out.maximum[c] = 0;
-    // Minus zero would be another number in the manifest, and the same one everywhere else.
-    if (out.minimum[c] == 0) out.minimum[c] = 0;
-    out.largest = std::max(out.largest, out.maximum[c] - out.minimum[c]);
-  }
-  return out;
-}
-
 /// The range of the values, or of the vectors' lengths; vectors with a component that is not finite
 /// do not count.
 std::array<double, 2> rangeOf(const MeshField& field) {
@@ -66,6 +38,39 @@ int bitsFor(double extent) {
 
 }  // namespace
 
+FieldExtents extentsOf(const MeshField& field) {
+  const std::size_t components = field.components;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  FieldExtents out{std::vector<double>(components, kInfinity),
+                   std::vector<double>(components, -kInfinity)};
+  for (std::size_t i = 0; i < field.values.size(); ++i) {
+    const double value = field.values[i];
+    if (!std::isfinite(value)) continue;
+    out.minimum[i % components] = std::min(out.minimum[i % components], value);
+    out.maximum[i % components] = std::max(out.maximum[i % components], value);
+  }
+  for (std::size_t c = 0; c < components; ++c) {
+    if (out.minimum[c] > out.maximum[c]) out.minimum[c] = out.maximum[c] = 0;
+    // Minus zero would be another number in the manifest, and the same one everywhere else.
+    if (out.minimum[c] == 0) out.minimum[c] = 0;
+  }
+  return out;
+}
+
+double FieldExtents::largest() const {
+  double out = 0;
+  for (std::size_t c = 0; c < minimum.size(); ++c) out = std::max(out, maximum[c] - minimum[c]);
+  return out;
+}
+
+void FieldExtents::include(const FieldExtents& other) {
+  assert(minimum.size() == other.minimum.size());
+  for (std::size_t c = 0; c < minimum.size(); ++c) {
+    minimum[c] = std::min(minimum[c], other.minimum[c]);
+    maximum[c] = std::max(maximum[c], other.maximum[c]);
+  }
+}
+
 std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double value) {
   assert(std::isfinite(value) && component < info.components);
   const double highest = std::ldexp(1.0, info.bits) - 1;
@@ -73,30 +78,32 @@ std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double
       std::clamp(std::floor((value - info.minimum[component]) / info.step + 0.5), 0.0, highest));
 }
 
-Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
-  const Extents extents = extentsOf(field);
-  if (!std::isfinite(extents.largest)) {
+Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents& extents,
+                                     int bits) {
+  const double largest = extents.largest();
+  if (!std::isfinite(largest)) {
     return fail(
         ErrorCode::kBadInput,
         "field " + field.name + " spans more than the largest float64; leave it out with `fields`");
   }
   QuantisedField out;
-  out.nonFinite = extents.nonFinite;
-  out.exact = !isFloatType(field.type) && extents.largest < std::ldexp(1.0, kMaxFieldBits);
+  out.nonFinite = static_cast<std::uint64_t>(
+      std::ranges::count_if(field.values, [](double value) { return !std::isfinite(value); }));
+  out.exact = !isFloatType(field.type) && largest < std::ldexp(1.0, kMaxFieldBits);
   out.info = FieldInfo{.name = field.name,
                        .components = field.components,
                        .type = field.type,
                        .association = field.association,
-                       .bits = out.exact ? bitsFor(extents.largest) : bits,
+                       .bits = out.exact ? bitsFor(largest) : bits,
                        .step = 1,
                        .minimum = extents.minimum,
                        .range = rangeOf(field),
                        .hasMissing = out.nonFinite > 0};
-  if (!out.exact && extents.largest > 0) {
+  if (!out.exact && largest > 0) {
     // A step of no normal number would lose its own digits; such a field is constant for every
     // purpose.
     out.info.step =
-        std::max(extents.largest / (std::ldexp(1.0, bits) - 1), std::numeric_limits<double>::min());
+        std::max(largest / (std::ldexp(1.0, bits) - 1), std::numeric_limits<double>::min());
   }
   out.values.reserve(field.values.size());
   if (out.nonFinite > 0) out.missing.assign(field.values.size(), 0);

@@ -25,7 +25,23 @@ struct QuantisedField {
 [[nodiscard]] std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component,
                                         double value);
 
-/// See quantise(). Errors: bad-input (an extent above the largest double).
-[[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field, int bits);
+/// The box of a field's finite values, one interval a component; 0 where there are none.
+struct FieldExtents {
+  std::vector<double> minimum, maximum;
+
+  /// The largest interval's length.
+  [[nodiscard]] double largest() const;
+  /// Takes the other's box in. REQUIRES: as many components.
+  void include(const FieldExtents& other);
+};
+[[nodiscard]] FieldExtents extentsOf(const MeshField& field);
+
+/// See quantise(). The integers are those of `extents`, the field's own or those of its series.
+/// Errors: bad-input (an extent above the largest double).
+[[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field,
+                                                   const FieldExtents& extents, int bits);
+[[nodiscard]] inline Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
+  return quantiseField(field, extentsOf(field), bits);
+}
 
 }  // namespace qtet

@@ -10,6 +10,7 @@
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/error_table.h"
 #include "simplify/log/opened_log.h"
+#include "simplify/series/series.h"
 
 namespace qtet {
 namespace {
@@ -107,6 +108,10 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
   line(console, "digest", info["digest"]);
   for (const auto& [what, size] : info["kept"].items())
     line(console, "kept", what + ": " + grouped(size) + " bytes");
+  for (const Series& series : seriesOf(std::span<const ManifestField>(log.manifest.fields)))
+    line(console, "series",
+         series.name + ": " + std::to_string(series.fields.size()) + " instants, " +
+             brief(series.times.front()) + " to " + brief(series.times.back()));
   if (info["fields"].empty()) return;
   console.out << "\n";
   std::vector<std::vector<std::string>> rows{

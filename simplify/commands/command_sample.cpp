@@ -20,11 +20,13 @@ int runSample(const Words& words, Console& console) {
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
       "cells", po::value<double>(),
-      "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)");
+      "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)")(
+      "steps", po::value<int>(), "so many time steps of each field, 2 to 85 (fin)");
   const ParsedWords parsed(
       words,
-      {"sample", "sample NAME -o FILE.vtu [--cells N]", listOfSamples(),
-       "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"},
+      {"sample", "sample NAME -o FILE.vtu [--cells N] [--steps N]", listOfSamples(),
+       "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"
+       "  qtet sample fin --steps 40 -o run.vtu\n"},
       options, {"NAME"});
   if (parsed.helped(console)) return kExitOk;
 
@@ -33,7 +35,11 @@ int runSample(const Words& words, Console& console) {
     return reportFailure(checked.error(), false, console);
   std::optional<std::uint64_t> cells;
   if (parsed.has("cells")) cells = static_cast<std::uint64_t>(parsed.number("cells", 1, 1e12));
-  const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"), cells);
+  const auto steps =
+      parsed.has("steps")
+          ? static_cast<std::uint32_t>(parsed.integer("steps", 2, kMaxSampleInstants))
+          : 0;
+  const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"), cells, steps);
   if (!mesh) throw UsageError(mesh.error().message);
   const Bytes bytes = vtuBytes(*mesh);
   if (Status written = writeFileAtomically(output, bytes); !written)

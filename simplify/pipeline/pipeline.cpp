@@ -11,6 +11,8 @@
 #include "simplify/mesh/missing_values.h"
 #include "simplify/pipeline/fusion_choice.h"
 #include "simplify/pipeline/loss_warnings.h"
+#include "simplify/series/series.h"
+#include "simplify/series/time_differences.h"
 
 namespace qtet {
 namespace {
@@ -73,6 +75,7 @@ struct Run {
 
 Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   TetMesh mesh = std::move(given);
+  orderSeries(mesh.fields);
   const bool keeps = run.options.keep.any();
   run.report.tetrahedraIn = mesh.tetrahedra.size();
   if (Status s = run.stages.begin(Stage::kClean); !s) return std::unexpected(s.error());
@@ -142,8 +145,16 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   return measureLevels(history, options);
 }
 
+/// The instants of series become differences, in the order in which orderSeries() put them.
+Status differInTime(FusionHistory& history, Run& run) {
+  if (Status s = run.stages.begin(Stage::kEncode); !s) return s;
+  if (const std::size_t count = toTimeDifferences(history); count > 0)
+    run.note({std::to_string(count) + " of " + std::to_string(history.fields.size()) +
+              " fields are instants that are coded as differences in time"});
+  return {};
+}
+
 Result<Bytes> encode(const FusionHistory& history, LevelErrors errors, Run& run) {
-  if (Status s = run.stages.begin(Stage::kEncode); !s) return std::unexpected(s.error());
   LogWriterOptions options;
   options.source = run.options.source;
   options.generator = "qtet " QTET_VERSION;
@@ -209,6 +220,7 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   Result<LevelErrors> errors = measure(*history, run);
   if (!errors) return std::unexpected(errors.error());
   restoreMissing(*history, quantised->missing);
+  if (Status s = differInTime(*history, run); !s) return std::unexpected(s.error());
   Result<Bytes> log = encode(*history, std::move(*errors), run);
   if (!log) return std::unexpected(log.error());
   run.stages.end();

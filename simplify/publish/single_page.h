@@ -30,7 +30,8 @@ struct SinglePage {
 /// base64, all but the log by gzip. Its first script (web-client/public/single_page.js) unpacks
 /// them and starts the viewer. Nothing is fetched: the page's own policy forbids it. It holds as
 /// many of the log's chunks as fit into `maxBytes` and kMaxPageBytes. Errors: io (a file cannot be
-/// read), bad-input (a viewer of another version), limit-exceeded (the base mesh does not fit; the message tells the smallest page's bytes).
+/// read), bad-input (a viewer of another version), limit-exceeded (the base mesh does not fit; the
+/// message tells the smallest page's bytes).
 [[nodiscard]] Result<SinglePage> singlePage(const std::filesystem::path& site,
                                             const SinglePageOptions& options = {});
 

@@ -39,7 +39,13 @@ struct Place {
   double side;
   double above;
   double wall;
+  FlowPhase phase;
 };
+
+/// Where the wake bends, `behind` its start.
+double bendAt(const Place& place, double behind) {
+  return kWakeBends * behind - 2 * place.phase.wakeTurns;
+}
 
 struct Shock {
   double behind;    ///< 0 ahead of it, 1 behind it
@@ -54,8 +60,9 @@ Shock shockAt(const Place& place) {
   const double root = std::sqrt(1 + radius2 / (square(kShockRadius) * kShockCotangent2));
   const double slope2 = radius2 / square(kShockRadius * root);
   const double sine2 = 1 / (1 + slope2);
-  const double distance =
-      (place.along + kStandOff - kShockRadius * kShockCotangent2 * (root - 1)) * std::sqrt(sine2);
+  const double distance = (place.along + (kStandOff + place.phase.shockAhead) -
+                           kShockRadius * kShockCotangent2 * (root - 1)) *
+                          std::sqrt(sine2);
   const double normalMach2 = std::max(1.0, square(kMach) * sine2);
   return {step(distance, 0.03 + 0.015 * std::sqrt(radius2)), ramp(distance, 0.02), sine2,
           1 + 2 * kGamma / (kGamma + 1) * (normalMach2 - 1),
@@ -65,7 +72,7 @@ Shock shockAt(const Place& place) {
 /// 0 outside the wake, 1 in its core.
 double wakeAt(const Place& place) {
   const double behind = ramp(place.along - kWakeStart, 0.1);
-  const double centre = 0.35 * behind / (behind + 2) * wave(kWakeBends * behind);
+  const double centre = 0.35 * behind / (behind + 2) * wave(bendAt(place, behind));
   const double top = kFinHalfAxes[2] - 0.05;
   return square(behind) / (square(behind) + 0.15) *
          bump(place.side - centre, 0.22 + 0.2 * std::sqrt(behind)) *
@@ -121,7 +128,7 @@ Position velocityAt(const Place& place, const Shock& shock, double wake) {
   for (std::size_t k = 0; k < 3; ++k) v[k] -= through * n[k];
 
   v[0] *= 1 - 1.2 * wake;
-  v[1] += 0.6 * wake * wave(kWakeBends * ramp(place.along - kWakeStart, 0.1) + 0.5);
+  v[1] += 0.6 * wake * wave(bendAt(place, ramp(place.along - kWakeStart, 0.1)) + 0.5);
   for (const Vortex& vortex : vorticesAt(place)) {
     const double y = place.p[1] - vortex.y, z = place.p[2] - vortex.z;
     const double turn =
@@ -141,9 +148,9 @@ Position velocityAt(const Place& place, const Shock& shock, double wake) {
 
 }  // namespace
 
-FlowState finFlowAt(const Position& p, double wallDistance) {
+FlowState finFlowAt(const Position& p, double wallDistance, const FlowPhase& phase) {
   const double above = ramp(p[2] - 1.1, 0.3);
-  const Place place{p, p[0] - kFinSweep * p[2] + kFinHalfAxes[0], p[1], above, wallDistance};
+  const Place place{p, p[0] - kFinSweep * p[2] + kFinHalfAxes[0], p[1], above, wallDistance, phase};
   const Shock shock = shockAt(place);
   const double wake = wakeAt(place);
 

@@ -17,7 +17,15 @@ struct FlowState {
   Position velocity{};
 };
 
+/// How far the flow is from the steady one. The bow shock lies `shockAhead` further upstream. The
+/// wake's bends have moved by `wakeTurns` of their wave's length.
+struct FlowPhase {
+  double shockAhead = 0;
+  double wakeTurns = 0;
+};
+
 /// The flow at `p`, `wallDistance` away from the fin.
-[[nodiscard]] FlowState finFlowAt(const Position& p, double wallDistance);
+[[nodiscard]] FlowState finFlowAt(const Position& p, double wallDistance,
+                                  const FlowPhase& phase = {});
 
 }  // namespace qtet

@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "codec/coding/float_rounding.h"
 #include "simplify/samples/fin_flow.h"
@@ -185,26 +188,36 @@ void addPrism(Triangle t, VertexId lower, VertexId upper, std::vector<Tetrahedro
   }
 }
 
-}  // namespace
+/// The shock's way, in the fin's half lengths, and the bends that the wake sheds meanwhile.
+constexpr double kShockWay = 1.2, kShedBends = 2;
 
-TetMesh finSample(std::uint64_t cells) {
+/// The grid with the fields of each phase; `suffix` comes behind the names of a phase's fields.
+struct Instant {
+  std::string suffix;
+  FlowPhase phase;
+};
+TetMesh finMesh(std::uint64_t cells, const std::vector<Instant>& instants) {
   const Grid grid = gridOf(cells);
   const CubeSurface surface = halfCube(grid);
   const auto perLayer = static_cast<VertexId>(surface.directions.size());
 
   TetMesh mesh;
-  mesh.fields = {{"Density", 1, "float32", {}},
-                 {"Pressure", 1, "float32", {}},
-                 {"Velocity", 3, "float32", {}}};
+  for (const Instant& instant : instants)
+    for (const auto& [name, components] :
+         {std::pair{"Density", 1u}, {"Pressure", 1u}, {"Velocity", 3u}})
+      mesh.fields.push_back({name + instant.suffix, components, "float32", {}});
   for (const double height : layerHeights(grid)) {
     for (const Position& direction : surface.directions) {
       const Position p = pointAt(direction, height);
       mesh.points.push_back(p);
-      const FlowState flow = finFlowAt(p, distance(p, pointAt(direction, 0)));
-      mesh.fields[0].values.push_back(roundedToFloat(flow.density));
-      mesh.fields[1].values.push_back(roundedToFloat(flow.pressure));
-      for (const double component : flow.velocity)
-        mesh.fields[2].values.push_back(roundedToFloat(component));
+      for (std::size_t i = 0; i < instants.size(); ++i) {
+        const FlowState flow = finFlowAt(p, distance(p, pointAt(direction, 0)), instants[i].phase);
+        MeshField* fields = &mesh.fields[3 * i];
+        fields[0].values.push_back(roundedToFloat(flow.density));
+        fields[1].values.push_back(roundedToFloat(flow.pressure));
+        for (const double component : flow.velocity)
+          fields[2].values.push_back(roundedToFloat(component));
+      }
     }
   }
   for (VertexId layer = 0; layer < grid.layers; ++layer) {
@@ -212,6 +225,19 @@ TetMesh finSample(std::uint64_t cells) {
       addPrism(t, layer * perLayer, (layer + 1) * perLayer, mesh.tetrahedra);
   }
   return mesh;
+}
+
+}  // namespace
+
+TetMesh finSample(std::uint64_t cells) { return finMesh(cells, {{"", {}}}); }
+
+TetMesh finSeries(std::uint64_t cells, std::uint32_t instants) {
+  std::vector<Instant> phases;
+  for (std::uint32_t i = 0; i < instants; ++i) {
+    const double left = 1 - static_cast<double>(i) / (instants - 1);
+    phases.push_back({"@" + std::to_string(i), {kShockWay * left * left, kShedBends * (1 - left)}});
+  }
+  return finMesh(cells, phases);
 }
 
 }  // namespace qtet

@@ -12,7 +12,7 @@ constexpr std::array<Sample, 6> kSamples{{
     {"fin",
      "supersonic flow round a swept fin, 212,544 tetrahedra or more, density, pressure and "
      "velocity",
-     finSample, kFinCells, kMaxSampleCells},
+     finSample, kFinCells, kMaxSampleCells, finSeries},
     {"beam", "a loaded cantilever, 67,200 tetrahedra, stress and displacement",
      [](std::uint64_t) { return beamSample(); }, kBeamCells, kBeamCells},
     {"spring", "a coil spring, 107,520 tetrahedra, stress and displacement",
@@ -27,7 +27,8 @@ constexpr std::array<Sample, 6> kSamples{{
 
 std::span<const Sample> samples() { return kSamples; }
 
-Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> cells) {
+Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> cells,
+                           std::uint32_t instants) {
   std::string known;
   for (const Sample& sample : kSamples) {
     if (sample.name == name) {
@@ -39,7 +40,11 @@ Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> c
       if (count > sample.maxCells)
         return fail(ErrorCode::kBadValue, "the sample " + std::string(name) + " comes with " +
                                               std::to_string(sample.maxCells) + " cells at most");
-      return sample.make(count);
+      if (instants == 0) return sample.make(count);
+      if (sample.makeSeries == nullptr)
+        return fail(ErrorCode::kBadValue,
+                    "the sample " + std::string(name) + " is steady; fin comes with steps");
+      return sample.makeSeries(count, instants);
     }
     known += (known.empty() ? "" : ", ") + std::string(sample.name);
   }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "proto/error.h"
+#include "proto/limits.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -25,15 +26,22 @@ struct Sample {
   TetMesh (*make)(std::uint64_t cells);
   /// Its own size, which is the smallest, and the largest; equal: there is but one.
   std::uint64_t cells, maxCells;
+  /// The same with so many instants of each field, called NAME@0, NAME@1, ...; null: it is steady.
+  TetMesh (*makeSeries)(std::uint64_t cells, std::uint32_t instants) = nullptr;
 };
+
+/// As many as the three fields of a sample may have.
+inline constexpr std::uint32_t kMaxSampleInstants = kMaxFields / 3;
 
 /// All samples, in the order in which help shows them.
 [[nodiscard]] std::span<const Sample> samples();
 
-/// `cells`: how many tetrahedra at least; nullopt = the sample's own size. Errors: not-found, with
-/// the names there are; bad-value (a size that the sample does not come in).
+/// `cells`: how many tetrahedra at least; nullopt = the sample's own size. `instants`: of a series;
+/// 0 = a steady sample. Errors: not-found, with the names there are; bad-value (a size that the
+/// sample does not come in, or instants of a steady one).
 [[nodiscard]] Result<TetMesh> makeSample(std::string_view name,
-                                         std::optional<std::uint64_t> cells = std::nullopt);
+                                         std::optional<std::uint64_t> cells = std::nullopt,
+                                         std::uint32_t instants = 0);
 
 /// The unit cube in 8 x 8 x 8 cells of 6 Kuhn tetrahedra: 729 points, 3,072 tetrahedra; field
 /// Scalar = sin(2 pi x) cos(pi y) + z^2.
@@ -44,6 +52,8 @@ struct Sample {
 /// many as asked for, in layers that grow from the wall; fields Density, Pressure, Velocity (free
 /// stream: 1, 1/1.4, Mach 2.95).
 [[nodiscard]] TetMesh finSample(std::uint64_t cells = kFinCells);
+/// The same while the stream settles: the shock travels to its place, and the wake sheds bends.
+[[nodiscard]] TetMesh finSeries(std::uint64_t cells, std::uint32_t instants);
 
 /// A cantilever of 10 x 1 x 1.6, loaded at its free end, by Euler and Bernoulli's formulas: 67,200
 /// tetrahedra; fields VonMises, Displacement.

@@ -15,7 +15,8 @@ from stream import Stream
 
 ADDRESSES, CONNECTIONS, PIPELINED = 8, 8, 8
 READ_BYTES = 1 << 18
-TARGETS, TARGETS_EVERY = 8, 0.04  # of a stream at once, and seconds between: below the bound of 250/s
+# Targets of a stream at once, and seconds between: below the bound of 250/s.
+TARGETS, TARGETS_EVERY = 8, 0.04
 ANSWER = re.compile(rb"HTTP/1\.1 (\d{3}) ")
 
 

@@ -14,9 +14,11 @@
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/log/kept_input.h"
 #include "simplify/mesh/missing_values.h"
+#include "simplify/series/time_differences.h"
 #include "tests/support/cheap_log.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/meshes.h"
+#include "tests/support/series_mesh.h"
 
 namespace qtet {
 namespace {
@@ -47,6 +49,22 @@ Bytes logWithMissingValues() {
   options.source = "golden.vtu";
   options.generator = "qtet golden";
   options.chunkBytes = 500;
+  return encodeLog(history, options).value().bytes;
+}
+
+/// Series of points and cells, one instant with missing values.
+Bytes logOfSeries() {
+  LatticeMesh mesh = testing::seriesMesh(3, 8, 6);
+  std::vector<std::vector<std::uint8_t>> missing(mesh.fields.size());
+  mesh.fields[2].hasMissing = true;
+  for (std::size_t i = 0; i < mesh.values[2].size(); ++i) missing[2].push_back(i % 7 == 0);
+  FusionHistory history = simplify(mesh, {}).value();
+  restoreMissing(history, missing);
+  toTimeDifferences(history);
+  LogWriterOptions options;
+  options.source = "golden.pvd";
+  options.generator = "qtet golden";
+  options.chunkBytes = 700;
   return encodeLog(history, options).value().bytes;
 }
 
@@ -274,7 +292,7 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   testing::mendChecksums(dependencies);
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
   write(folder / "bad-version.major-1.qtet", patched(8, 1));
-  write(folder / "bad-version.major-3.qtet", patched(8, 3));
+  write(folder / "bad-version.major-4.qtet", patched(8, 4));
   Bytes regions = patched(12, 1);
   testing::mendChecksums(regions);
   write(folder / "bad-version.layout-1.qtet", regions);
@@ -363,6 +381,7 @@ int main(int argc, char** argv) {
   qtet::write(folder / "valid" / "gaps.qtet", qtet::logWithMissingValues());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);
   qtet::write(folder / "valid" / "original-cells.qtet", qtet::logWithOriginalCells());
+  qtet::write(folder / "valid" / "series.qtet", qtet::logOfSeries());
   qtet::writeMustFail(folder / "must-fail", solid);
   qtet::writeBadClosing(folder / "must-fail", kept);
   qtet::write(folder / "must-fail" / "limit-exceeded.work.qtet",

@@ -31,7 +31,7 @@ struct ReadOptions {
   /// does the same.
   bool originalIds = false;
   std::optional<Threshold> threshold;
-  std::string time = "last";  ///< of a series: "first", "last", "all", or the step's time
+  std::string time = "last";  ///< a step's, "first", "last", "all" or FROM:TO:EVERY
   /// The file's kind as an ending without dot; empty: as its name says.
   std::string format;
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.

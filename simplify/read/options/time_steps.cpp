@@ -4,8 +4,60 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
 
 namespace qtet {
+namespace {
+
+struct StepRange {
+  double from = -std::numeric_limits<double>::infinity();
+  double to = std::numeric_limits<double>::infinity();
+  std::size_t every = 1;
+};
+
+/// Whether all of the text is a number, or nothing, which leaves `out` as it is.
+template <class Number>
+bool readPart(std::string_view text, Number& out) {
+  if (text.empty()) return true;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+/// FROM:TO:EVERY or FROM:TO; each part may be left out.
+std::optional<StepRange> stepRange(std::string_view text) {
+  StepRange out;
+  const std::size_t first = text.find(':'), second = text.find(':', first + 1);
+  const std::size_t end = std::min(second, text.size());
+  if (!readPart(text.substr(0, first), out.from) ||
+      !readPart(text.substr(first + 1, end - first - 1), out.to) ||
+      !readPart(text.substr(std::min(end + 1, text.size())), out.every) || out.every == 0 ||
+      std::isnan(out.from) || std::isnan(out.to))
+    return std::nullopt;
+  return out;
+}
+
+/// A time that differs by less than this of the larger is the same one: decimal digits are lost.
+bool isSame(double a, double b) {
+  constexpr double kNear = 1e-9;
+  return std::abs(a - b) <= kNear * std::max(std::abs(a), std::abs(b));
+}
+
+/// The steps from one time to another, every so many of them.
+std::vector<std::size_t> stepsOf(const StepRange& range, const std::vector<double>& times) {
+  std::vector<std::size_t> out;
+  std::size_t within = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if ((times[i] < range.from && !isSame(times[i], range.from)) ||
+        (times[i] > range.to && !isSame(times[i], range.to)))
+      continue;
+    if (within++ % range.every == 0) out.push_back(i);
+  }
+  return out;
+}
+
+}  // namespace
 
 std::string timeText(double x) {
   std::array<char, 32> text{};
@@ -26,12 +78,20 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
                     timeText(times.back()) + "; `time` names another, or all");
     return std::vector<std::size_t>{times.size() - 1};
   }
+  if (asked.contains(':')) {
+    const auto range = stepRange(asked);
+    if (!range)
+      return fail(ErrorCode::kBadValue,
+                  "`time` " + asked +
+                      " is not FROM:TO:EVERY, two times and a number of steps from 1 on; each of "
+                      "them may be left out");
+    if (std::vector<std::size_t> steps = stepsOf(*range, times); !steps.empty()) return steps;
+  }
   double wanted = 0;
   const auto parsed = std::from_chars(asked.data(), asked.data() + asked.size(), wanted);
   if (parsed.ec == std::errc{} && parsed.ptr == asked.data() + asked.size()) {
     for (const std::size_t i : all) {
-      if (std::abs(times[i] - wanted) <= 1e-9 * std::max(std::abs(wanted), std::abs(times[i])))
-        return std::vector<std::size_t>{i};
+      if (isSame(times[i], wanted)) return std::vector<std::size_t>{i};
     }
   }
   if (times.empty())
@@ -41,9 +101,10 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
   std::string there;
   for (std::size_t i = 0; i < times.size() && i < kShown; ++i)
     there += (i ? ", " : "") + timeText(times[i]);
-  return fail(ErrorCode::kNotFound, path.string() + " has no time step " + asked + "; it has " +
-                                        there + (times.size() > kShown ? ", ..." : "") +
-                                        "; give `time` one of them, first, last or all");
+  return fail(ErrorCode::kNotFound,
+              path.string() + " has no time step " + asked + "; it has " + there +
+                  (times.size() > kShown ? ", ..." : "") +
+                  "; give `time` one of them, FROM:TO:EVERY, first, last or all");
 }
 
 }  // namespace qtet

@@ -12,9 +12,11 @@ namespace qtet {
 /// The shortest text that gives the number back.
 [[nodiscard]] std::string timeText(double time);
 
-/// The numbers of the steps that `asked` means: "first", "last", "all", or the time of one. A word
-/// means all of them where there is one or none. A note says that the last was taken of several.
-/// `times` ascend. Errors: not-found (neither a word nor a time), with the times that there are.
+/// The numbers of the steps that `asked` means: "first", "last", "all", the time of one, or
+/// FROM:TO:EVERY, every so many of those between two times. Each part of it may be left out.
+/// A word means all of them where there is one or none. A note says that the last was taken of
+/// several. `times` ascend. Errors: not-found (no such step), with the times that there are;
+/// bad-value (a range of other parts).
 [[nodiscard]] Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
                                                            const std::string& asked,
                                                            const std::filesystem::path& path,

@@ -76,8 +76,9 @@ TEST_F(HostileLog, theUntouchedLogIsFine) {
 TEST_F(HostileLog, aLogOfAnotherVersionIsRefusedWithWhatToDo) {
   constexpr std::size_t kMajorAt = 8;
   ASSERT_EQ(bytes_[kMajorAt], LogIndex::kVersionMajor);
-  for (const auto& [major, advice] : {std::pair{LogIndex::kVersionMajor - 1, "make the log again"},
-                                      std::pair{LogIndex::kVersionMajor + 1, "use a newer qtet"}}) {
+  for (const auto& [major, advice] :
+       {std::pair{LogIndex::kVersionMajor - 1, "make the log again"},
+        std::pair{LogIndex::kVersionOfSeries + 1, "use a newer qtet"}}) {
     Bytes other = bytes_;
     other[kMajorAt] = static_cast<std::uint8_t>(major);
     const auto log = open(other);

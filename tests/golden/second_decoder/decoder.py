@@ -95,6 +95,24 @@ class Field:
             return predicted
         return clamp(predicted, -(1 << 29), 1 << 29)
 
+    def add_parents(self, fields):
+        """Values from differences in time ("Series")."""
+        parents = self.log.parents[self.number]
+        for i, values in self.values.items() if parents else ():
+            for c, x in enumerate(values):
+                if x != MISSING:
+                    values[c] = x + self.in_time(
+                        [(fields[p].values[i][c], weight) for p, weight in parents]
+                    )
+
+    def in_time(self, parents):
+        there = [x for x, _ in parents if x != MISSING]
+        if len(there) < len(parents):
+            last = self.wrong == "a gap in time takes the last that is there"
+            return there[-1 if last else 0] if there else 0
+        half = 0 if self.wrong == "a prediction in time has no half" else 8
+        return sum(x * weight for x, weight in parents) + half >> 4
+
     def digest(self):
         count = len(self.mesh.tetrahedra if self.of_cells else self.mesh.points)
         data = b"".join(struct.pack("<i", x) for i in range(count) for x in self.values[i])
@@ -110,4 +128,5 @@ def decode(data, misreading="", trace=None):
     fields = [Field(mesh, f) for f in range(log.fields)]
     for field in fields:
         field.decode()
+        field.add_parents(fields)
     return mesh, fields

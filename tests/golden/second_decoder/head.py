@@ -16,11 +16,14 @@ class Log:
         (_, major, self.minor, layout, self.bits, _, size, manifest, table) = header[:9]
         self.chunks, self.fields = header[11], header[12]
         closing = header[14]
-        refuse_unless((major, layout, size) == (2, 0, len(data)), "another version or length")
+        refuse_unless(major in (2, 3) and layout == 0, "another version")
+        refuse_unless(size == len(data), "another length")
         self.manifest = data[64 : 64 + manifest]
         self.offset = 64 + manifest + table
         reader = Reader(data[64 + manifest : self.offset])
-        self.shapes = [reader.unpack("BB") for _ in range(self.fields)]
+        self.shapes, self.parents = [], []
+        for _ in range(self.fields):
+            self.read_shape(reader, major)
         self.rows = []
         for _ in range(self.chunks):
             self.rows.append(self.read_row(reader))
@@ -32,6 +35,19 @@ class Log:
             self.offset += count
         refuse_unless(self.offset == len(data), "blocks do not end with the file")
         self.read_manifest()
+
+    def read_shape(self, reader, major):
+        """A field's components and association, and the fields that it is predicted from."""
+        components, association = reader.unpack("BB")
+        parents = []
+        if major == 3 and association & 64:
+            for _ in range(reader.u8()):
+                parent = reader.varint()
+                refuse_unless(parent < len(self.shapes), "a parent behind its child")
+                parents.append((parent, reader.unpack("b")[0]))
+            refuse_unless(1 <= len(parents) <= 4, "parents")
+        self.shapes.append((components, association & 191))
+        self.parents.append(parents)
 
     def read_row(self, reader):
         row = Row()

@@ -257,4 +257,3 @@ class Mesh(Labels, DeletedCells, Positions, Ancestry):
             self.split_chunks.append((first, len(self.splits)))
             refuse_unless(len(self.splits) - first == row.records, "records")
             refuse_unless(stream.at_end() and next(told, None) is None, "a chunk is too long")
-            self.digests = {rows[-1].last: self.digest()}

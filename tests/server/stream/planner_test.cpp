@@ -97,8 +97,8 @@ TEST(Planner, aRunStaysWithinThePayloadOrIsOneBlock) {
   }
 }
 
-/// The blocks that a client has and those that it gets make the whole log, each block once and in
-/// the file's order, so that no field runs ahead.
+/// The blocks that a client has and those that it gets make the whole log. Each comes once and in
+/// the file's order, so no field runs ahead.
 void expectExactlyWhatIsMissing(const Planned& log, const ClientBlocks& before,
                                 std::uint32_t payload) {
   ClientBlocks blocks = before;

@@ -15,7 +15,7 @@ class StreamProtocolTest : public testing::Test {
  protected:
   void SetUp() override {
     folder_.write("noise.qtet", test::makeLog({.chunks = 6}));
-    folder_.write("known.qtet", test::makeLog({.chunks = 16, .seed = 2, .errors = true}));
+    folder_.write("known.qtet", test::makeLog({.chunks = 16, .seed = 3, .errors = true}));
     Result<MeshStore> store = MeshStore::open(folder_.path());
     ASSERT_TRUE(store);
     store_.emplace(std::move(*store));

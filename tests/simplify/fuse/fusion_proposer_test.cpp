@@ -20,7 +20,7 @@ double share(std::size_t cells) {
 
 class Proposed : public ::testing::Test {
  protected:
-  FusionProposer proposer() const { return {mesh_, cost_, changes_, band_, {}, kOptions}; }
+  FusionProposer proposer() const { return {mesh_, cost_, changes_, {}, kOptions}; }
   /// Tetrahedra and boundary triangles.
   std::size_t cellsRound(VertexId v, VertexId w) const {
     const auto holdsBoth = [&](const auto& cell) {
@@ -36,7 +36,6 @@ class Proposed : public ::testing::Test {
   FusionMesh mesh_{lattice_};
   FusionCost cost_{mesh_, lattice_, {}};
   ChangeTimes changes_;
-  BandNodes band_;
 
   Proposed() { changes_.resize(mesh_.vertexSlots()); }
 };

@@ -1,0 +1,47 @@
+#include "simplify/read/options/time_steps.h"
+
+#include <gtest/gtest.h>
+
+namespace qtet {
+namespace {
+
+using Steps = std::vector<std::size_t>;
+const std::vector<double> kTimes{-1, 0, 0.1, 0.2, 0.30000000000000004, 5};
+
+Result<Steps> stepsOf(const std::string& asked, const std::vector<double>& times = kTimes) {
+  std::vector<std::string> notes;
+  return chosenSteps(times, asked, "run.pvd", notes);
+}
+
+TEST(TimeSteps, aRangeTakesEverySoManyOfTheStepsBetweenTwoTimes) {
+  EXPECT_EQ(stepsOf("0:0.3").value(), (Steps{1, 2, 3, 4}));
+  EXPECT_EQ(stepsOf("0:0.3:2").value(), (Steps{1, 3}));
+  EXPECT_EQ(stepsOf("0.3:").value(), (Steps{4, 5}));
+  EXPECT_EQ(stepsOf(":-1").value(), (Steps{0}));
+  EXPECT_EQ(stepsOf("::5").value(), (Steps{0, 5}));
+  EXPECT_EQ(stepsOf("::6").value(), (Steps{0}));
+  EXPECT_EQ(stepsOf(":").value(), stepsOf("all").value());
+  EXPECT_EQ(stepsOf("-1e0:0.:1").value(), (Steps{0, 1}));
+}
+
+TEST(TimeSteps, aRangeWithoutStepsSaysWhichThereAre) {
+  for (const char* asked : {"6:", "0.11:0.19", "5:0"}) {
+    const auto steps = stepsOf(asked);
+    ASSERT_FALSE(steps) << asked;
+    EXPECT_EQ(steps.error().code, ErrorCode::kNotFound);
+    EXPECT_NE(steps.error().message.find("it has -1, 0, 0.1"), std::string::npos);
+  }
+  EXPECT_EQ(stepsOf("0:1", {}).error().code, ErrorCode::kNotFound);
+}
+
+TEST(TimeSteps, aRangeOfOtherPartsIsRefused) {
+  for (const char* asked :
+       {"a:", ":b", "::0", "::-1", "::1.5", "0:1:2:3", "nan:", "0 :1", "::99999999999999999999"}) {
+    const auto steps = stepsOf(asked);
+    ASSERT_FALSE(steps) << asked;
+    EXPECT_EQ(steps.error().code, ErrorCode::kBadValue) << asked;
+  }
+}
+
+}  // namespace
+}  // namespace qtet

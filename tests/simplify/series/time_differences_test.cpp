@@ -1,0 +1,155 @@
+// Series in a log: every instant of every level comes back, in whatever order fields are decoded.
+#include "simplify/series/time_differences.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "codec/log/log_manifest.h"
+#include "codec/log/log_writer.h"
+#include "codec/refine/log_edit.h"
+#include "codec/refine/log_file.h"
+#include "codec/refine/refiner.h"
+#include "codec/refine/verify_log.h"
+#include "simplify/clean/verify.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/mesh/missing_values.h"
+#include "tests/support/forged_log.h"
+#include "tests/support/series_mesh.h"
+
+namespace qtet {
+namespace {
+
+class TimeDifferences : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kInstants = 11;
+
+  explicit TimeDifferences(bool hasGaps = false) {
+    LatticeMesh mesh = testing::seriesMesh(5, 1, kInstants);
+    std::vector<std::vector<std::uint8_t>> missing(mesh.fields.size());
+    if (hasGaps)
+      for (const std::size_t f : {std::size_t{1}, std::size_t{3}, mesh.fields.size() - 1}) {
+        mesh.fields[f].hasMissing = true;
+        for (std::size_t i = 0; i < mesh.values[f].size(); ++i)
+          missing[f].push_back(i % (5 + f) == 0);
+      }
+    history_ = simplify(mesh, {}).value();
+    restoreMissing(history_, missing);
+    FusionHistory differences = history_;
+    count_ = toTimeDifferences(differences);
+    LogWriterOptions options;
+    options.chunkBytes = 600;
+    bytes_ = encodeLog(differences, options).value().bytes;
+    plain_ = encodeLog(history_, options).value().bytes.size();
+  }
+  [[nodiscard]] LogFile log() const { return LogFile::fromBytes(bytes_).value(); }
+
+  FusionHistory history_;
+  std::size_t count_ = 0, plain_ = 0;
+  Bytes bytes_;
+};
+
+class WithGaps : public TimeDifferences {
+ protected:
+  WithGaps() : TimeDifferences(true) {}
+};
+
+void expectEveryLevel(const LogFile& log, const FusionHistory& history) {
+  for (std::uint32_t level = 0; level <= history.levels; ++level) {
+    const Result<LatticeMesh> mesh = meshAtLevel(log, level);
+    ASSERT_TRUE(mesh) << mesh.error().text();
+    const auto same = sameMesh(testing::meshOfHistory(history, level), *mesh);
+    ASSERT_TRUE(same) << "level " << level << ": " << same.error().text();
+  }
+}
+
+TEST_F(TimeDifferences, everyLevelHasEveryInstant) {
+  EXPECT_GE(count_, kInstants - 2);
+  EXPECT_LT(bytes_.size(), 3 * plain_ / 4);
+  EXPECT_TRUE(log().index().hasSeries());
+  expectEveryLevel(log(), history_);
+  EXPECT_TRUE(decodeVerified(log(), manifestOf(log().index()).value()));
+}
+
+TEST_F(WithGaps, everyLevelHasEveryInstant) { expectEveryLevel(log(), history_); }
+
+TEST_F(TimeDifferences, anInstantIsReadWithoutTheOthersBytes) {
+  const LogFile file = log();
+  const auto last = static_cast<std::uint32_t>(file.index().fields.size() - 1);
+  const Result<LatticeMesh> whole = meshAtLevel(file, history_.levels);
+  for (std::uint32_t f = 0; f <= last; ++f) {
+    const std::vector<std::uint32_t> needed = file.index().withParents(std::span(&f, 1));
+    EXPECT_LE(needed.size(), 9u) << "seeking must stay cheap";
+    const Result<LatticeMesh> one =
+        meshAtLevel(file, history_.levels, std::vector<std::uint32_t>{f});
+    ASSERT_TRUE(one) << one.error().text();
+    EXPECT_EQ(one->values.at(0), whole->values[f]);
+  }
+}
+
+TEST_F(TimeDifferences, aFieldWaitsForThoseThatItIsPredictedFrom) {
+  const LogFile file = log();
+  std::uint32_t child = 0;
+  while (file.index().fields[child].prediction.isNone()) ++child;
+  const std::uint32_t parent = file.index().fields[child].prediction.parents[0].field;
+  Refiner refiner(file.index());
+  ASSERT_TRUE(applyChunk(file, refiner, 0, {}));
+  EXPECT_EQ(applyFieldBlock(file, refiner, 0, child).error().code, ErrorCode::kBadOrder);
+  for (const std::uint32_t f : file.index().withParents(std::span(&parent, 1)))
+    ASSERT_TRUE(applyFieldBlock(file, refiner, 0, f));
+  EXPECT_EQ(applyFieldBlock(file, refiner, 0, child).has_value(),
+            file.index().fields[child].prediction.count == 1);
+}
+
+/// Parents may be whole before the first block of the field comes.
+TEST_F(TimeDifferences, aFieldThatComesLateEndsTheSame) {
+  const LogFile file = log();
+  const Result<LatticeMesh> whole = meshAtLevel(file, history_.levels);
+  Refiner refiner(file.index());
+  const auto chunks = static_cast<std::uint32_t>(file.index().chunks.size());
+  for (std::uint32_t c = 0; c < chunks; ++c) ASSERT_TRUE(applyChunk(file, refiner, c, {}));
+  for (std::uint32_t f = 0; f < file.index().fields.size(); ++f) {
+    for (std::uint32_t c = 0; c < chunks; ++c) ASSERT_TRUE(applyFieldBlock(file, refiner, c, f));
+    EXPECT_TRUE(std::ranges::equal(refiner.fieldValues(f), whole->values[f])) << f;
+  }
+}
+
+TEST_F(TimeDifferences, fieldsGoOnlyBehindThoseThatRestOnThem) {
+  const LogFile file = log();
+  const auto fields = static_cast<std::uint32_t>(file.index().fields.size());
+  std::vector<std::uint32_t> kept(fields - 1);
+  std::iota(kept.begin(), kept.end(), 0u);
+  const Result<Bytes> shorter = withFields(file, kept, {});
+  ASSERT_TRUE(shorter) << shorter.error().text();
+  const LogFile left = LogFile::fromBytes(*shorter).value();
+  EXPECT_EQ(meshAtLevel(left, 3)->values[5], meshAtLevel(file, 3)->values[5]);
+  std::iota(kept.begin(), kept.end(), 1u);
+  const Result<Bytes> without = withFields(file, kept, {});
+  ASSERT_FALSE(without);
+  EXPECT_NE(without.error().message.find("T@0"), std::string::npos) << without.error().message;
+}
+
+TEST_F(TimeDifferences, aTableThatLiesIsRefused) {
+  const auto refused = [this](const std::function<void(LogIndex&)>& change) {
+    testing::TakenApart parts = testing::takeApart(bytes_);
+    change(parts.index);
+    const Result<LogFile> file = LogFile::fromBytes(parts.together());
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().code, ErrorCode::kBadValue) << file.error().text();
+  };
+  const auto fields = static_cast<std::uint16_t>(log().index().fields.size());
+  for (const auto parent : {std::uint16_t{1}, std::uint16_t{2}, fields})
+    refused([=](LogIndex& i) { i.fields[1].prediction = {{{{parent, 16}}}, 1}; });
+  refused([=](LogIndex& i) {  // a point field from a cell field
+    i.fields[fields - 1].prediction = {{{{0, 16}}}, 1};
+  });
+  Bytes version = bytes_;
+  version[8] = 2;
+  testing::mendChecksums(version);
+  EXPECT_EQ(LogFile::fromBytes(version).error().code, ErrorCode::kBadValue)
+      << "version 2 knows no predictions";
+}
+
+}  // namespace
+}  // namespace qtet
