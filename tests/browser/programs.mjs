@@ -9,10 +9,10 @@ import {freePort} from '../support/free_port.mjs';
 const kStartTimeoutMs = 20000;
 
 /**
- * Makes OUT/logs/NAME.qtet from a sample and asks qtet for the digest of the whole mesh. `options`
- * are further words for `qtet simplify`.
+ * Makes OUT/logs/NAME.qtet from a sample and asks qtet for the digest of the whole mesh. `sample`
+ * are the words of `qtet sample`, `options` further ones of `qtet simplify`.
  */
-export function makeLog(bin, name, out, sample = name, options = []) {
+export function makeLog(bin, name, out, sample = [name], options = []) {
   const folder = join(out, 'logs');
   const mesh = join(out, `${name}.vtu`);
   const log = join(folder, `${name}.qtet`);
@@ -20,7 +20,7 @@ export function makeLog(bin, name, out, sample = name, options = []) {
   mkdirSync(folder, {recursive: true});
   const run = (...words) =>
     execFileSync(tool, words, {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
-  run('sample', sample, '-o', mesh);
+  run('sample', ...sample, '-o', mesh);
   run('simplify', mesh, '-o', log, ...options);
   const report = JSON.parse(run('verify', log, '--json'));
   return {name, folder, meshDigest: report.meshDigest};

@@ -7,7 +7,7 @@ import {kDesktop, kTimeoutMs} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {coloredShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
-import {Server} from './programs.mjs';
+import {makeLog, Server} from './programs.mjs';
 import {hostFolder, makeSite} from './static_host.mjs';
 import {kStrictPolicy} from './strict_policy.mjs';
 
@@ -112,6 +112,59 @@ async function showsWhichPartOfTheCurveIsHere({server, browser}) {
   assert.ok(reached > 2 && reached < ahead, `${reached} of ${ahead} points are reached`);
 }
 
+/**
+ * A series is one field with a time. Its instants come alone and play; what is shown stays whole.
+ */
+async function playsASeries({server, browser, out, bin}) {
+  makeLog(
+    bin,
+    'series',
+    out,
+    ['fin', '--steps', '9'],
+    ['--fields', 'Density', '--measure', 'none'],
+  );
+  server.kill();
+  await server.start();
+  const viewer = await browser.open(`${server.url}?mesh=series&time=3`);
+  await viewer.waitForState('complete');
+  await viewer.settle();
+  const shown = () =>
+    viewer.page.evaluate(() => {
+      const {mesh} = window.qtetViewer.viewing;
+      const {instant} = mesh.manifest.fields[mesh.snapshot.color.field];
+      return instant.time;
+    });
+  assert.equal(await shown(), 3);
+  assert.equal(await viewer.text('.time output'), 't = 3');
+  const options = await viewer.page
+    .locator('qtet-viewer select[name=field] option')
+    .allInnerTexts();
+  assert.deepEqual(options, ['Density']);
+  const few = (await viewer.statistics()).bytes;
+  await viewer.page.locator('qtet-viewer canvas.scene').focus();
+  await viewer.page.keyboard.press('.');
+  await viewer.page.waitForFunction(
+    () => {
+      const {mesh} = window.qtetViewer.viewing;
+      return mesh.manifest.fields[mesh.snapshot.color.field].instant.time === 4;
+    },
+    null,
+    {polling: 50},
+  );
+  await viewer.screenshot('series');
+  await viewer.page.keyboard.press('Space');
+  const seen = new Set();
+  for (const end = Date.now() + kTimeoutMs; seen.size < 9; seen.add(await shown())) {
+    assert.ok(Date.now() < end, `only ${[...seen]} were shown`);
+    await viewer.page.waitForTimeout(30);
+  }
+  await viewer.page.keyboard.press('Space');
+  await viewer.waitForState('complete');
+  const here = await viewer.page.evaluate(() => window.qtetViewer.viewing.mesh.here.length);
+  assert.equal(here, 9);
+  return `one instant with ${few} bytes, then all nine`;
+}
+
 /** Guarded meshes: the page says so, and shows them once it has the token, with every transport. */
 async function showsWhatATokenOpens({browser, logs, viewer: files, out, bin}) {
   const token = 'mq3Vt0pCk8Jx1yQ2b7nS5uEw';
@@ -208,6 +261,7 @@ export const transportChecks = {
   namesEachFault,
   showsWhatATokenOpens,
   showsWhichPartOfTheCurveIsHere,
+  playsASeries,
   readsAFileOnlySoFar,
   readsALogFromAPlainWebServer,
   saysThatAFileIsMissing,

@@ -24,14 +24,8 @@ export {errorCode, errorText, QtetError} from './protocol/errors';
 export {kMagnitude, scalarRange, type Scalar} from './picture/field_scale';
 export type {FieldValue, LineValues, Pick, Probe} from './session/inspector';
 export {errorOfLevel, kFull, limitText, parseLimit, type Limit} from './protocol/limit';
-export {
-  fieldKeys,
-  type FieldInfo,
-  type LevelError,
-  type LevelInfo,
-  type Manifest,
-  type Spread,
-} from './protocol/manifest';
+export {fieldKeys, type FieldInfo, type Instant} from './protocol/fields';
+export type {LevelError, LevelInfo, Manifest, Spread} from './protocol/manifest';
 export type {Statistics} from './decode/statistics';
 export {logTicks, niceTicks, type Tick, type Ticks} from './picture/ticks';
 export {kOpacityPath, transferTables, type TransferTables} from './picture/transfer';

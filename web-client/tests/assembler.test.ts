@@ -34,6 +34,27 @@ describe('what is here', () => {
   });
 });
 
+test('aFieldWaitsForThoseThatItIsPredictedFrom', () => {
+  codec = new FakeCodec({fields: ['a', 'b', 'c'], chunks: 2});
+  codec.parentsOf = [[], [0], [1]];
+  assembler = new Assembler(codec, kFakeValues);
+  assembler.take(parseFrame(headFrame(1, {fields: ['a', 'b', 'c'], chunks: 2})));
+  expect(assembler.withParents([2])).toEqual([0, 1, 2]);
+  const step = (): number[] => {
+    while (assembler.step([2], true)) continue;
+    return [0, 1, 2].map((field) => codec.fieldChunksApplied(field));
+  };
+  for (const chunk of [0, 1]) assembler.take(parseFrame(meshFrame(1, chunk)));
+  assembler.take(parseFrame(fieldFrame(1, 0, 2)));
+  expect(step()).toEqual([0, 0, 0]);
+  assembler.take(parseFrame(fieldFrame(1, 0, 1)));
+  assembler.take(parseFrame(fieldFrame(1, 0, 0)));
+  expect(step()).toEqual([1, 1, 1]);
+  for (const field of [1, 0, 2]) assembler.take(parseFrame(fieldFrame(1, 1, field)));
+  expect(step()).toEqual([2, 2, 2]);
+  expect(assembler.wholeFields).toEqual([0, 1, 2]);
+});
+
 test('thePlanTellsOfEachChunkWithItsBytesAndItsLevel', () => {
   const seen = [];
   for (let chunk = 0; chunk < kLog.chunks; ++chunk) {

@@ -12,7 +12,7 @@ import {
 import {isosurfaces} from '../core/layers/isosurfaces';
 import {fieldsOf, keptCells} from '../core/layers/shown';
 import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/picture/field_scale';
-import type {FieldInfo} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
 import {isosurface} from '../core/picture/slice';
 import {joinSoups, type TriangleSoup} from '../core/picture/triangle_soup';
 import {allVertices, cubes, soupArea, soupVolume} from './cubes';

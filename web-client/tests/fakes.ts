@@ -189,6 +189,11 @@ export class FakeCodec implements Codec {
   fieldChunksApplied(field: number): number {
     return this.fieldChunks[field]!;
   }
+  /** By field; none of those that are not there. */
+  parentsOf: number[][] = [];
+  parents(field: number): number[] {
+    return this.parentsOf[field] ?? [];
+  }
   brings(): {tetrahedra: number; vertices: number; boundaryTriangles: number} {
     return {tetrahedra: 1, vertices: 0, boundaryTriangles: 0};
   }

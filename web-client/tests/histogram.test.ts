@@ -2,7 +2,7 @@ import {expect, test} from 'vitest';
 import {FieldScale, kMagnitude} from '../core/picture/field_scale';
 import {countsOf, histogramOf, kBars, type Axis, type Histogram} from '../core/picture/histogram';
 import {valueAt} from '../core/picture/log_scale';
-import type {FieldInfo} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
 import {
   axisOf,
   barsPath,

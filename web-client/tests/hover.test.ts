@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import type {FieldInfo} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
 import type {Pick} from '../core/session/inspector';
 import {hoverText} from '../viewer/panels/hover';
 

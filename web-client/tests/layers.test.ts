@@ -6,7 +6,8 @@ import {fieldLayers} from '../core/layers/layers';
 import {fieldsOf, layerSoups, markedValues, soupOf} from '../core/layers/shown';
 import type {MeshArrays} from '../core/picture/display';
 import {FieldScale} from '../core/picture/field_scale';
-import type {FieldInfo, Manifest} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
+import type {Manifest} from '../core/protocol/manifest';
 import {buffersOf} from '../core/session/snapshot_buffers';
 import type {Snapshot} from '../core/session/worker_messages';
 import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
@@ -41,7 +42,7 @@ function displayFor(attributes: Record<string, string>): ReturnType<typeof displ
 }
 
 test('hasAnAttributeThatIsCheckedAndControls', () => {
-  expect(kViewAttributes.slice(9, 15).join(' ')).toBe('clip clip-mode iso threshold volume toy');
+  expect(kViewAttributes.slice(10, 16).join(' ')).toBe('clip clip-mode iso threshold volume toy');
   expect(wrongParts(read({toy: 'p=1'}))).toEqual([]);
   expect(wrongParts(read({toy: 'p=1,2'}))).toEqual([
     'toy="p=1,2" is not understood. It takes a field, "=" and a number.',

@@ -1,6 +1,6 @@
 import {expect, test} from 'vitest';
 import type {LineValues} from '../core/session/inspector';
-import type {FieldInfo} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
 import {tableOf} from '../viewer/panels/line_table';
 
 const info = (name: string, components: number): FieldInfo => ({

@@ -1,6 +1,7 @@
 import {describe, expect, test} from 'vitest';
 import {FieldScale} from '../core/picture/field_scale';
-import {errorOf, fieldKeys, readManifest, type FieldInfo} from '../core/protocol/manifest';
+import {fieldKeys, type FieldInfo} from '../core/protocol/fields';
+import {errorOf, readManifest} from '../core/protocol/manifest';
 import {fakeHead} from './fakes';
 import {boundarySoup, pointBounds} from '../core/picture/triangle_soup';
 

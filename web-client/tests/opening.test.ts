@@ -6,7 +6,7 @@ import {colorTable} from '../core/picture/color_maps';
 import type {MeshArrays} from '../core/picture/display';
 import {FieldScale} from '../core/picture/field_scale';
 import {kMaxLabels, labelsOf} from '../core/picture/labels';
-import type {FieldInfo} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
 import {amountsOf, middleOf} from '../core/picture/spread';
 import type {Vector} from '../core/protocol/geometry';
 import {OrbitCamera} from '../webgl/camera';

@@ -4,7 +4,7 @@ import {kLongestDelayMs} from '../core/transport/backoff';
 import {kPlainDisplay} from '../core/picture/display';
 import {kFull} from '../core/protocol/limit';
 import {Publisher} from '../core/session/publisher';
-import {parseFrame} from '../core/protocol/messages';
+import {parseFrame, type OpenRequest} from '../core/protocol/messages';
 import {Session} from '../core/session/session';
 import {SocketTransport} from '../core/transport/socket_transport';
 import type {Transport} from '../core/transport/transport';
@@ -663,4 +663,49 @@ test('creditIsGivenBackOnceForWhatWasApplied', () => {
   giving.frame(parseFrame(fieldFrame(1, 0, 0)));
   giving.setLimit(kFull); // decoding continues without a new byte
   expect(given).toEqual([fakeHead(kLog).length, 2 * kFakeBlockBytes, kFakeBlockBytes]);
+});
+
+test('fieldsAheadComeBehindAllElseAndChangeNothingThatIsShown', () => {
+  const log: FakeLog = {fields: ['a', 'b', 'c'], chunks: 2};
+  codec = new FakeCodec(log);
+  const assembler = new Assembler(codec, kFakeValues);
+  const requests: OpenRequest[] = [];
+  const told: FromWorker[] = [];
+  const started = new Session(
+    assembler,
+    new Publisher(assembler, () => undefined),
+    (message) => told.push(message),
+    () => carrier({open: (request) => requests.push(request)}),
+  );
+  started.start({
+    url: 'ws://x',
+    log: '',
+    transport: 'auto',
+    mesh: 'm',
+    fields: ['a'],
+    limit: kFull,
+  });
+  started.connected();
+  started.frame(parseFrame(headFrame(1, log)));
+  for (const chunk of [0, 1]) {
+    started.frame(parseFrame(meshFrame(1, chunk)));
+    started.frame(parseFrame(fieldFrame(1, chunk, 0)));
+  }
+  vi.advanceTimersByTime(1000);
+  expect(statesOf(told).at(-1)).toBe('complete');
+  const before = statesOf(told).length;
+  started.want([0], [1, 2]);
+  expect(requests.at(-1)).toMatchObject({
+    fields: ['a', 'b', 'c'],
+    have: {chunks: 2, fields: {a: 2, b: 0, c: 0}},
+  });
+  for (const chunk of [0, 1])
+    for (const field of [1, 2]) started.frame(parseFrame(fieldFrame(2, chunk, field)));
+  vi.advanceTimersByTime(1000);
+  expect(codec.fieldChunksApplied(2)).toBe(2);
+  expect(statesOf(told)).toHaveLength(before);
+  const count = requests.length;
+  started.want([1], [1, 2]);
+  vi.advanceTimersByTime(1000);
+  expect([requests.length, statesOf(told).at(-1)]).toEqual([count, 'complete']);
 });

@@ -1,6 +1,6 @@
 import {describe, expect, test} from 'vitest';
 import {kMagnitude} from '../core/picture/field_scale';
-import type {FieldInfo} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
 import {labelTicks, logTicks} from '../core/picture/ticks';
 import {kOpacityPath} from '../core/picture/transfer';
 import {
@@ -98,6 +98,7 @@ describe('settings', () => {
       limit: {kind: 'full'},
       parallel: false,
       camera: null,
+      time: null,
       volume: null,
       hasFirstOpacities: false,
     });

@@ -1,5 +1,6 @@
 import {expect, test} from 'vitest';
-import type {FieldInfo, Manifest} from '../core/protocol/manifest';
+import type {FieldInfo} from '../core/protocol/fields';
+import type {Manifest} from '../core/protocol/manifest';
 import {unfittingParts, unknownNames, wrongParts} from '../viewer/settings/wrong_parts';
 
 const reading =

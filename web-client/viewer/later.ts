@@ -20,10 +20,11 @@ import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
 import {Panels, type PanelsHost} from './panels/panels';
 import type {Shell} from './panels/shell';
+import {TimeBar, type TimeHost} from './panels/time_bar';
 import type {MeshDrop} from './drop/mesh_drop';
 import type {Pictures} from './picture/pictures';
 
-export interface LaterHost extends ActionsHost, PanelsHost {
+export interface LaterHost extends ActionsHost, PanelsHost, TimeHost {
   readonly range: ShownRange | null;
   readonly stream: {
     readonly state: StreamState;
@@ -58,6 +59,7 @@ class Wanted<T> {
 export class Later {
   readonly panels: Panels;
   readonly actions: Actions;
+  readonly time: TimeBar;
   private readonly cube: OrientationCube;
   private readonly hover: Hover;
   private readonly ends = new AbortController();
@@ -118,6 +120,7 @@ export class Later {
       this.ends.signal,
     );
     new HistogramPanel(page, host, this.ends.signal);
+    this.time = new TimeBar(page.root, page, host, this.ends.signal);
     new FilePanel(page, host, (files) => void this.take(files));
     this.takeDrops();
     this.panels.showState(host.stream.state);

@@ -6,6 +6,7 @@
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
+//   time         of a series: the instant nearest to it is shown; by default the first.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
 //   range        "auto" (default), "full", "symmetric" or "LOW,HIGH".
 //   scale        "log".

@@ -48,6 +48,7 @@ export function displayOf(
     mode: settings.planes.length > 0 ? settings.mode : 'cut',
     planes: planesOf(settings, mesh),
     volume: settings.volume !== null,
+    ...(mesh.ahead.length > 0 && {ahead: mesh.ahead}),
   };
   for (const layer of fieldLayers()) {
     const request = layer.read(read(layer.name), fields);

@@ -29,6 +29,7 @@ export const kTemplate = `
 
 <figure class="card legend" part="legend" hidden>
   <figcaption><span class="legend-name"></span><span class="legend-factor"></span></figcaption>
+  <div class="time" hidden></div>
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
   <div class="legend-note" hidden></div>

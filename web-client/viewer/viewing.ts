@@ -119,6 +119,7 @@ export class Viewing implements LaterHost {
     this.settings = settingsFor(mesh, (name) => page.read(name));
     this.later?.tellWrongParts();
     this.later?.panels.update(this.settings, mesh);
+    this.later?.time.update(this.settings, mesh);
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     const {limit} = this.settings;
@@ -186,7 +187,7 @@ export class Viewing implements LaterHost {
       case 'snapshot':
         return this.takePicture(message.snapshot);
       case 'progress':
-        return this.takeProgress(message.statistics);
+        return this.takeProgress(message.statistics, message.here);
       case 'state':
         return this.stream.enter(message.state, message.attempt, message.delayMs);
       case 'error':
@@ -209,8 +210,10 @@ export class Viewing implements LaterHost {
     this.apply();
   }
 
-  private takeProgress(statistics: Statistics): void {
+  private takeProgress(statistics: Statistics, here: number[]): void {
     this.mesh.statistics = statistics;
+    this.mesh.here = here;
+    this.later?.time.follow();
     this.shell?.progress.show(statistics);
     this.page.dispatch('progress', statistics);
   }
@@ -251,6 +254,7 @@ export class Viewing implements LaterHost {
       this.tellComplete();
     });
     this.later?.panels.showFigures(snapshot, view.pose.frameMs);
+    this.later?.time.follow();
   }
 
   /** The next picture tries again if the server is away. */

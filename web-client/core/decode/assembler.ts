@@ -5,7 +5,8 @@
 import {QtetError} from '../protocol/errors';
 import type {Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
-import {fieldKeys, readManifest, type Manifest} from '../protocol/manifest';
+import {fieldKeys} from '../protocol/fields';
+import {readManifest, type Manifest} from '../protocol/manifest';
 import type {Frame, Target} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from '../protocol/parts';
 import type {BlockValues, Codec} from './codec';
@@ -22,6 +23,8 @@ export class Assembler implements LogTable {
   /** By chunk and part. */
   private blocks: (Uint8Array | undefined)[][] = [];
   private received: number[] = [];
+  /** By field: those that it is predicted from. */
+  private parents: number[][] = [];
   constructor(
     readonly codec: Codec,
     private readonly values: ValueDecoder,
@@ -61,24 +64,47 @@ export class Assembler implements LogTable {
     return Math.min(this.leading(kFirstFieldPart + field), this.receivedChunks);
   }
 
+  /** These fields, each behind those that it is predicted from, each once. */
+  withParents(fields: readonly number[]): number[] {
+    const out = new Set<number>();
+    const add = (field: number): void => {
+      if (out.has(field)) return;
+      for (const parent of this.parents[field] ?? []) add(parent);
+      out.add(field);
+    };
+    for (const field of fields) add(field);
+    return [...out];
+  }
+
   /** The mesh's figures with these fields. */
   statistics(fields: readonly number[]): Statistics {
     return this.manifest && this.ledger
-      ? statisticsOf(this.codec, this.manifest, this.ledger, fields)
+      ? statisticsOf(this.codec, this.manifest, this.ledger, this.withParents(fields))
       : kNoStatistics;
+  }
+
+  /** The fields whose values are here for all of the mesh. */
+  get wholeFields(): number[] {
+    const {codec} = this;
+    const chunks = codec.chunksApplied;
+    return chunks === 0
+      ? []
+      : this.parents.flatMap((_, field) =>
+          codec.fieldChunksApplied(field) === chunks ? [field] : [],
+        );
   }
 
   /** Where the limit lies for these fields; null means at the end. */
   target(limit: Limit, fields: readonly number[]): Target | null {
     return this.manifest && this.head
-      ? targetOf(limit, this.codec, this.manifest, fields, this.head.length)
+      ? targetOf(limit, this.codec, this.manifest, this.withParents(fields), this.head.length)
       : null;
   }
 
   /** planOf for this log. */
   plan(fields: readonly number[]): LevelBytes[] {
     return this.manifest && this.head
-      ? planOf(this.codec, this.manifest, fields, this.head.length)
+      ? planOf(this.codec, this.manifest, this.withParents(fields), this.head.length)
       : [];
   }
 
@@ -87,7 +113,7 @@ export class Assembler implements LogTable {
    * false when neither is here. Throws the codec's errors.
    */
   step(fields: readonly number[], refine: boolean): boolean {
-    for (const field of fields) if (this.stepField(field)) return true;
+    for (const field of this.withParents(fields)) if (this.stepField(field)) return true;
     const chunk = refine ? this.nextChunk() : -1;
     if (chunk < 0) return false;
     const [structure, positions] = this.blocks[chunk] as [Uint8Array, Uint8Array];
@@ -161,6 +187,7 @@ export class Assembler implements LogTable {
     );
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
+    this.parents = this.manifest.fields.map((_, field) => this.codec.parents(field));
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
     this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
   }
@@ -201,6 +228,10 @@ export class Assembler implements LogTable {
   private nextOfField(field: number): number {
     const {codec} = this;
     const next = codec.fieldChunksApplied(field);
-    return next < codec.chunksApplied && this.blocks[next]?.[kFirstFieldPart + field] ? next : -1;
+    const isDue =
+      next < codec.chunksApplied &&
+      this.blocks[next]?.[kFirstFieldPart + field] !== undefined &&
+      this.parents[field]!.every((parent) => codec.fieldChunksApplied(parent) > next);
+    return isDue ? next : -1;
   }
 }

@@ -30,6 +30,8 @@ export interface Codec {
   apply(chunk: number, structure: Uint8Array, positions: BlockValues): void;
   applyField(field: number, chunk: number, values: BlockValues): void;
   brings(chunk: number): Counts;
+  /** The fields that this one is predicted from: their values come first. */
+  parents(field: number): number[];
   readonly chunksApplied: number;
   fieldChunksApplied(field: number): number;
   readonly level: number;
@@ -99,6 +101,8 @@ interface Exports {
     digitBytes: number,
   ): number;
   qtet_chunk_brings(chunk: number): number;
+  qtet_field_parents(field: number): number;
+  qtet_field_parent(field: number, parent: number): number;
   qtet_chunks_applied(): number;
   qtet_field_chunks_applied(field: number): number;
   qtet_level(): number;
@@ -197,6 +201,11 @@ export class WasmCodec implements Codec {
       3,
     );
     return {tetrahedra: tetrahedra!, vertices: vertices!, boundaryTriangles: boundaryTriangles!};
+  }
+  parents(field: number): number[] {
+    return Array.from({length: this.wasm.qtet_field_parents(field) >>> 0}, (_, i) =>
+      this.wasm.qtet_field_parent(field, i),
+    );
   }
   get chunksApplied(): number {
     return this.wasm.qtet_chunks_applied() >>> 0;

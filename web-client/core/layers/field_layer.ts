@@ -2,7 +2,7 @@
 
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
-import type {FieldInfo} from '../protocol/manifest';
+import type {FieldInfo} from '../protocol/fields';
 import {parseFieldValues, parseNumbers, type FieldValues} from './field_values';
 import type {Control, FieldLayer} from './layer';
 

@@ -2,7 +2,7 @@
 // component), "Density=0.5,0.7" (values of it).
 
 import {kMagnitude, scalarRange, type Scalar} from '../picture/field_scale';
-import {fieldKeys, type FieldInfo} from '../protocol/manifest';
+import {fieldKeys, type FieldInfo} from '../protocol/fields';
 
 /** Reads "1, 2.5 3e-4" as numbers. The result is empty if anything in it is no number. */
 export function parseNumbers(text: string): number[] {
@@ -14,13 +14,20 @@ export function parseNumbers(text: string): number[] {
   return numbers.every(Number.isFinite) ? numbers : [];
 }
 
+/** A series' key means the instant that is shown. */
 export function parseScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
   if (text === null) return null;
   const keys = fieldKeys(fields);
-  const whole = keys.indexOf(text);
+  const indexOf = (key: string): number => {
+    const own = keys.indexOf(key);
+    return own >= 0
+      ? own
+      : fields.findIndex(({instant}) => instant?.isShown === true && instant.series === key);
+  };
+  const whole = indexOf(text);
   if (whole >= 0) return {field: whole, component: kMagnitude};
   const match = /^(.*)\[(\d+)\]$/s.exec(text);
-  const field = match ? keys.indexOf(match[1]!) : -1;
+  const field = match ? indexOf(match[1]!) : -1;
   if (field < 0) return null;
   const component = Number(match![2]);
   return {field, component: component < fields[field]!.components ? component : kMagnitude};
@@ -32,7 +39,7 @@ export function scalarKey(text: string): string {
 }
 
 export function scalarText(scalar: Scalar, fields: readonly FieldInfo[]): string {
-  const key = fieldKeys(fields)[scalar.field] ?? '';
+  const key = fields[scalar.field]?.instant?.series ?? fieldKeys(fields)[scalar.field] ?? '';
   return scalar.component === kMagnitude ? key : `${key}[${scalar.component}]`;
 }
 

@@ -5,7 +5,7 @@ import type {Ray, Stretch} from '../picture/cell_ray';
 import type {Display, MeshArrays} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {TriangleSoup} from '../picture/triangle_soup';
-import type {FieldInfo} from '../protocol/manifest';
+import type {FieldInfo} from '../protocol/fields';
 import type {FieldValues} from './field_values';
 
 export interface Attribute {

@@ -3,7 +3,7 @@
 import type {Display, MeshArrays} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import {noSoup, type TriangleSoup} from '../picture/triangle_soup';
-import type {FieldInfo} from '../protocol/manifest';
+import type {FieldInfo} from '../protocol/fields';
 import type {Layer} from './layer';
 import {fieldLayers, kLayers, type LayerAttribute} from './layers';
 

@@ -28,6 +28,8 @@ export interface Display {
   threshold: {scalar: Scalar; low: number; high: number} | null;
   /** Shows the cells themselves, translucent, coloured by `color`. */
   volume: boolean;
+  /** Fields that may be shown soon: they are fetched and decoded behind all else. */
+  ahead?: number[];
   /** Layers without a member of their own, by name; the values are in [0, 1], too. */
   layers?: Record<string, {scalar: Scalar; values: number[]}>;
 }

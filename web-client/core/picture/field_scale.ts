@@ -1,7 +1,7 @@
 // Turns a field's integers into one number a vertex or cell: the value, a component, or a vector's
 // magnitude. The number is in [0, 1] over a range that stays the same while the mesh refines.
 
-import type {FieldInfo} from '../protocol/manifest';
+import type {FieldInfo} from '../protocol/fields';
 
 /** The integer that marks a missing value (codec/mesh.h). */
 const kMissing = -2147483648;

@@ -2,7 +2,7 @@
 
 import {scalarRange, type FieldScale, type Scalar} from './field_scale';
 import {placeOn} from './log_scale';
-import type {FieldInfo} from '../protocol/manifest';
+import type {FieldInfo} from '../protocol/fields';
 
 /** As many as the panel has room for: each is 4 to 5 pixels wide. */
 export const kBars = 56;

@@ -1,6 +1,6 @@
 // Fields of labels: few whole numbers, such as materials or parts. They get colours of their own.
 
-import type {FieldInfo} from '../protocol/manifest';
+import type {FieldInfo} from '../protocol/fields';
 
 /** So many colours can be told apart in a picture, and so many are in the map `labels`. */
 export const kMaxLabels = 20;

@@ -1,19 +1,8 @@
 // The manifest of a log (codec/FORMAT.md, "Manifest"), as far as a viewer reads it.
 
 import {QtetError} from './errors';
-
-export interface FieldInfo {
-  name: string;
-  components: number;
-  association: 'point' | 'cell';
-  /** value of component c = minimum[c] + step * integer */
-  step: number;
-  minimum: number[];
-  /** The input held whole numbers. */
-  isWhole?: boolean;
-  /** of the values; of the magnitudes if components > 1 */
-  range: [number, number];
-}
+import type {FieldInfo} from './fields';
+import {markSeries} from './series';
 
 /** A mean or rms, and a maximum. */
 export interface Spread {
@@ -69,19 +58,6 @@ export interface Opening {
   cut: number | null;
 }
 
-/**
- * The server's key for each field: its name, or `cell:NAME` for the cell field if two fields share
- * a name (proto/PROTOCOL.md).
- */
-export function fieldKeys(fields: readonly FieldInfo[]): string[] {
-  const points = new Set(
-    fields.filter(({association}) => association === 'point').map(({name}) => name),
-  );
-  return fields.map(({association, name}) =>
-    association === 'cell' && points.has(name) ? `cell:${name}` : name,
-  );
-}
-
 /** Offsets in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
 const kHeaderBytes = 64;
 const kMinorAt = 10;
@@ -95,6 +71,10 @@ const kFieldsAt = 44;
  * ones.
  */
 const kMissingFlag = 128;
+/** Added to a field's association if it is predicted from others in time (RECORDS.md, "Series"). */
+const kPredictedFlag = 64;
+/** Varints: all bytes but the last have this bit. */
+const kMoreFollows = 128;
 const kOfCells = 1;
 /** codec/FORMAT.md, "Manifest" and "Level columns". */
 const kMaxNameBytes = 256;
@@ -112,6 +92,26 @@ const kKnownColumn = 3;
 const kVolumeFigure = 1e6;
 const kErrorFigureDigits = 14;
 
+/** Each field's first two bytes of the chunk table; predictions in time lie between them. */
+function readShapes(
+  head: Uint8Array,
+  tableAt: number,
+  count: number,
+): {components: number; association: number}[] {
+  let at = tableAt;
+  return Array.from({length: count}, () => {
+    const [components, association] = [head[at]!, head[at + 1]!];
+    at += 2;
+    if ((association & kPredictedFlag) !== 0) {
+      for (let parents = head[at++]!; parents > 0; --parents) {
+        while (head[at++]! >= kMoreFollows); // the parent's number
+        ++at; // its weight
+      }
+    }
+    return {components, association: association & ~kPredictedFlag};
+  });
+}
+
 /**
  * Reads the manifest of a head. REQUIRES: the codec has opened the head, and so has checked its
  * counts and checksums; `levelColumns` belongs to that codec. Throws `truncated`, `bad-value`, and
@@ -123,10 +123,7 @@ export function readManifest(
 ): Manifest {
   const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
   const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
-  const shapes = Array.from({length: header.getUint32(kFieldsAt, true)}, (_, f) => ({
-    components: head[tableAt + 2 * f]!,
-    association: head[tableAt + 2 * f + 1]!,
-  }));
+  const shapes = readShapes(head, tableAt, header.getUint32(kFieldsAt, true));
   const reader = new ManifestReader(head.subarray(kHeaderBytes, tableAt));
   reader.text(); // the program that wrote it
   const source = reader.text();
@@ -140,6 +137,7 @@ export function readManifest(
   );
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
+  markSeries(fields);
   const flags = reader.byte();
   const errors = knownErrorsOf(flags);
   if (minorOf(flags) > header.getUint16(kMinorAt, true))

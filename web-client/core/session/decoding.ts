@@ -32,16 +32,18 @@ export class Decoding {
   }
 
   /**
-   * Decodes one slice. Returns true if there was anything to decode. With `pictureFirst` the first
-   * mesh goes to the page before anything finer is decoded. Throws the codec's errors.
+   * Decodes one slice. Returns true if there was anything to decode that is shown. With
+   * `pictureFirst` the first mesh goes to the page before anything finer is decoded. Throws the
+   * codec's errors.
    */
   advance(pictureFirst: boolean): boolean {
     this.slices.drop();
     const start = performance.now();
     const {bytes} = this.requested.statistics;
     let applied = false;
-    while (!(pictureFirst && this.awaitsPicture()) && this.step()) {
-      applied = true;
+    while (!(pictureFirst && this.awaitsPicture())) {
+      if (this.step()) applied = true;
+      else if (!this.assembler.step(this.requested.ahead, false)) break;
       if (performance.now() < start + kSliceMs) continue;
       this.slices.call();
       break;

@@ -20,7 +20,7 @@ import {histogramOf, type Axis, type Histogram} from '../picture/histogram';
 import {meshArrays} from '../picture/mesh_arrays';
 import type {Cells} from '../picture/section';
 import type {Vector} from '../protocol/geometry';
-import type {FieldInfo} from '../protocol/manifest';
+import type {FieldInfo} from '../protocol/fields';
 
 /** The values of one field at a place, one a component; NaN if missing. */
 export interface FieldValue {

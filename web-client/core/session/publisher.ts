@@ -183,7 +183,8 @@ export class Publisher {
         scale && info && info.components > 1 && color.component >= 0
           ? scale.extent(mesh.tetrahedra)
           : [0, 1],
-      middle: scale ? this.middleOf(color, scale, mesh) : [0, 1],
+      // A series has one range of colours.
+      middle: scale && !info?.instant ? this.middleOf(color, scale, mesh) : [0, 1],
       ...(volume && scale
         ? {amounts: keptOf(this.amounts, color, () => amountsOf(scale, mesh))}
         : {}),

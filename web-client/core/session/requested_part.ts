@@ -3,7 +3,7 @@
 import type {Assembler} from '../decode/assembler';
 import type {Statistics} from '../decode/statistics';
 import {errorOfLevel, kFull, limitReached, type Limit} from '../protocol/limit';
-import {fieldKeys} from '../protocol/manifest';
+import {fieldKeys} from '../protocol/fields';
 import type {OpenRequest, Target} from '../protocol/messages';
 import type {Source} from './worker_messages';
 
@@ -12,8 +12,10 @@ export class RequestedPart {
    * Names of the fields, for use before the head says which there are; null means the opening's.
    */
   names: string[] | null = null;
-  /** Indexes into the manifest. */
+  /** Indexes into the manifest: the fields that are shown. */
   fields: readonly number[] = [];
+  /** Fields that may be shown soon. They come and are decoded behind all else. */
+  ahead: readonly number[] = [];
   limit: Limit = kFull;
   /** The chunks that the log's copy holds. */
   private chunks = Infinity;
@@ -28,7 +30,12 @@ export class RequestedPart {
 
   /** Must be called before another log. */
   forget(): void {
-    this.fields = [];
+    this.fields = this.ahead = [];
+  }
+
+  /** All fields that have to come, those that others are predicted from among them. */
+  private get needed(): number[] {
+    return this.assembler.withParents([...this.fields, ...this.ahead]);
   }
 
   /**
@@ -51,7 +58,8 @@ export class RequestedPart {
     const {fields: now} = this;
     if (fields.length === now.length && fields.every((field) => now.includes(field))) return false;
     this.fields = fields;
-    this.names = this.keys;
+    const keys = fieldKeys(this.assembler.manifest!.fields);
+    this.names = fields.map((field) => keys[field]!);
     return true;
   }
 
@@ -60,7 +68,7 @@ export class RequestedPart {
     const {manifest} = this.assembler;
     if (!manifest) return this.names ?? [];
     const keys = fieldKeys(manifest.fields);
-    return this.fields.map((field) => keys[field]!);
+    return this.needed.map((field) => keys[field]!);
   }
 
   get statistics(): Statistics {
@@ -87,8 +95,17 @@ export class RequestedPart {
     return (
       assembler.manifest !== null &&
       assembler.receivedChunks >= chunks &&
-      this.fields.every((field) => assembler.receivedOfField(field) >= chunks)
+      assembler
+        .withParents(this.fields)
+        .every((field) => assembler.receivedOfField(field) >= chunks)
     );
+  }
+
+  /** The fields ahead are here for the decoded mesh. */
+  get isAheadReceived(): boolean {
+    const {assembler} = this;
+    const chunks = assembler.codec.chunksApplied;
+    return this.needed.every((field) => assembler.receivedOfField(field) >= chunks);
   }
 
   /** The whole mesh is decoded with the fields. */
@@ -112,7 +129,7 @@ export class RequestedPart {
   get have(): OpenRequest['have'] {
     const {assembler, keys} = this;
     if (!assembler.manifest) return {chunks: 0, fields: {}};
-    const fields = this.fields.map(
+    const fields = this.needed.map(
       (field, i) => [keys[i]!, assembler.receivedOfField(field)] as const,
     );
     return {chunks: assembler.receivedChunks, fields: Object.fromEntries(fields)};

@@ -105,15 +105,18 @@ export class Session implements TransportHandlers {
   }
 
   /** Brings these fields (indexes into the manifest) instead of the previous ones. */
-  want(fields: readonly number[]): void {
+  want(fields: readonly number[], ahead: readonly number[] = []): void {
     if (!this.assembler.manifest) return;
-    if (!this.requested.changeFields(fields)) return;
-    this.sendPlan();
-    this.progress.changed();
-    if (this.state.name === 'failed') return;
-    this.advance();
-    if (this.state.name === 'paused' || this.requested.isComplete) return;
-    if (!this.requested.isReceived()) this.reopen();
+    this.requested.ahead = ahead;
+    if (this.requested.changeFields(fields)) {
+      this.sendPlan();
+      this.progress.changed();
+      if (this.state.name === 'failed') return;
+      this.advance();
+      if (this.state.name === 'paused') return;
+      if (!this.requested.isComplete && !this.requested.isReceived()) return this.reopen();
+    }
+    if (isAtRest(this.state) && !this.requested.isAheadReceived) this.openAhead();
   }
 
   /** Refines up to this limit. A coarser limit goes back. */
@@ -193,8 +196,8 @@ export class Session implements TransportHandlers {
       this.stream.received(frame.payload.length);
       if (isFirst && this.takeManifest()) return;
       const {name} = this.state;
-      if (name !== 'streaming' && name !== 'paused' && !this.requested.isReached)
-        this.enter({name: 'streaming'});
+      const isThere = this.requested.isReached || this.requested.isComplete;
+      if (name !== 'streaming' && name !== 'paused' && !isThere) this.enter({name: 'streaming'});
       this.advanceSoon();
     });
   }
@@ -249,6 +252,12 @@ export class Session implements TransportHandlers {
     this.stream.open(this.source.mesh, this.requested);
   }
 
+  /** Brings the fields ahead. The picture is complete, and stays so. */
+  private openAhead(): void {
+    if (!this.stream.isConnected) this.stream.connect();
+    else if (!this.stream.brings(this.requested.keys)) this.open();
+  }
+
   /** Opens a stream on the present connection, or connects first. */
   private reopen(): void {
     const {isConnected} = this.stream;
@@ -283,7 +292,10 @@ export class Session implements TransportHandlers {
       if (hasChanged) this.publisher.changed(this.requested.isComplete);
       this.progress.changed();
       if (this.state.name === 'failed') return;
-      if (this.requested.isComplete) this.complete();
+      const isComplete = this.requested.isComplete;
+      if (isComplete) this.complete();
+      if (isComplete && this.requested.ahead.length > 0) this.stream.giveCredit();
+      else if (isComplete) return;
       else if (this.requested.isReached) this.hold();
       else if (this.state.name !== 'paused') this.stream.giveCredit();
     });
@@ -418,6 +430,7 @@ export class Session implements TransportHandlers {
 
   private sendProgress(): void {
     const statistics = this.requested.statistics;
-    this.send({type: 'progress', statistics, received: this.stream.receivedBytes});
+    const here = this.assembler.wholeFields;
+    this.send({type: 'progress', statistics, received: this.stream.receivedBytes, here});
   }
 }

@@ -109,7 +109,7 @@ function obey(
       return session.start(message.source);
     case 'display':
       publisher.show(message.display);
-      return session.want(fieldsOf(message.display));
+      return session.want(fieldsOf(message.display), message.display.ahead);
     case 'limit':
       return session.setLimit(message.limit);
     case 'pause':

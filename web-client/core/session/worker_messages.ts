@@ -103,7 +103,8 @@ export type FromWorker =
    */
   | {type: 'base'; figures: BaseFigures}
   | {type: 'snapshot'; snapshot: Snapshot}
-  | {type: 'progress'; statistics: Statistics; received: number}
+  /** `here`: the fields whose values are decoded for all of the present mesh. */
+  | {type: 'progress'; statistics: Statistics; received: number; here: number[]}
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
   | {type: 'answer'; id: number; answer: Answer};

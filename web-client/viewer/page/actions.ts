@@ -13,7 +13,10 @@ export interface ActionsHost {
   readonly settings: Settings;
   readonly view: View | null;
   /** Null before the first picture is on the screen. */
-  readonly later: {picture(): Promise<void>} | null;
+  readonly later: {
+    picture(): Promise<void>;
+    readonly time: {toggle(): void; step(by: number): void; readonly isShown: boolean};
+  } | null;
   /** Shows a standard view, or (null) the first one, beside the cards that are open now. */
   look(direction: Direction | null): void;
   togglePause(): void;
@@ -81,6 +84,7 @@ export class Actions {
       look: (direction) => this.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),
       moveClip: (step) => this.host.moveClip(step),
+      stepTime: (by) => this.host.later?.time.step(by),
       inspect: () => this.host.inspect(),
       picture: () => this.picture(),
       help: () => this.help(),
@@ -99,7 +103,7 @@ export class Actions {
       case 'clip':
         return page.write('clip', planes.length > 0 ? clipText([], hasFirstCut) : 'x:0.5');
       case 'pause':
-        return this.togglePause();
+        return this.host.later?.time.isShown ? this.host.later.time.toggle() : this.togglePause();
       case 'fullscreen':
         return this.toggleFullscreen();
     }

@@ -1,7 +1,7 @@
 // Numbers for people: grouped digits, bytes in decimal units, and percentages that never reach 100
 // too early.
 
-import type {FieldInfo} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
 
 const kCounts = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
 const kByteUnits = ['B', 'kB', 'MB', 'GB', 'TB'];

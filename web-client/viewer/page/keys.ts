@@ -11,7 +11,8 @@ export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['E', 'cell edges'],
   ['C', 'clip on or off'],
   ['[ ]', 'move the clip plane'],
-  ['Space', 'pause, continue'],
+  ['Space', 'pause, continue; play a series'],
+  [', .', 'instant before, next instant'],
   ['I', 'what lies in the middle'],
   ['P', 'save a picture'],
   ['W', 'whole screen'],
@@ -35,6 +36,7 @@ export interface KeyActions {
   look(direction: number | null): void;
   toggle(what: 'parallel' | 'edges' | 'clip' | 'pause' | 'fullscreen'): void;
   moveClip(share: number): void;
+  stepTime(by: number): void;
   inspect(): void;
   picture(): void;
   help(): void;
@@ -62,6 +64,8 @@ export function bindKeys(canvas: HTMLElement, actions: KeyActions): void {
     '[': () => actions.moveClip(-kClipStep),
     ']': () => actions.moveClip(kClipStep),
     ' ': () => actions.toggle('pause'),
+    ',': () => actions.stepTime(-1),
+    '.': () => actions.stepTime(1),
     i: () => actions.inspect(),
     p: () => actions.picture(),
     f: () => actions.centre(),

@@ -8,6 +8,7 @@ import {firstOpacities, type Amounts} from '../../core/layers/volume';
 import type {BaseFigures} from '../../core/picture/base_figures';
 import {labelsOf} from '../../core/picture/labels';
 import type {Manifest} from '../../core/protocol/manifest';
+import {showTime} from '../../core/protocol/series';
 import type {Snapshot} from '../../core/session/worker_messages';
 import {placeOn} from '../../core/picture/log_scale';
 import {
@@ -31,6 +32,10 @@ export class ShownMesh {
   plan: LevelBytes[] = [];
   /** The newest figures. */
   statistics: Statistics = kNoStatistics;
+  /** The fields that are here for all of the mesh. */
+  here: readonly number[] = [];
+  /** Fields that may be shown soon. */
+  ahead: number[] = [];
   /** The newest picture. */
   snapshot: Snapshot | null = null;
   /** A picture that waits for a view. */
@@ -72,6 +77,7 @@ export function settingsFor(
 ): Settings {
   const settings = readSettings(read);
   const fields = manifest?.fields ?? [];
+  showTime(fields, settings.time);
   const shown = shownScalar(read('field'), fields, firstField);
   if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
   if (settings.hasFirstOpacities)

@@ -2,7 +2,7 @@
 
 import type {Pick} from '../../core/session/inspector';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
-import type {FieldInfo} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
 import {formatTo, resolutionOf} from '../page/format';

@@ -4,7 +4,7 @@ import {colorGradient, labelGradient} from '../../core/picture/color_maps';
 import type {Scalar} from '../../core/picture/field_scale';
 import {linearPart, placeOn} from '../../core/picture/log_scale';
 import {labelTicks, logTicks, niceTicks, type Ticks} from '../../core/picture/ticks';
-import type {FieldInfo} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
 import {formatValue} from '../page/format';
 import type {Settings, ShownRange} from '../settings/settings';
 import {scalarTitle} from './panel';

@@ -1,7 +1,7 @@
 // A line's places and values as CSV.
 
 import type {LineValues} from '../../core/session/inspector';
-import type {FieldInfo} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
 import {scalarTitle} from './panel';
 
 /** More are noise of the arithmetic: a float has nine, and a large coordinate some more. */

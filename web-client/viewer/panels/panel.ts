@@ -2,7 +2,8 @@
 
 import {scalarText} from '../../core/layers/field_values';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
-import type {FieldInfo, Manifest} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
+import type {Manifest} from '../../core/protocol/manifest';
 import {fillSelect} from '../page/select';
 import type {Settings} from '../settings/settings';
 
@@ -21,19 +22,20 @@ export interface Panel {
 
 const kAxes = ['x', 'y', 'z'];
 
-/** "Velocity, x", or "Velocity, magnitude" for a vector without a component. */
+/** "Velocity, x", or "Velocity, magnitude" for a vector without a component. Without a time. */
 export function scalarTitle({field, component}: Scalar, fields: readonly FieldInfo[]): string {
   const info = fields[field]!;
   const twins = fields.filter(({name}) => name === info.name).length > 1;
-  const name = twins && info.association === 'cell' ? `${info.name} (cells)` : info.name;
+  const plain = info.instant ? info.name.slice(0, info.name.lastIndexOf('@')) : info.name;
+  const name = twins && info.association === 'cell' ? `${plain} (cells)` : plain;
   if (info.components === 1) return name;
   if (component === kMagnitude) return `${name}, magnitude`;
   return `${name}, ${info.components <= 3 ? kAxes[component] : `component ${component + 1}`}`;
 }
 
 /**
- * Offers every field, and the components of vectors. Fields of points and of cells are in groups if
- * there are both.
+ * Offers every field, of a series the instant that is shown, and the components of vectors. Fields
+ * of points and of cells are in groups if there are both.
  */
 export function fillScalars(
   select: HTMLSelectElement,
@@ -43,6 +45,7 @@ export function fillScalars(
 ): void {
   const usable = fields
     .map((info, field) => ({info, field}))
+    .filter(({info}) => info.instant?.isShown !== false)
     .filter(({info}) => !pointsOnly || info.association === 'point');
   const options = usable.flatMap(({info, field}) =>
     [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) => {

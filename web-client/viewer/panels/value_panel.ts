@@ -9,7 +9,7 @@ import {
 } from '../../core/layers/field_values';
 import type {ListedFieldLayer} from '../../core/layers/layers';
 import {scalarRange, kMagnitude, type Scalar} from '../../core/picture/field_scale';
-import type {FieldInfo} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
 import type {Settings} from '../settings/settings';

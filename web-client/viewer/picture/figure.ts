@@ -68,7 +68,12 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   const part = (name: string): HTMLElement => legend.querySelector<HTMLElement>(`.legend-${name}`)!;
   const text = (name: string): string => (part(name).hidden ? '' : part(name).textContent);
   const at = (its: HTMLElement): number => parseFloat(its.style.left) / 100;
-  const notes = [text('note'), text('missing').trim()];
+  const time = legend.querySelector<HTMLElement>('.time')!;
+  const notes = [
+    time.hidden ? '' : (time.querySelector('output')?.textContent ?? ''),
+    text('note'),
+    text('missing').trim(),
+  ];
   return {
     name: text('name'),
     factor: text('factor'),
@@ -79,7 +84,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
     })),
     marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
     notes: notes.filter(Boolean),
-    missing: notes[1] ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor : '',
+    missing: notes[2] ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor : '',
   };
 }
 

@@ -11,12 +11,14 @@ import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import {tailsHide} from '../../core/picture/spread';
 import {kMaxLabels} from '../../core/picture/labels';
 import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
-import type {FieldInfo} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
+import {shownInstant} from '../../core/protocol/series';
 import type {CameraState} from '../../webgl/camera';
 
 const kBeforeLayers = [
   'mesh',
   'field',
+  'time',
   'colormap',
   'range',
   'scale',
@@ -59,6 +61,8 @@ export interface Settings {
   limit: Limit;
   parallel: boolean;
   camera: CameraState | null;
+  /** The time that is shown of series; null: the first. */
+  time: number | null;
 }
 
 export function readSettings(get: (name: ViewAttribute) => string | null): Settings {
@@ -81,6 +85,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     limit: parseLimit(get('quality')) ?? kFull,
     parallel: get('projection') === 'parallel',
     camera: parseCamera(get('camera')),
+    time: parseTime(get('time')),
   };
 }
 
@@ -95,6 +100,11 @@ function parseCamera(text: string | null): CameraState | null {
   return numbers.length === 6 ? (numbers as CameraState) : null;
 }
 
+function parseTime(text: string | null): number | null {
+  const numbers = parseNumbers(text ?? '');
+  return numbers.length === 1 ? numbers[0]! : null;
+}
+
 // ---- the field that colours
 
 /** The scalar that colours: the named field, or `firstField`; null if there is none. */
@@ -103,7 +113,8 @@ export function shownScalar(
   fields: readonly FieldInfo[],
   firstField: number,
 ): Scalar | null {
-  const first = fields.length > 0 ? {field: firstField, component: kMagnitude} : null;
+  const field = shownInstant(fields, firstField);
+  const first = fields.length > 0 ? {field, component: kMagnitude} : null;
   return parseScalar(text, fields) ?? first;
 }
 

@@ -5,7 +5,8 @@ import {parseNumbers, parseScalar} from '../../core/layers/field_values';
 import {fieldLayers, kLayers} from '../../core/layers/layers';
 import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
 import {parseLimit} from '../../core/protocol/limit';
-import {fieldKeys, type Manifest} from '../../core/protocol/manifest';
+import {fieldKeys} from '../../core/protocol/fields';
+import type {Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
 import {hint} from './nearest';
 import {kViewAttributes, type ViewAttribute} from './settings';
@@ -44,6 +45,7 @@ const kRules: Partial<Record<Name, Rule>> = {
     'auto, full, symmetric, or two numbers, the smaller first: 0.5,2',
     ['auto', 'full', 'symmetric'],
   ],
+  time: [(text) => parseNumbers(text).length === 1, 'a number, a time of the series'],
   scale: oneOf('log', 'linear'),
   edges: oneOf('on', 'off'),
   creases: oneOf('on', 'off'),
@@ -83,7 +85,9 @@ export function unknownNames(names: readonly string[]): string[] {
 /** A sentence for each attribute that does not fit this mesh. */
 export function unfittingParts(read: Read, {fields, levels}: Manifest): string[] {
   const sentences: string[] = [];
-  const keys = fieldKeys(fields);
+  const keys = [
+    ...new Set(fieldKeys(fields).map((key, field) => fields[field]!.instant?.series ?? key)),
+  ];
   const has = `It has ${keys.join(', ') || 'none'}.`;
   const field = read('field');
   if (field !== null && !parseScalar(field, fields))

@@ -1,0 +1,40 @@
+// The fields of a mesh, as its manifest has them, and the keys that name them.
+
+/** A field's place in a series. */
+export interface Instant {
+  /** The key of the field without its time. */
+  series: string;
+  time: number;
+  /** The time as the field's name has it. */
+  text: string;
+  /** The series' key means this instant now. */
+  isShown: boolean;
+}
+
+export interface FieldInfo {
+  name: string;
+  components: number;
+  association: 'point' | 'cell';
+  /** value of component c = minimum[c] + step * integer */
+  step: number;
+  minimum: number[];
+  /** The input held whole numbers. */
+  isWhole?: boolean;
+  /** of the values; of the magnitudes if components > 1; of all instants of a series */
+  range: [number, number];
+  /** Only a series' instants have it. */
+  instant?: Instant;
+}
+
+/**
+ * The server's key for each field: its name, or `cell:NAME` for the cell field if two fields share
+ * a name (proto/PROTOCOL.md).
+ */
+export function fieldKeys(fields: readonly FieldInfo[]): string[] {
+  const points = new Set(
+    fields.filter(({association}) => association === 'point').map(({name}) => name),
+  );
+  return fields.map(({association, name}) =>
+    association === 'cell' && points.has(name) ? `cell:${name}` : name,
+  );
+}

@@ -1,0 +1,219 @@
+// The time of a series: play, step, loop, and which instants are here.
+
+import {shownInstant, timesOf} from '../../core/protocol/series';
+import {find, onClick} from '../page/find';
+import type {Attributes} from '../page/page';
+import type {ShownMesh} from '../page/shown_mesh';
+import {setMarkup} from '../page/trusted';
+import {shownScalar, type Settings} from '../settings/settings';
+
+/** Between two instants at speed 1. */
+const kStepMs = 125;
+/** An instant that is not here after this time is passed over for one that is. */
+const kPatienceMs = 1000;
+/** Instants that are fetched ahead of the one that is shown; the list changes at every half. */
+const kAhead = 32;
+const kSpeeds = [0.5, 1, 2, 4];
+
+const kPlay = 'M6.5 4.5v11l9-5.5z';
+const kPause = 'M7.5 5v10M12.5 5v10';
+
+const kMarkup = `
+<button type="button" class="icon play" aria-pressed="false">
+  <svg viewBox="0 0 20 20" aria-hidden="true"><path/></svg>
+</button>
+<div class="track">
+  <i class="here"></i>
+  <input type="range" name="time" min="0" step="1" aria-label="Time">
+</div>
+<output></output>
+<select class="small" name="speed" aria-label="Speed">${kSpeeds
+  .map((speed) => `<option value="${speed}">${speed}\u00d7</option>`)
+  .join('')}</select>`;
+
+export interface TimeHost {
+  readonly mesh: ShownMesh;
+  /** Brings the picture in line: other fields are wanted ahead. */
+  apply(): void;
+}
+
+export class TimeBar {
+  private readonly bar: HTMLElement;
+  private times: readonly {time: number; text: string}[] = [];
+  /** By time: the field of the shown series, -1 for none. */
+  private fields: number[] = [];
+  private at = 0;
+  private timer: ReturnType<typeof setInterval> | undefined;
+  private waitingSince = 0;
+  private known: unknown = null;
+
+  constructor(
+    root: ParentNode,
+    private readonly attributes: Attributes,
+    private readonly host: TimeHost,
+    signal: AbortSignal,
+  ) {
+    this.bar = find(root, '.time');
+    setMarkup(this.bar, kMarkup);
+    this.speed.value = '1';
+    this.showPlaying();
+    onClick(this.bar, '.play', () => this.toggle());
+    this.slider.addEventListener('input', () => this.show(Number(this.slider.value)));
+    this.speed.addEventListener('change', () => this.isPlaying && this.play());
+    signal.addEventListener('abort', () => this.stop());
+  }
+
+  /** The mesh has a series. */
+  get isShown(): boolean {
+    return !this.bar.hidden;
+  }
+
+  get isPlaying(): boolean {
+    return this.timer !== undefined;
+  }
+
+  /** Brings the bar in line with the attributes and the mesh. */
+  update(settings: Settings, mesh: ShownMesh): void {
+    const {manifest, firstField} = mesh;
+    if (this.known !== manifest) {
+      this.known = manifest;
+      this.stop();
+      this.times = manifest ? timesOf(manifest.fields) : [];
+    }
+    const isSeries = this.times.length > 1;
+    this.bar.hidden = !isSeries;
+    if (!isSeries || !manifest) return;
+    const {fields} = manifest;
+    const color = shownScalar(this.attributes.read('field'), fields, firstField);
+    const shown = color && fields[color.field]!;
+    this.fields = this.times.map(({time}) =>
+      fields.findIndex(
+        ({instant, association}) =>
+          instant?.time === time &&
+          instant.series === shown?.instant?.series &&
+          association === shown.association,
+      ),
+    );
+    const wanted = settings.time ?? this.times[0]!.time;
+    this.at = nearestTo(this.times, wanted);
+    const {slider} = this;
+    slider.max = String(this.times.length - 1);
+    slider.value = String(this.at);
+    const {text} = this.times[this.at]!;
+    slider.setAttribute('aria-valuetext', text);
+    find(this.bar, 'output').textContent = `t = ${text}`;
+    this.follow();
+  }
+
+  /** Must be called when more is here, or on the screen. */
+  follow(): void {
+    if (this.bar.hidden) return;
+    const {here} = this.host.mesh;
+    const last = this.times.length - 1;
+    const shares = this.fields.flatMap((field, i) => {
+      if (!here.includes(field)) return [];
+      const [from, to] = [i - 0.5, i + 0.5].map(
+        (place) => `${(100 * Math.min(Math.max(place, 0), last)) / last}%`,
+      );
+      return [`transparent ${from}, currentcolor ${from} ${to}, transparent ${to}`];
+    });
+    find(this.bar, '.here').style.backgroundImage =
+      shares.length > 0 ? `linear-gradient(to right, ${shares.join(', ')})` : 'none';
+    this.bar.classList.toggle('waits', !this.isOnScreen);
+  }
+
+  toggle(): void {
+    if (this.isPlaying) this.stop();
+    else this.play();
+  }
+
+  /** To the next instant or the one before, round the ends. */
+  step(by: number): void {
+    this.stop();
+    this.show(this.at + by);
+  }
+
+  private play(): void {
+    clearInterval(this.timer);
+    this.waitingSince = 0;
+    this.timer = setInterval(() => this.tick(), kStepMs / Number(this.speed.value));
+    if (this.chooseAhead()) this.host.apply();
+    this.showPlaying();
+  }
+
+  private stop(): void {
+    clearInterval(this.timer);
+    this.timer = undefined;
+    this.showPlaying();
+  }
+
+  /** The next instant, once this one is on the screen. */
+  private tick(): void {
+    const now = performance.now();
+    if (this.isOnScreen) {
+      this.waitingSince = 0;
+      return this.show(this.at + 1);
+    }
+    if (this.waitingSince === 0) this.waitingSince = now;
+    if (now - this.waitingSince < kPatienceMs) return;
+    const {here} = this.host.mesh;
+    const count = this.times.length;
+    for (let by = 1; by < count; ++by) {
+      if (!here.includes(this.fields[(this.at + by) % count]!)) continue;
+      this.waitingSince = 0;
+      return this.show(this.at + by);
+    }
+  }
+
+  private get isOnScreen(): boolean {
+    const {mesh} = this.host;
+    const field = this.fields[this.at] ?? -1;
+    if (!mesh.manifest || field < 0) return true;
+    return mesh.snapshot?.color?.field === shownInstant(mesh.manifest.fields, field);
+  }
+
+  private show(at: number): void {
+    const count = this.times.length;
+    if (count === 0) return;
+    this.at = (at + count) % count;
+    this.chooseAhead(); // the attribute's change applies it
+    this.attributes.write('time', this.at === 0 ? null : this.times[this.at]!.text);
+  }
+
+  /** Whether other fields are wanted ahead than before. */
+  private chooseAhead(): boolean {
+    const half = kAhead / 2;
+    const first = this.at - (this.at % half);
+    const count = this.times.length;
+    const ahead = Array.from(
+      {length: Math.min(kAhead, count)},
+      (_, i) => this.fields[(first + i) % count]!,
+    ).filter((field) => field >= 0);
+    if (ahead.join() === this.host.mesh.ahead.join()) return false;
+    this.host.mesh.ahead = ahead;
+    return true;
+  }
+
+  private showPlaying(): void {
+    const button = find<HTMLButtonElement>(this.bar, '.play');
+    const [title, path] = this.isPlaying ? ['Stop', kPause] : ['Play', kPlay];
+    button.ariaLabel = button.title = title;
+    button.ariaPressed = String(this.isPlaying);
+    find(button, 'path').setAttribute('d', path);
+  }
+
+  private get slider(): HTMLInputElement {
+    return find<HTMLInputElement>(this.bar, 'input');
+  }
+  private get speed(): HTMLSelectElement {
+    return find<HTMLSelectElement>(this.bar, 'select');
+  }
+}
+
+function nearestTo(times: readonly {time: number}[], wanted: number): number {
+  let best = 0;
+  times.forEach(({time}, i) => {
+    if (Math.abs(time - wanted) < Math.abs(times[best]!.time - wanted)) best = i;
+  });
+  return best;
+}
