@@ -8,7 +8,7 @@ import numpy
 
 from .log import POINT, Log
 
-__all__ = ["Arrays", "arrays_of"]
+__all__ = ["Arrays", "arrays_of", "field_of"]
 
 
 @dataclass
@@ -35,7 +35,8 @@ def _copied(address, count, width):
     return numpy.frombuffer(packed, "uint32").reshape(-1, width)
 
 
-def _field(log, number):
+def field_of(log: Log, number: int) -> numpy.ndarray:
+    """The values of the field with this number, in the input's type."""
     info = log.fields[number]
     kind = info.type.decode()
     count = log.field_count(number)
@@ -47,10 +48,10 @@ def _field(log, number):
     return values.reshape(-1, info.components) if info.components > 1 else values
 
 
-def arrays_of(log: Log, fields=None) -> Arrays:
-    """The log's present mesh, as refine() made it; `fields`: the names of those that are wanted,
-    None: all. Raises QtetError for a name that the log does not have."""
-    wanted = log.fields_of(fields)
+def arrays_of(log: Log, fields=None, time=None) -> Arrays:
+    """The log's present mesh, as refine() made it; `fields` and `time` as for Log.arrays(). Raises
+    QtetError for a name that the log does not have."""
+    wanted = log.fields_of(fields, time)
     vertices, tetrahedra, triangles = log.counts()
     points = numpy.empty((vertices, 3))
     if vertices:
@@ -60,5 +61,5 @@ def arrays_of(log: Log, fields=None) -> Arrays:
     out = Arrays(points, cells.view("int32"), boundary.view("int32"), {}, {})
     for number, name, info in wanted:
         data = out.point_data if info.association == POINT else out.cell_data
-        data[name] = _field(log, number)
+        data[name] = field_of(log, number)
     return out

@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy
 
-__all__ = ["Grid", "grid_of", "packed_array"]
+__all__ = ["Grid", "grid_of", "packed_array", "series_of"]
 
 # VTK's numbers of volume cells by meshio's names. Both order the nodes alike.
 _NUMBERS = {
@@ -123,6 +123,48 @@ def grid_of(source):
     if hasattr(source, "points") and hasattr(source, "cells") and hasattr(source, "cell_data"):
         return _of_meshio(source)
     return None
+
+
+def series_of(grids, times):
+    """One Grid of the instants of a mesh: a field that changes is one NAME@TIME an instant, another
+    is there once. Raises ValueError for another mesh, and for times that are not ascending."""
+    times = [float(time) for time in times]
+    if not grids or len(times) != len(grids):
+        raise ValueError(f"there are {len(grids)} grids and {len(times)} times; give one each")
+    if not numpy.isfinite(times).all() or (numpy.diff(times) <= 0).any():
+        raise ValueError("times are not ascending finite numbers")
+    instants = [grid_of(grid) for grid in grids]
+    if None in instants:
+        raise ValueError("an instant is no grid; give unstructured grids of VTK, PyVista or meshio")
+    first = instants[0]
+    for time, grid in zip(times, instants):
+        for what in ("points", "types", "connectivity", "ends"):
+            if not numpy.array_equal(getattr(grid, what), getattr(first, what)):
+                raise ValueError(
+                    f"the {'points' if what == 'points' else 'cells'} at the time {time:.17g} are "
+                    "not those of the first instant; make a log a step"
+                )
+    merged = Grid(first.points, first.types, first.connectivity, first.ends, {}, {})
+    for out, data in (
+        (merged.point_data, [grid.point_data for grid in instants]),
+        (merged.cell_data, [grid.cell_data for grid in instants]),
+    ):
+        for name in dict.fromkeys(name for fields in data for name in fields):
+            _add_instants(out, name, [fields.get(name) for fields in data], times)
+    return merged
+
+
+def _add_instants(out, name, values, times):
+    first = numpy.asarray(values[0]) if values[0] is not None else None
+    if first is not None and all(
+        v is not None and numpy.array_equal(first, v, equal_nan=first.dtype.kind == "f")
+        for v in values
+    ):
+        out[name] = first
+        return
+    for time, of_time in zip(times, values):
+        if of_time is not None:
+            out[f"{name}@{repr(time).removesuffix('.0')}"] = of_time
 
 
 def _of_vtk(source):

@@ -12,6 +12,7 @@ import ctypes
 import ctypes.util
 import os
 import pathlib
+import re
 import struct
 import tempfile
 import urllib.error
@@ -24,6 +25,8 @@ _MAGIC = b"\x89QTET\r\n\x1a"
 _TIMEOUT_S = 60
 _PIECE_BYTES = 1 << 20  # read from the network at a time
 POINT, CELL = 0, 1
+# An instant of a series is called NAME@TIME (RECORDS.md, "Series").
+_INSTANT = re.compile(r"(?s)(.+)@(-?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)")
 
 
 class QtetError(RuntimeError):
@@ -215,6 +218,21 @@ def _log_url(source):
     return urllib.parse.urlunsplit(parts)
 
 
+def _series_of(fields):
+    """{name: {time: field number}}, times ascending: the series of two and more instants."""
+    found = {}
+    for number, info in enumerate(fields):
+        parts = _INSTANT.fullmatch(info.name.decode(errors="replace"))
+        if parts:
+            kind = (parts[1], info.association, info.components, info.type)
+            found.setdefault(kind, {}).setdefault(float(parts[2]), number)
+    out = {}
+    for (name, *_), instants in found.items():
+        if len(instants) > 1:
+            out.setdefault(name, dict(sorted(instants.items())))
+    return out
+
+
 class Log:
     """One log, opened; close() or `with` gives its memory back. One thread at a time."""
 
@@ -250,6 +268,7 @@ class Log:
             self._struct(FieldInfo, self.c.qtet_log_get_field, _u32(f))
             for f in range(self.info.fields)
         ]
+        self.series = _series_of(self.fields)
 
     def check(self, status):
         if status != 0:
@@ -281,10 +300,15 @@ class Log:
         return self._level(self.c.qtet_log_level_of_tetrahedra, _u64(int(most)))
 
     def level_of_error(self, field, bound):
-        """The coarsest level at which a field's rms error is at most `bound` of its range; field
-        "boundary": the distance, of the diagonal."""
+        """The coarsest level at which a field's rms error is at most `bound` of its range; of a
+        series: at every instant. Field "boundary": the distance, of the diagonal."""
         if field == "boundary":
             return self._level(self.c.qtet_log_level_of_boundary_error, _f64(bound))
+        if field in self.series:
+            return max(
+                self._level(self.c.qtet_log_level_of_field_error, _u32(number), _f64(bound))
+                for number in self.series[field].values()
+            )
         number = self._level(self.c.qtet_log_find_field, field.encode())
         return self._level(self.c.qtet_log_level_of_field_error, _u32(number), _f64(bound))
 
@@ -292,17 +316,31 @@ class Log:
     def field_names(self):
         return [info.name.decode(errors="replace") for info in self.fields]
 
-    def fields_of(self, names=None):
-        """[(number, name, FieldInfo)] of the fields with these names; None: of all. Raises QtetError
-        for a name that the log does not have."""
-        known = self.field_names
-        if names is not None and not set(names) <= set(known):
+    @property
+    def times(self):
+        """The instants of all series, each time once, ascending; [] without a series."""
+        return sorted({time for instants in self.series.values() for time in instants})
+
+    def fields_of(self, names=None, time=None):
+        """[(number, name, FieldInfo)] of the fields with these names; None: of all. With a time a
+        series is one field, called by its name: the instant that is nearest, the earlier of two.
+        Raises QtetError for a name that the log does not have."""
+        found = dict(enumerate(self.field_names))
+        if time is not None:
+            for name, instants in self.series.items():
+                shown = instants[min(instants, key=lambda t: (abs(t - time), t))]
+                for number in instants.values():
+                    found.pop(number)
+                found[shown] = name
+        unknown = sorted(set(names or ()) - set(found.values()))
+        if unknown:
+            asked = [] if time is not None else [f"{name} (give a time)" for name in self.series]
             raise QtetError(
-                f"the log has no field {sorted(set(names) - set(known))}; it has {sorted(known)}"
+                f"the log has no field {unknown}; it has {sorted({*found.values(), *asked})}"
             )
         return [
-            (number, name, info)
-            for number, (name, info) in enumerate(zip(known, self.fields))
+            (number, name, self.fields[number])
+            for number, name in sorted(found.items())
             if names is None or name in names
         ]
 
@@ -325,12 +363,19 @@ class Log:
             c.qtet_log_boundary_count(self.handle),
         )
 
-    def arrays(self, fields=None):
+    def arrays(self, fields=None, time=None):
         """The mesh as numpy arrays (arrays.Arrays): points, cells, boundary, point_data, cell_data.
-        `fields`: the names of those that are wanted; None: all."""
+        `fields`: the names of those that are wanted; None: all. `time`: series at this time alone,
+        by their names."""
         from .arrays import arrays_of
 
-        return arrays_of(self, fields)
+        return arrays_of(self, fields, time)
+
+    def field(self, name, time=None):
+        """One field's values on the present mesh as a numpy array: (n,) or (n, components)."""
+        from .arrays import field_of
+
+        return field_of(self, self.fields_of([name], time)[0][0])
 
     def copy_points(self, target, count, is_double):
         """Writes 3 numbers a vertex to ctypes' `target`."""

@@ -18,6 +18,7 @@ from paraview.util.vtkAlgorithm import (  # noqa: E402
 )
 from vtkmodules.vtkCommonCore import vtkDataArraySelection  # noqa: E402
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid  # noqa: E402
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline  # noqa: E402
 
 from qtet import vtk as qtet_vtk  # noqa: E402
 
@@ -94,17 +95,20 @@ class _QtetSource(VTKPythonAlgorithmBase):
     def _opened(self):
         if self._log is None and self._source:
             self._log = qtet_vtk.Log(self._source)
-            for name in self._log.field_names:
+            for _, name, _ in self._log.fields_of(time=self._first_time()):
                 self._arrays.AddArray(name)
         return self._log
+
+    def _first_time(self):
+        """Of a log without a series: None."""
+        return min(self._log.times, default=None)
 
     def _chosen_level(self, log):
         if self._choose == BY_BOUNDARY_ERROR:
             return log.level_of_error("boundary", self._percent / 100)
         if self._choose == BY_FIELD_ERROR and log.fields:
-            return log.level_of_error(
-                self._field or log.fields[0].name.decode(), self._percent / 100
-            )
+            first = log.fields_of(time=self._first_time())[0][1]
+            return log.level_of_error(self._field or first, self._percent / 100)
         return self._level
 
     def SetLevel(self, level):
@@ -128,9 +132,17 @@ class _QtetSource(VTKPythonAlgorithmBase):
 
     def RequestInformation(self, request, inInfo, outInfo):
         try:
-            self._opened()
+            log = self._opened()
         except (qtet_vtk.QtetError, OSError) as error:
             return self._failed(error)
+        information, keys = outInfo.GetInformationObject(0), vtkStreamingDemandDrivenPipeline
+        information.Remove(keys.TIME_STEPS())
+        information.Remove(keys.TIME_RANGE())
+        if log is not None and log.times:
+            for time in log.times:
+                information.Append(keys.TIME_STEPS(), time)
+            for time in (log.times[0], log.times[-1]):
+                information.Append(keys.TIME_RANGE(), time)
         return 1
 
     def RequestData(self, request, inInfo, outInfo):
@@ -139,8 +151,14 @@ class _QtetSource(VTKPythonAlgorithmBase):
             if log is None:
                 return 1
             log.refine(self._chosen_level(log))
-            wanted = [name for name in log.field_names if self._arrays.ArrayIsEnabled(name)]
-            grid = qtet_vtk.grid_of(log, wanted)
+            time, key = self._first_time(), vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
+            if time is not None and outInfo.GetInformationObject(0).Has(key):
+                time = outInfo.GetInformationObject(0).Get(key)
+            names = [name for _, name, _ in log.fields_of(time=time)]
+            wanted = [name for name in names if self._arrays.ArrayIsEnabled(name)]
+            grid = qtet_vtk.grid_of(log, wanted, time)
+            if time is not None:
+                grid.GetInformation().Set(grid.DATA_TIME_STEP(), time)
         except (qtet_vtk.QtetError, OSError) as error:
             return self._failed(error)
         vtkUnstructuredGrid.GetData(outInfo, 0).ShallowCopy(grid)

@@ -7,12 +7,12 @@ import os
 import pathlib
 import tempfile
 import threading
-from typing import TYPE_CHECKING, Any, Callable, Mapping
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 
 import numpy
 
 from . import tool
-from .grids import grid_of, packed_array
+from .grids import grid_of, packed_array, series_of
 from .log import QtetError, library
 
 if TYPE_CHECKING:
@@ -306,6 +306,7 @@ def simplify(
     point_data: Mapping[str, ArrayLike] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
     *,
+    times: Sequence[float] | None = None,
     path: str | os.PathLike[str] | None = None,
     progress: Callable[[str, float], bool | None] | None = None,
     source: str = "",
@@ -337,6 +338,7 @@ def simplify(
     cells       (m, 4) integers: the points of each tetrahedron, counted from 0
     point_data  {name: array}: (n,) or (n, components), float or integer; NaN is a missing value
     cell_data   {name: array}: the same with m
+    times       of the grids, ascending: a field that changes becomes a series, NAME@TIME
     progress    called about ten times a second with the stage's name and the fraction of it that
                 is done, 0 to 1; the answer False ends the work with Cancelled. The fraction of a
                 grid with cells other than tetrahedra stays 0
@@ -364,10 +366,13 @@ def simplify(
     words = {
         name: value
         for name, value in locals().items()
-        if name not in ("points", "cells", "point_data", "cell_data", "path", "progress", "source")
+        if name
+        not in ("points", "cells", "point_data", "cell_data", "times", "path", "progress", "source")
     }
+    if times is not None and cells is not None:
+        raise ValueError("times are those of grids; call a field of an instant NAME@TIME")
     if cells is None:
-        grid = grid_of(points)
+        grid = grid_of(points) if times is None else series_of(list(points), times)
         if grid is None:
             raise ValueError(
                 f"{type(points).__name__} is no grid; give points and cells, or an unstructured "

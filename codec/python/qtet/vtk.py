@@ -94,8 +94,8 @@ def _field(log, number):
     return values
 
 
-def _add_fields(log, grid, fields, associations):
-    for number, name, info in log.fields_of(fields):
+def _add_fields(log, grid, fields, time, associations):
+    for number, name, info in log.fields_of(fields, time):
         if info.association not in associations:
             continue
         data = grid.GetCellData() if info.association == CELL else grid.GetPointData()
@@ -106,35 +106,36 @@ def _add_fields(log, grid, fields, associations):
             data.SetActiveScalars(values.GetName())
 
 
-def grid_of(log, fields=None):
+def grid_of(log, fields=None, time=None):
     """The log's present mesh as a vtkUnstructuredGrid of tetrahedra, with the named fields (None:
-    all)."""
+    all); with a time each series is one field (Log.fields_of)."""
     grid = model.vtkUnstructuredGrid()
     grid.SetPoints(_points(log))
     cells = _cells(log.c.qtet_log_tetrahedra(log.handle), 4, log.counts()[1])
     grid.SetCells(model.VTK_TETRA, cells)
-    _add_fields(log, grid, fields, (POINT, CELL))
+    _add_fields(log, grid, fields, time, (POINT, CELL))
     return grid
 
 
-def surface_of(log, fields=None):
+def surface_of(log, fields=None, time=None):
     """The log's present boundary as a vtkPolyData of triangles, with the points of the whole mesh
     and its point fields."""
     surface = model.vtkPolyData()
     surface.SetPoints(_points(log))
     surface.SetPolys(_cells(log.c.qtet_log_boundary(log.handle), 3, log.counts()[2]))
-    _add_fields(log, surface, fields, (POINT,))
+    _add_fields(log, surface, fields, time, (POINT,))
     return surface
 
 
-def read(source, level=None, tetrahedra=None, error=None, fields=None):
+def read(source, level=None, tetrahedra=None, error=None, fields=None, time=None):
     """A level of a log (a file or a URL) as a vtkUnstructuredGrid.
 
     level       its number, 0 the coarsest; without anything: the whole mesh
     tetrahedra  or the finest level of at most so many
     error       or ("NAME", E): the coarsest at which the field's rms error is at most E of its
                 range, or the distance ("boundary", E)
-    fields      names; None: all"""
+    fields      names; None: all
+    time        series at this time alone, by their names"""
     if sum(choice is not None for choice in (level, tetrahedra, error)) > 1:
         raise ValueError("give one of level, tetrahedra and error")
     with Log(source) as log:
@@ -143,4 +144,4 @@ def read(source, level=None, tetrahedra=None, error=None, fields=None):
         elif error is not None:
             level = log.level_of_error(*error)
         log.refine(log.last_level if level is None else level)
-        return grid_of(log, fields)
+        return grid_of(log, fields, time)

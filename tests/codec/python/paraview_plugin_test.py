@@ -17,6 +17,7 @@ os.environ["QTET_LIBRARY"] = library
 sys.path.insert(0, modules)
 try:
     from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 except ImportError as error:
     print("skipped:", error)
     sys.exit(77)
@@ -79,6 +80,25 @@ def a_level_that_there_is_none_of_is_an_error(source, sizes):
     assert cells(source) == sizes[0], "an error is the end of it"
 
 
+def a_series_has_time_steps(module):
+    source = module.QtetReader()
+    source.SetFileName(str(LOG.with_name("series.qtet")))
+    source.UpdateInformation()
+    information, steps = source.GetOutputInformation(0), Pipeline.TIME_STEPS()
+    times = [information.Get(steps, i) for i in range(information.Length(steps))]
+    assert len(times) > 2 and times == sorted(times), times
+    found = set()
+    for time in times:
+        source.UpdateTimeStep(time)
+        grid = source.GetOutputDataObject(0)
+        assert grid.GetInformation().Get(grid.DATA_TIME_STEP()) == time
+        data = grid.GetPointData()
+        names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+        assert not any("@" in name for name in names), names
+        found.add(tuple(data.GetArray(0).GetValue(i) for i in range(4)))
+    assert len(found) == len(times), "every time shows its own values"
+
+
 def the_slider_begins_at_the_coarsest_level():
     assert len(PROPERTIES) == 2, "files and URLs"
     for text in PROPERTIES:
@@ -130,6 +150,7 @@ module = plugin()
 opened = a_log_opens_at_its_coarsest_level(module)
 a_level_that_there_is_none_of_is_an_error(*opened)
 a_grid_is_saved_as_a_log_and_as_a_page(module, *opened)
+a_series_has_time_steps(module)
 the_slider_begins_at_the_coarsest_level()
 without_its_module_paraview_is_skipped()
 print("the plugin opens logs at their coarsest level and refuses levels that there are none of")

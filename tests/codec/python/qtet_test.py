@@ -191,6 +191,47 @@ def what_is_wrong_is_an_exception():
     )
 
 
+class Block:
+    def __init__(self, kind, data):
+        self.type, self.data = kind, data
+
+
+class Mesh:
+    """What a mesh of meshio looks like."""
+
+    def __init__(self, points, cells, point_data, cell_data):
+        self.points, self.cells = points, [Block("tetra", cells)]
+        self.point_data = point_data
+        self.cell_data = {name: [values] for name, values in cell_data.items()}
+
+
+def grids_with_times_are_a_series():
+    points, cells, point_data, cell_data = grid(4)
+    heat, path = point_data["Heat"], OUT / "series.qtet"
+    times = [-1, 0.5, 1e-7 + 2]
+    grids = [
+        Mesh(points, cells, {"Heat": heat * (time + 2), "Fixed": heat}, cell_data) for time in times
+    ]
+    grids[2].point_data["Late"] = heat
+    qtet.simplify(grids, times=times, path=path)
+    with qtet.open(path) as log:
+        assert log.times == times and list(log.series) == ["Heat"]
+        assert {"Heat@-1", "Heat@0.5", "Heat@2.0000001", "Late@2.0000001"} <= set(log.field_names)
+        log.refine(max(log.level_of_error("Heat", 0.001), log.last_level))
+        assert set(log.arrays(time=0).point_data) == {"Heat", "Fixed", "Late@2.0000001"}
+        for time, nearest in ((-9, -1), (-0.25, -1), (-0.2, 0.5), (9, 2.0000001)):
+            at = log.field("Heat", time)
+            assert (at == log.field(f"Heat@{nearest}")).all()
+            assert abs(at - log.field("Fixed") * (nearest + 2)).max() < 0.003
+        refused(qtet.QtetError, "Heat (give a time)", lambda: log.field("Heat"))
+        refused(qtet.QtetError, "'Fixed', 'Heat', 'Height'", lambda: log.field("Cold", 0))
+    refused(ValueError, "3 grids and 2 times", lambda: qtet.simplify(grids, times=[1, 2]))
+    refused(ValueError, "ascending", lambda: qtet.simplify(grids, times=[1, 1, 2]))
+    refused(ValueError, "NAME@TIME", lambda: qtet.simplify(points, cells, times=[1]))
+    grids[1] = Mesh(points * 2, cells, {}, {})
+    refused(ValueError, "points at the time 0.5", lambda: qtet.simplify(grids, times=times))
+
+
 def progress_is_told_and_may_end_the_work(mesh):
     told = []
     refused(
@@ -226,6 +267,7 @@ def ctrl_c_ends_the_work(mesh):
 logs_are_the_tools()
 shapes_and_types_do_not_matter()
 what_is_wrong_is_an_exception()
+grids_with_times_are_a_series()
 large = grid(32)  # a second and a half: reports come every 0.1 s
 progress_is_told_and_may_end_the_work(large)
 ctrl_c_ends_the_work(large)

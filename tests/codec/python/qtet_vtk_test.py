@@ -141,6 +141,17 @@ def levels_are_chosen_and_fields_left_out():
     )
 
 
+def a_time_chooses_an_instant_of_each_series():
+    with qtet_vtk.Log(LOGS / "series.qtet") as log:
+        log.refine(log.last_level)
+        every = {**values_of(qtet_vtk.grid_of(log).GetPointData())}
+        for time in log.times:
+            grid = qtet_vtk.grid_of(log, time=time)
+            points = values_of(grid.GetPointData())
+            (name,) = [name for name in points if name in log.series]
+            assert points[name] == every[log.field_names[log.series[name][time]]], time
+
+
 class Host(http.server.SimpleHTTPRequestHandler):
     """Static files with one Range, as nginx has it; under /whole/ without. Counts what it sends."""
 
@@ -194,5 +205,6 @@ def urls_fetch_what_a_level_needs():
 
 every_log_is_what_extract_writes()
 levels_are_chosen_and_fields_left_out()
+a_time_chooses_an_instant_of_each_series()
 urls_fetch_what_a_level_needs()
 print("levels, choices and URLs agree with qtet extract")
