@@ -32,7 +32,7 @@ inline constexpr std::uint32_t kFramePayload = 256u << 10;
 /// How long a client may take to answer the server's close: within the grace time of the server's
 /// end.
 inline constexpr auto kClosingTime = 5s;
-/// Silence after which a client is given up; a ping goes out at half of it.
+/// After half of this silence a client is pinged; after the other half it is given up.
 inline constexpr auto kSilenceTime = 30s;
 
 }  // namespace qtet::limits

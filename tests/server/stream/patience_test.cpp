@@ -15,10 +15,37 @@ TEST(Patience, aSilentClientIsPingedAtHalfTheTimeAndThenGivenUp) {
   EXPECT_EQ(patience.interval(), seconds(15));
   EXPECT_EQ(patience.at(kBegin + seconds(14)), Verdict::kWait);
   EXPECT_EQ(patience.at(kBegin + seconds(15)), Verdict::kPing);
-  EXPECT_EQ(patience.at(kBegin + seconds(29)), Verdict::kPing);
+  EXPECT_EQ(patience.at(kBegin + seconds(29)), Verdict::kWait);
   EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kSilent);
   patience.heard(kBegin + seconds(29));
   EXPECT_EQ(patience.at(kBegin + seconds(30)), Verdict::kWait);
+}
+
+TEST(Patience, whoAnswersEveryPingStaysHoweverLateTheClockIs) {
+  for (const int lateUs : {0, 1, 300, 2'000'000})
+    for (const int answerUs : {0, 1, 300, 14'000'000}) {
+      Patience patience(seconds(30), seconds(30), kBegin);
+      auto now = kBegin;
+      for (int i = 0; i < 20; ++i) {
+        now += patience.interval() + std::chrono::microseconds(lateUs);
+        const Verdict verdict = patience.at(now);
+        ASSERT_NE(verdict, Verdict::kSilent) << lateUs << ", " << answerUs << ", check " << i;
+        if (verdict != Verdict::kPing) continue;
+        patience.begins(now);
+        patience.took(now);
+        patience.wrote();
+        patience.heard(now + std::chrono::microseconds(answerUs));
+      }
+    }
+}
+
+TEST(Patience, aPingThatTheSystemTakesIsNoSignOfLife) {
+  Patience patience(seconds(30), seconds(30), kBegin);
+  ASSERT_EQ(patience.at(kBegin + seconds(16)), Verdict::kPing);
+  patience.begins(kBegin + seconds(17));
+  patience.took(kBegin + seconds(17));
+  patience.wrote();
+  EXPECT_EQ(patience.at(kBegin + seconds(31)), Verdict::kSilent);
 }
 
 TEST(Patience, whoTakesNothingIsGivenUpHoweverMuchItSays) {
@@ -50,7 +77,7 @@ TEST(Patience, whoeverTakesBytesSteadilyIsAliveThoughNoPongComes) {
   }
   patience.wrote();
   EXPECT_EQ(patience.at(kBegin + seconds(215)), Verdict::kPing);
-  EXPECT_EQ(patience.at(kBegin + seconds(229)), Verdict::kPing) << "since the last byte taken";
+  EXPECT_EQ(patience.at(kBegin + seconds(229)), Verdict::kWait) << "since the last byte taken";
   EXPECT_EQ(patience.at(kBegin + seconds(230)), Verdict::kSilent);
 }
 
