@@ -3,6 +3,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <ranges>
@@ -11,15 +12,28 @@
 
 namespace qtet {
 
-/// "T" for "T@0.5", the name of a field in a step of a series (simplify/read/steps/join_blocks.h).
-/// nullopt for a name that does not end in a number.
-[[nodiscard]] inline std::optional<std::string_view> nameWithoutStep(std::string_view name) {
+/// The two parts of "T@0.5", the name of a field in a step of a series
+/// (simplify/read/steps/join_blocks.h).
+struct InstantName {
+  std::string_view series;
+  double time;
+};
+
+/// nullopt for a name that does not end in "@" and a finite number.
+[[nodiscard]] inline std::optional<InstantName> instantName(std::string_view name) {
   const std::size_t at = name.rfind('@');
   if (at == std::string_view::npos || at == 0) return std::nullopt;
   double time = 0;
   const char* const end = name.data() + name.size();
   const auto [stop, code] = std::from_chars(name.data() + at + 1, end, time);
-  return code == std::errc() && stop == end ? std::optional(name.substr(0, at)) : std::nullopt;
+  if (code != std::errc() || stop != end || !std::isfinite(time)) return std::nullopt;
+  return InstantName{name.substr(0, at), time};
+}
+
+/// "T" for "T@0.5"; nullopt as instantName.
+[[nodiscard]] inline std::optional<std::string_view> nameWithoutStep(std::string_view name) {
+  const auto instant = instantName(name);
+  return instant ? std::optional(instant->series) : std::nullopt;
 }
 
 /// Whether `key` is the name or "point:NAME" or "cell:NAME", as the association is.

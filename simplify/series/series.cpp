@@ -1,21 +1,8 @@
 #include "simplify/series/series.h"
 
-#include <charconv>
-#include <cmath>
 #include <utility>
 
 namespace qtet {
-
-std::optional<InstantName> instantName(std::string_view name) {
-  const std::size_t at = name.rfind('@');
-  if (at == std::string_view::npos || at == 0) return std::nullopt;
-  const std::string_view text = name.substr(at + 1);
-  double time = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(time))
-    return std::nullopt;
-  return InstantName{name.substr(0, at), time};
-}
 
 std::vector<InstantStep> decodingOrder(std::size_t instants) {
   std::vector<InstantStep> out;

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "proto/field_key.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -18,15 +17,6 @@ struct Series {
   std::vector<std::size_t> fields;  ///< numbers of the instants' fields, by time
   std::vector<double> times;        ///< ascending, as many
 };
-
-/// The two parts of an instant's name.
-struct InstantName {
-  std::string_view series;
-  double time;
-};
-
-/// The name's two parts; nothing unless it ends in "@" and a number.
-[[nodiscard]] std::optional<InstantName> instantName(std::string_view name);
 
 /// The series of two and more instants, in the order of their first fields. Instants agree in
 /// association, components and type; of two with one time the first counts.

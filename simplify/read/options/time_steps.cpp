@@ -88,8 +88,7 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
     if (std::vector<std::size_t> steps = stepsOf(*range, times); !steps.empty()) return steps;
   }
   double wanted = 0;
-  const auto parsed = std::from_chars(asked.data(), asked.data() + asked.size(), wanted);
-  if (parsed.ec == std::errc{} && parsed.ptr == asked.data() + asked.size()) {
+  if (!asked.empty() && readPart(std::string_view(asked), wanted)) {
     for (const std::size_t i : all) {
       if (isSame(times[i], wanted)) return std::vector<std::size_t>{i};
     }
