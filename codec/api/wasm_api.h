@@ -36,7 +36,7 @@ std::uint32_t qtet_block_values(std::uint32_t chunk, std::uint32_t part);
 /// The kind of element that a field's values belong to: 0 points, 1 tetrahedra (Association of
 /// codec/log/log_index.h).
 std::uint32_t qtet_field_association(std::uint32_t field);
-/// The fields that a field is predicted from (FORMAT.md, "Series"): how many, and each of them.
+/// The fields that a field is predicted from (RECORDS.md, "Series"): how many, and each of them.
 std::uint32_t qtet_field_parents(std::uint32_t field);
 std::uint32_t qtet_field_parent(std::uint32_t field, std::uint32_t parent);
 /// CodecId of a block.

@@ -16,8 +16,8 @@ namespace qtet {
 inline constexpr std::uint64_t kMinClosingRowBytes = 7;
 
 /// Reads `chunks` rows into index.chunks; the first block lies at `offset`.
-/// REQUIRES: index.fields, and that chunks * minRowBytes fits what remains in
-/// `r`. Errors stay in `r`: truncated, bad-value, bad-codec, limit-exceeded (levels).
+/// REQUIRES: index.fields, and that chunks * minRowBytes fits what remains in `r`. Errors stay
+/// in `r`: truncated, bad-value, bad-codec, limit-exceeded (levels).
 void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::uint64_t offset);
 
 void writeChunkRows(ByteWriter& w, const LogIndex& index);

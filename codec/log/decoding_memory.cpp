@@ -78,7 +78,7 @@ std::uint64_t decodingBytes(const LogIndex& index) {
       index.manifest.size();
   return kFixed + table + (roomy ? 1 : kDoubling) * mesh +
          kBaseTetrahedron * index.chunks.front().newTetrahedra + fieldBytes(index, all.slots) +
-         +kBlockInteger * all.blockIntegers;
+         kBlockInteger * all.blockIntegers;
 }
 
 }  // namespace qtet
