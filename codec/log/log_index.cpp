@@ -27,11 +27,6 @@ struct Header {
   std::uint8_t positionBits = 0;
   std::uint16_t major = 0, minor = 0;
 
-  [[nodiscard]] std::uint64_t minTableBytes() const {
-    return std::uint64_t{fields} * 2 +
-           std::uint64_t{chunks} * minRowBytes(kFirstFieldPart + fields) +
-           std::uint64_t{closing} * kMinClosingRowBytes;
-  }
   [[nodiscard]] std::uint64_t headBytes() const {
     return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes;
   }
@@ -99,11 +94,6 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 256 fields", 44);
   if (h.closing > kMaxClosingBlocks)
     return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
-  if (h.minTableBytes() > h.tableBytes)
-    return fail(ErrorCode::kBadValue,
-                "the chunk table is too short for the counts of chunks, fields and closing blocks; "
-                "fetch the file again",
-                28);
   if (h.headBytes() > h.fileBytes)
     return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
   return h;
@@ -321,6 +311,13 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
       return std::unexpected(r.failed() ? r.error() : s.error());
   }
   if (Status s = checkPredictions(index); !s) return std::unexpected(s.error());
+  // before rows are allocated
+  if (r.remaining() < header->chunks * minRowBytes(index.parts()) +
+                          std::uint64_t{header->closing} * kMinClosingRowBytes)
+    return fail(ErrorCode::kBadValue,
+                "the chunk table is too short for the counts of chunks, fields and closing blocks; "
+                "fetch the file again",
+                28);
   readChunkRows(r, index, header->chunks, header->headBytes());
   readClosingRows(r, index, header->closing);
   if (!r.failed() && r.remaining() > 0)

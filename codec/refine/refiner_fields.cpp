@@ -1,5 +1,7 @@
 #include "codec/refine/refiner_fields.h"
 
+#include <algorithm>
+
 namespace qtet {
 
 RefinerFields::RefinerFields(const ChunkPlan& plan, const RecordReader& records,
@@ -83,8 +85,9 @@ Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
   return {};
 }
 
-void RefinerFields::restore(Field& f, const FieldShape& shape, std::size_t element,
-                            Values& residuals) const {
+// Values are held within the range, not refused: the parents' values on the way depend on the order
+// in which blocks come.
+void RefinerFields::restore(Field& f, const FieldShape& shape, std::size_t element) const {
   constexpr std::int64_t kLargest = std::int64_t{1} << 30;
   for (std::size_t i = element * shape.components; i < (element + 1) * shape.components; ++i) {
     if (f.differences[i] == kMissing) {
@@ -95,8 +98,7 @@ void RefinerFields::restore(Field& f, const FieldShape& shape, std::size_t eleme
         f.differences[i] +
         shape.prediction.predict([&](std::uint16_t parent) { return fields_[parent].values[i]; },
                                  kMissing);
-    if (value < -kLargest || value > kLargest) residuals.spoil();
-    f.values[i] = residuals.bad() ? 0 : static_cast<std::int32_t>(value);
+    f.values[i] = static_cast<std::int32_t>(std::clamp(value, -kLargest, kLargest));
   }
 }
 
@@ -112,15 +114,15 @@ void RefinerFields::codePoints(Field& f, const FieldShape& shape, std::uint32_t 
   const PointAncestry& ancestry = records_.ancestry().points;
   const AddedElements& b = added_[chunk];
   const std::size_t baseVertices = chunk == 0 ? records_.ancestry().base.size() : 0;
-  for (VertexId v = 0; isPredicted && v < baseVertices; ++v) restore(f, shape, v, residuals);
+  for (VertexId v = 0; isPredicted && v < baseVertices; ++v) restore(f, shape, v);
   if (chunk == 0) inheritPoints(f, shape.components, 0);
   for (const Birth& birth : ancestry.births().subspan(b.firstBirth, b.endBirth - b.firstBirth)) {
     ancestry.code<false>(
         birth, residuals, shape.components, at, [](std::size_t, std::uint32_t) { return 0; },
         shape.hasMissing);
     if (!isPredicted) continue;
-    restore(f, shape, birth.slot, residuals);
-    for (std::size_t j = 0; j + 1 < birth.k; ++j) restore(f, shape, birth.firstNew + j, residuals);
+    restore(f, shape, birth.slot);
+    for (std::size_t j = 0; j + 1 < birth.k; ++j) restore(f, shape, birth.firstNew + j);
   }
 }
 
@@ -147,7 +149,7 @@ void RefinerFields::codeCells(Field& f, const FieldShape& shape, std::uint32_t c
     for (std::size_t c = 0; c < n; ++c)
       coded[t * n + c] = residuals.codeField<false>(
           shape.hasMissing, ancestry.predict(t, [&](CellId u) { return coded[u * n + c]; }), 0);
-    if (isPredicted) restore(f, shape, t, residuals);
+    if (isPredicted) restore(f, shape, t);
   }
   if (chunk == 0)
     inheritCells(f, shape, plan_.slots[1].tetrahedra,

@@ -53,7 +53,7 @@ class RefinerFields {
   void codeCells(Field& field, const FieldShape& shape, std::uint32_t chunk,
                  Values& residuals) const;
   /// The values of a point or cell, from its difference and the parents' values.
-  void restore(Field& field, const FieldShape& shape, std::size_t element, Values& residuals) const;
+  void restore(Field& field, const FieldShape& shape, std::size_t element) const;
 
   const ChunkPlan& plan_;
   const RecordReader& records_;

@@ -31,6 +31,15 @@ std::array<double, 2> rangeOf(const MeshField& field) {
   return {low, high};
 }
 
+/// Each component's least value; 0 where there is none.
+std::vector<double> minimumOf(const FieldExtents& extents) {
+  std::vector<double> out;
+  for (const double low : extents.minimum)
+    // Minus zero would be another number in the manifest, and the same one everywhere else.
+    out.push_back(std::isfinite(low) && low != 0 ? low : 0);
+  return out;
+}
+
 int bitsFor(double extent) {
   return std::max(kMinFieldBits,
                   static_cast<int>(std::bit_width(static_cast<std::uint64_t>(extent))));
@@ -49,11 +58,6 @@ FieldExtents extentsOf(const MeshField& field) {
     out.minimum[i % components] = std::min(out.minimum[i % components], value);
     out.maximum[i % components] = std::max(out.maximum[i % components], value);
   }
-  for (std::size_t c = 0; c < components; ++c) {
-    if (out.minimum[c] > out.maximum[c]) out.minimum[c] = out.maximum[c] = 0;
-    // Minus zero would be another number in the manifest, and the same one everywhere else.
-    if (out.minimum[c] == 0) out.minimum[c] = 0;
-  }
   return out;
 }
 
@@ -62,6 +66,8 @@ double FieldExtents::largest() const {
   for (std::size_t c = 0; c < minimum.size(); ++c) out = std::max(out, maximum[c] - minimum[c]);
   return out;
 }
+
+bool FieldExtents::fitsExactly() const { return largest() < std::ldexp(1.0, kMaxFieldBits); }
 
 void FieldExtents::include(const FieldExtents& other) {
   assert(minimum.size() == other.minimum.size());
@@ -89,14 +95,14 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
   QuantisedField out;
   out.nonFinite = static_cast<std::uint64_t>(
       std::ranges::count_if(field.values, [](double value) { return !std::isfinite(value); }));
-  out.exact = !isFloatType(field.type) && largest < std::ldexp(1.0, kMaxFieldBits);
+  out.exact = !isFloatType(field.type) && extents.fitsExactly();
   out.info = FieldInfo{.name = field.name,
                        .components = field.components,
                        .type = field.type,
                        .association = field.association,
                        .bits = out.exact ? bitsFor(largest) : bits,
                        .step = 1,
-                       .minimum = extents.minimum,
+                       .minimum = minimumOf(extents),
                        .range = rangeOf(field),
                        .hasMissing = out.nonFinite > 0};
   if (!out.exact && largest > 0) {

@@ -25,7 +25,8 @@ struct QuantisedField {
 [[nodiscard]] std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component,
                                         double value);
 
-/// The box of a field's finite values, one interval a component; 0 where there are none.
+/// The box of a field's finite values, one interval a component; (infinity, -infinity) where there
+/// are none.
 struct FieldExtents {
   std::vector<double> minimum, maximum;
 
@@ -33,6 +34,8 @@ struct FieldExtents {
   [[nodiscard]] double largest() const;
   /// Takes the other's box in. REQUIRES: as many components.
   void include(const FieldExtents& other);
+  /// Integers in this box are stored as they are.
+  [[nodiscard]] bool fitsExactly() const;
 };
 [[nodiscard]] FieldExtents extentsOf(const MeshField& field);
 

@@ -1,5 +1,6 @@
 #include "simplify/pipeline/pipeline.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -40,9 +41,9 @@ class Stages {
     start_ = now;
   }
 
-  /// For the stage's own options.
-  [[nodiscard]] std::function<void(double)> progress() {
-    return [this](double fraction) { tell(fraction); };
+  /// For the stage's own options; `from` is the share of the stage that is done already.
+  [[nodiscard]] std::function<void(double)> progress(double from = 0, double to = 1) {
+    return [this, from, to](double fraction) { tell(from + (to - from) * fraction); };
   }
 
  private:
@@ -145,20 +146,31 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   return measureLevels(history, options);
 }
 
+// Share of the encoding that goes into differences in time, where a log has series.
+constexpr double kDifferencesShare = 0.5;
+
 /// The instants of series become differences, in the order in which orderSeries() put them.
 Status differInTime(FusionHistory& history, Run& run) {
   if (Status s = run.stages.begin(Stage::kEncode); !s) return s;
-  if (const std::size_t count = toTimeDifferences(history); count > 0)
-    run.note({std::to_string(count) + " of " + std::to_string(history.fields.size()) +
+  const Result<std::size_t> count =
+      toTimeDifferences(history, run.options.stop, run.stages.progress(0, kDifferencesShare));
+  if (!count) return std::unexpected(count.error());
+  if (*count > 0)
+    run.note({std::to_string(*count) + " of " + std::to_string(history.fields.size()) +
               " fields are instants that are coded as differences in time"});
   return {};
+}
+
+bool hasSeries(const FusionHistory& history) {
+  return std::ranges::any_of(history.fields,
+                             [](const FieldInfo& field) { return !field.prediction.isNone(); });
 }
 
 Result<Bytes> encode(const FusionHistory& history, LevelErrors errors, Run& run) {
   LogWriterOptions options;
   options.source = run.options.source;
   options.generator = "qtet " QTET_VERSION;
-  options.progress = run.stages.progress();
+  options.progress = run.stages.progress(hasSeries(history) ? kDifferencesShare : 0);
   options.stop = run.options.stop;
   options.errors = std::move(errors);
   options.focus = run.focus;

@@ -63,6 +63,11 @@ std::vector<double> lagrange(std::span<const double> times, double time) {
   return out;
 }
 
+/// Equal integers of both are equal values.
+bool haveOneScale(const FieldInfo& a, const FieldInfo& b) {
+  return a.bits == b.bits && a.step == b.step && a.minimum == b.minimum;
+}
+
 class Chooser {
  public:
   Chooser(FusionHistory& history, const Series& series) : history_(history), series_(series) {}
@@ -103,7 +108,9 @@ class Chooser {
     for (std::size_t i = 0; i < instants.size(); ++i) {
       const std::size_t parent = series_.fields[instants[i]];
       const auto weight = static_cast<int>(std::lround(shares[i] * TimePrediction::kOne));
-      if (parent >= f || std::abs(weight) > 4 * TimePrediction::kOne) return;
+      if (parent >= f || !haveOneScale(history_.fields[parent], history_.fields[f]) ||
+          std::abs(weight) > 4 * TimePrediction::kOne)
+        return;
       rest -= weight;
       prediction.parents[prediction.count++] = {static_cast<std::uint16_t>(parent),
                                                 static_cast<std::int8_t>(weight)};
@@ -125,15 +132,24 @@ class Chooser {
 
 }  // namespace
 
-std::size_t toTimeDifferences(FusionHistory& history) {
-  for (const Series& series : seriesOf(std::span<const FieldInfo>(history.fields))) {
+Result<std::size_t> toTimeDifferences(FusionHistory& history, const std::stop_token& stop,
+                                      const std::function<void(double)>& progress) {
+  const std::vector<Series> all = seriesOf(std::span<const FieldInfo>(history.fields));
+  std::size_t instants = 0, done = 0;
+  for (const Series& series : all) instants += series.fields.size();
+  for (const Series& series : all) {
     Chooser chooser(history, series);
-    for (const InstantStep& step : decodingOrder(series.fields.size())) chooser.choose(step);
+    for (const InstantStep& step : decodingOrder(series.fields.size())) {
+      if (stop.stop_requested()) return cancelled();
+      chooser.choose(step);
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(instants));
+    }
   }
   std::size_t count = 0;
   for (std::size_t f = history.fields.size(); f-- > 0;) {  // parents keep their values until then
     const TimePrediction& prediction = history.fields[f].prediction;
     if (prediction.isNone()) continue;
+    if (stop.stop_requested()) return cancelled();
     ++count;
     for (std::size_t i = 0; i < history.values[f].size(); ++i)
       history.values[f][i] = differenceOf(history, f, prediction, i);

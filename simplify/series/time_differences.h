@@ -3,16 +3,22 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <stop_token>
 
 #include "codec/record/fusion_history.h"
+#include "proto/error.h"
 
 namespace qtet {
 
 /// Chooses how each instant of each series is predicted, so that least is left. The choices are
 /// nothing, the nearest decoded instant, the two around it, and the polynomial through up to four.
-/// Its values become what is left, and its FieldInfo says of what. Returns how many instants became
-/// differences. REQUIRES: series in the order of decoding (orderSeries); fields of a series with
-/// one step and minimum.
-std::size_t toTimeDifferences(FusionHistory& history);
+/// Only instants of one bits, step and minimum predict each other. Its values become what is left,
+/// and its FieldInfo says of what. `progress` gets fractions of the work. Returns how many instants
+/// became differences. Errors: cancelled; the history is then of no use. REQUIRES: series in the
+/// order of decoding (orderSeries).
+[[nodiscard]] Result<std::size_t> toTimeDifferences(
+    FusionHistory& history, const std::stop_token& stop = {},
+    const std::function<void(double)>& progress = {});
 
 }  // namespace qtet

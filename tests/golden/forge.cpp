@@ -7,6 +7,7 @@
 
 #include "codec/coding/level_columns.h"
 #include "codec/files/atomic_file.h"
+#include "codec/log/chunk_table.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
 #include "codec/refine/log_file.h"
@@ -60,7 +61,7 @@ Bytes logOfSeries() {
   for (std::size_t i = 0; i < mesh.values[2].size(); ++i) missing[2].push_back(i % 7 == 0);
   FusionHistory history = simplify(mesh, {}).value();
   restoreMissing(history, missing);
-  toTimeDifferences(history);
+  (void)toTimeDifferences(history).value();
   LogWriterOptions options;
   options.source = "golden.pvd";
   options.generator = "qtet golden";
@@ -244,6 +245,33 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.manifest-errors-twice.qtet", errors(9, 1, 3));
 }
 
+/// Breaks what the chunk table says of predictions in time.
+void writeBadSeries(const std::filesystem::path& folder, const Bytes& series) {
+  const LogIndex index = LogIndex::parse(series).value();
+  const auto patched = [&](std::size_t at, std::size_t value) {
+    Bytes b = series;
+    b[at] = static_cast<std::uint8_t>(value);
+    testing::mendChecksums(b);
+    return b;
+  };
+  const auto first = std::ranges::find_if(
+      index.fields, [](const FieldShape& f) { return !f.prediction.isNone(); });
+  // Components and association of the fields before it stand before its count of parents.
+  const std::size_t before = static_cast<std::size_t>(first - index.fields.begin());
+  const std::size_t count = LogIndex::kHeaderBytes + index.manifest.size() + 2 * (before + 1);
+  write(folder / "bad-value.series-no-parent.qtet", patched(count, 0));
+  write(folder / "bad-value.series-five-parents.qtet", patched(count, 5));
+  write(folder / "bad-value.series-its-own-parent.qtet", patched(count + 1, before));
+  // The last field is one of cells, the first one of points.
+  write(folder / "bad-value.series-parent-of-another-kind.qtet",
+        forged(series, [](LogIndex& i) { i.fields.back().prediction.parents[0].field = 0; }));
+  // As many closing rows as the table would hold without the predictions.
+  const std::size_t table = index.headBytes() - LogIndex::kHeaderBytes - index.manifest.size();
+  const std::size_t rows = index.chunks.size() * minRowBytes(index.parts());
+  write(folder / "bad-value.series-table-too-short.qtet",
+        patched(52, (table - 2 * index.fields.size() - rows) / kMinClosingRowBytes));
+}
+
 void writeBadClosing(const std::filesystem::path& folder, const Bytes& kept) {
   const auto closing = [&](const std::function<void(std::vector<ClosingBlock>&)>& change) {
     return forged(kept, [&](LogIndex& i) { change(i.closing); });
@@ -381,8 +409,10 @@ int main(int argc, char** argv) {
   qtet::write(folder / "valid" / "gaps.qtet", qtet::logWithMissingValues());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);
   qtet::write(folder / "valid" / "original-cells.qtet", qtet::logWithOriginalCells());
-  qtet::write(folder / "valid" / "series.qtet", qtet::logOfSeries());
+  const qtet::Bytes series = qtet::logOfSeries();
+  qtet::write(folder / "valid" / "series.qtet", series);
   qtet::writeMustFail(folder / "must-fail", solid);
+  qtet::writeBadSeries(folder / "must-fail", series);
   qtet::writeBadClosing(folder / "must-fail", kept);
   qtet::write(folder / "must-fail" / "limit-exceeded.work.qtet",
               qtet::testing::CheapLog(250).file());

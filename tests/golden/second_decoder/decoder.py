@@ -101,9 +101,8 @@ class Field:
         for i, values in self.values.items() if parents else ():
             for c, x in enumerate(values):
                 if x != MISSING:
-                    values[c] = x + self.in_time(
-                        [(fields[p].values[i][c], weight) for p, weight in parents]
-                    )
+                    parts = [(fields[p].values[i][c], weight) for p, weight in parents]
+                    values[c] = x + self.in_time(parts)
 
     def in_time(self, parents):
         there = [x for x, _ in parents if x != MISSING]

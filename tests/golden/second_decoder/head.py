@@ -44,6 +44,8 @@ class Log:
             for _ in range(reader.u8()):
                 parent = reader.varint()
                 refuse_unless(parent < len(self.shapes), "a parent behind its child")
+                kind = self.shapes[parent][0], self.shapes[parent][1] & 127
+                refuse_unless(kind == (components, association & 63), "a parent of another kind")
                 parents.append((parent, reader.unpack("b")[0]))
             refuse_unless(1 <= len(parents) <= 4, "parents")
         self.shapes.append((components, association & 191))

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "simplify/clean/quantise.h"
@@ -57,23 +59,56 @@ TEST(Series, otherFieldsKeepTheirPlaces) {
   EXPECT_EQ(names, (std::vector<std::string>{"p", "T@1", "T@3", "q", "T@2"}));
 }
 
-TEST(Series, instantsHaveOneScale) {
+/// A cell of four points with these fields; each has four values.
+QuantisedMesh quantised(std::vector<MeshField> fields) {
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.tetrahedra = {{0, 1, 2, 3}};
-  mesh.fields = {field("T@0"), field("T@1"), field("p")};
-  mesh.fields[0].values = {0, 1, 2, 3};
-  mesh.fields[1].values = {5, 6, 7, 10};
-  mesh.fields[2].values = {0, 1, 2, 3};
-  const Result<QuantisedMesh> out = quantise(mesh);
-  ASSERT_TRUE(out) << out.error().text();
-  const std::vector<FieldInfo>& fields = out->mesh.fields;
+  mesh.fields = std::move(fields);
+  return quantise(mesh).value();
+}
+
+MeshField valued(const std::string& name, std::vector<double> values,
+                 const std::string& type = "float32") {
+  return {name, 1, type, std::move(values), "point"};
+}
+
+TEST(Series, instantsHaveOneScale) {
+  const QuantisedMesh out = quantised(
+      {valued("T@0", {0, 1, 2, 3}), valued("T@1", {5, 6, 7, 10}), valued("p", {0, 1, 2, 3})});
+  const std::vector<FieldInfo>& fields = out.mesh.fields;
   EXPECT_EQ(fields[0].step, fields[1].step);
   EXPECT_EQ(fields[0].minimum, fields[1].minimum);
   EXPECT_DOUBLE_EQ(fields[0].step * 4095, 10);
   EXPECT_DOUBLE_EQ(fields[2].step * 4095, 3);
   EXPECT_EQ(fields[0].range, (std::array<double, 2>{0, 3})) << "the instant's own";
-  EXPECT_EQ(out->mesh.values[1].back(), 4095);
+  EXPECT_EQ(out.mesh.values[1].back(), 4095);
+}
+
+TEST(Series, anInstantWithoutValuesDoesNotWidenTheScale) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const QuantisedMesh out =
+      quantised({valued("T@0", {300, 301, 302, 310}), valued("T@1", {nan, nan, nan, nan})});
+  for (const FieldInfo& field : out.mesh.fields) {
+    EXPECT_DOUBLE_EQ(field.step * 4095, 10);
+    EXPECT_EQ(field.minimum, (std::vector<double>{300}));
+  }
+}
+
+TEST(Series, integersStayExactWhereTheSeriesSpansTooMuch) {
+  const double most = std::ldexp(1.0, 28) - 1;  // the largest extent that is stored exactly
+  const auto of = [&](double highest) {
+    return quantised({valued("n@0", {0, 1, 2, 3}, "int64"),
+                      valued("n@1", {highest - 3, highest - 2, highest - 1, highest}, "int64")});
+  };
+  for (const double highest : {most - 1, most, most + 1}) {
+    const QuantisedMesh out = of(highest);
+    EXPECT_EQ(out.mesh.fields[0].minimum == out.mesh.fields[1].minimum, highest <= most);
+    for (std::size_t f = 0; f < 2; ++f)
+      for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_EQ(out.mesh.fields[f].value(0, out.mesh.values[f][i]),
+                  (f == 0 ? 0 : highest - 3) + static_cast<double>(i));
+  }
 }
 
 }  // namespace

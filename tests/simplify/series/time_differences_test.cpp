@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stop_token>
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
@@ -37,7 +38,7 @@ class TimeDifferences : public ::testing::Test {
     history_ = simplify(mesh, {}).value();
     restoreMissing(history_, missing);
     FusionHistory differences = history_;
-    count_ = toTimeDifferences(differences);
+    count_ = toTimeDifferences(differences).value();
     LogWriterOptions options;
     options.chunkBytes = 600;
     bytes_ = encodeLog(differences, options).value().bytes;
@@ -74,6 +75,28 @@ TEST_F(TimeDifferences, everyLevelHasEveryInstant) {
 
 TEST_F(WithGaps, everyLevelHasEveryInstant) { expectEveryLevel(log(), history_); }
 
+TEST_F(TimeDifferences, instantsOfAnotherScaleDoNotPredict) {
+  history_.fields[0].minimum = {-4};
+  ASSERT_TRUE(toTimeDifferences(history_));
+  for (const FieldInfo& field : history_.fields)
+    for (const TimePrediction::Parent& parent : field.prediction.all())
+      EXPECT_NE(parent.field, 0) << field.name;
+}
+
+TEST_F(TimeDifferences, workIsToldAndStopped) {
+  std::vector<double> fractions;
+  std::stop_source source;
+  const Result<std::size_t> stopped =
+      toTimeDifferences(history_, source.get_token(), [&](double fraction) {
+        fractions.push_back(fraction);
+        if (fractions.size() == 3) source.request_stop();
+      });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+  const double instants = kInstants + 3;
+  EXPECT_EQ(fractions, (std::vector<double>{1 / instants, 2 / instants, 3 / instants}));
+}
+
 TEST_F(TimeDifferences, anInstantIsReadWithoutTheOthersBytes) {
   const LogFile file = log();
   const auto last = static_cast<std::uint32_t>(file.index().fields.size() - 1);
@@ -103,9 +126,8 @@ TEST_F(TimeDifferences, aFieldWaitsForThoseThatItIsPredictedFrom) {
 }
 
 /// Parents may be whole before the first block of the field comes.
-TEST_F(TimeDifferences, aFieldThatComesLateEndsTheSame) {
-  const LogFile file = log();
-  const Result<LatticeMesh> whole = meshAtLevel(file, history_.levels);
+void expectLateFieldsToEndTheSame(const LogFile& file) {
+  const Result<LatticeMesh> whole = meshAtLevel(file, file.index().chunks.back().lastLevel);
   Refiner refiner(file.index());
   const auto chunks = static_cast<std::uint32_t>(file.index().chunks.size());
   for (std::uint32_t c = 0; c < chunks; ++c) ASSERT_TRUE(applyChunk(file, refiner, c, {}));
@@ -113,6 +135,23 @@ TEST_F(TimeDifferences, aFieldThatComesLateEndsTheSame) {
     for (std::uint32_t c = 0; c < chunks; ++c) ASSERT_TRUE(applyFieldBlock(file, refiner, c, f));
     EXPECT_TRUE(std::ranges::equal(refiner.fieldValues(f), whole->values[f])) << f;
   }
+}
+
+TEST_F(TimeDifferences, aFieldThatComesLateEndsTheSame) { expectLateFieldsToEndTheSame(log()); }
+
+/// Each instant is 32 times the one before it, and the range ends: in the same values, whether the
+/// parents are ahead or not.
+TEST_F(TimeDifferences, valuesStayInTheirRangeInEveryOrder) {
+  for (std::uint16_t f = 1; f < kInstants; ++f) {
+    const TimePrediction::Parent before{static_cast<std::uint16_t>(f - 1), 127};
+    history_.fields[f].prediction = {{before, before, before, before}, 4};
+  }
+  LogWriterOptions options;
+  options.chunkBytes = 600;
+  bytes_ = encodeLog(history_, options).value().bytes;
+  const LatticeMesh whole = meshAtLevel(log(), history_.levels).value();
+  EXPECT_EQ(*std::ranges::max_element(whole.values[kInstants - 1]), 1 << 30);
+  expectLateFieldsToEndTheSame(log());
 }
 
 TEST_F(TimeDifferences, fieldsGoOnlyBehindThoseThatRestOnThem) {
