@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -15,6 +16,7 @@
 #include "codec/log/value_block.h"
 #include "codec/mesh/mesh.h"
 #include "codec/refine/refiner.h"
+#include "proto/checksum.h"
 #include "proto/crc32c.h"
 #include "proto/manifest.h"
 
@@ -77,6 +79,23 @@ Result<LogFile> LogFile::fromBytes(Bytes bytes) {
   return checked(std::move(state));
 }
 
+namespace {
+
+// Bytes of a mapped file in memory at once, while its digest is made.
+constexpr std::size_t kPieceBytes = 4 << 20;
+
+std::string digestInPieces(const LogFile& log) {
+  Sha256 sha;
+  for (std::size_t at = 0; at < log.bytes().size(); at += kPieceBytes) {
+    const std::size_t size = std::min(kPieceBytes, log.bytes().size() - at);
+    sha.update(log.bytes().subspan(at, size));
+    log.release(at, size);
+  }
+  return toHex(sha.finish());
+}
+
+}  // namespace
+
 Result<LogFile> LogFile::checked(std::unique_ptr<State> state, DigestOf digestOf) {
   LogFile log(std::move(state));
   Result<LogIndex> index = LogIndex::parse(log.bytes());
@@ -88,7 +107,7 @@ Result<LogFile> LogFile::checked(std::unique_ptr<State> state, DigestOf digestOf
             std::to_string(index->fileBytes) + "; copy or fetch it again",
         log.bytes().size());
   log.state_->index = std::move(*index);
-  log.state_->digest = digestOf(log.bytes());
+  log.state_->digest = digestOf != nullptr ? digestOf(log.bytes()) : digestInPieces(log);
   return log;
 }
 
@@ -102,7 +121,21 @@ ByteView LogFile::block(std::uint32_t chunk, std::uint32_t part) const {
   return bytes().subspan(static_cast<std::size_t>(b.offset), b.size);
 }
 
+void LogFile::release(std::uint64_t offset, std::uint64_t size) const {
+  if (state_->address == nullptr || size == 0) return;
+  // whole pages, also of the neighbours, who can be read again
+  static const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  const std::uint64_t begin = offset / page * page;
+  madvise(static_cast<std::uint8_t*>(state_->address) + begin,
+          static_cast<std::size_t>(offset + size - begin), MADV_DONTNEED);
+}
+
 namespace {
+
+void releaseBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
+  const BlockEntry& b = log.index().block(chunk, part);
+  log.release(b.offset, b.size);
+}
 
 Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
   const BlockEntry& b = log.index().block(chunk, part);
@@ -116,8 +149,11 @@ Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
 Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk,
                                               std::uint32_t part) {
   if (Status s = checkBlock(log, chunk, part); !s) return std::unexpected(s.error());
-  return decodeValueBlock(log.block(chunk, part), log.index().components(part),
-                          log.index().tuples(chunk, part), log.index().chunks[chunk].valueCodec);
+  auto values =
+      decodeValueBlock(log.block(chunk, part), log.index().components(part),
+                       log.index().tuples(chunk, part), log.index().chunks[chunk].valueCodec);
+  releaseBlock(log, chunk, part);
+  return values;
 }
 
 FieldInfo fieldInfo(const ManifestField& f) {
@@ -129,10 +165,14 @@ FieldInfo fieldInfo(const ManifestField& f) {
 
 Status LogFile::verifyChecksums() const {
   for (std::uint32_t chunk = 0; chunk < state_->index.chunks.size(); ++chunk)
-    for (std::uint32_t part = 0; part < state_->index.parts(); ++part)
+    for (std::uint32_t part = 0; part < state_->index.parts(); ++part) {
       if (Status s = checkBlock(*this, chunk, part); !s) return s;
-  for (const ClosingBlock& c : state_->index.closing)
+      releaseBlock(*this, chunk, part);
+    }
+  for (const ClosingBlock& c : state_->index.closing) {
     if (const auto bytes = closing(c.kind, c.field); !bytes) return std::unexpected(bytes.error());
+    release(c.block.offset, c.block.size);
+  }
   return {};
 }
 
@@ -158,6 +198,7 @@ Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
   const auto positions = blockValues(log, chunk, kPositionsPart);
   if (!positions) return std::unexpected(positions.error());
   if (Status s = refiner.apply(chunk, log.block(chunk, kStructurePart), *positions); !s) return s;
+  releaseBlock(log, chunk, kStructurePart);
   for (const std::uint32_t f : fields)
     if (Status s = applyFieldBlock(log, refiner, chunk, f); !s) return s;
   return {};

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "proto/bytes.h"
-#include "proto/checksum.h"
 #include "proto/error.h"
 
 namespace qtet {
@@ -26,13 +25,14 @@ struct Manifest;
 /// views live as long as the object.
 class LogFile {
  public:
-  /// SHA-256 in lower-case hexadecimal: ours, or a faster one of a room that has one.
+  /// SHA-256 in lower-case hexadecimal, of a room that has a faster one than ours.
   using DigestOf = std::string (*)(ByteView);
 
   /// Maps the file and checks header, manifest and table, and that the file is as long as it says.
-  /// Errors: io, and LogIndex::parse's.
+  /// Its digest is ours, made without keeping the file in memory, or `digestOf`'s. Errors: io, and
+  /// LogIndex::parse's.
   [[nodiscard]] static Result<LogFile> open(const std::filesystem::path& path,
-                                            DigestOf digestOf = sha256Hex);
+                                            DigestOf digestOf = nullptr);
   /// The same of bytes that were read or fetched elsewhere. Errors: as open, but for io.
   [[nodiscard]] static Result<LogFile> fromBytes(Bytes bytes);
   LogFile(LogFile&&) noexcept;
@@ -48,14 +48,17 @@ class LogFile {
   /// has none of the kind), bad-checksum.
   [[nodiscard]] Result<ByteView> closing(ClosingKind kind, std::uint32_t field = 0) const;
   /// Compares every block with its CRC-32C; the first that differs is the error (bad-checksum,
-  /// chunk and part in the message).
+  /// chunk and part in the message). Keeps none of them in memory.
   [[nodiscard]] Status verifyChecksums() const;
+  /// Lets the system take the memory of these bytes of a mapped file. They can be read as before,
+  /// from the file. What reads a whole log calls it behind itself.
+  void release(std::uint64_t offset, std::uint64_t size) const;
 
  private:
   struct State;
   explicit LogFile(std::unique_ptr<State> state);
   [[nodiscard]] static Result<LogFile> checked(std::unique_ptr<State> state,
-                                               DigestOf digestOf = sha256Hex);
+                                               DigestOf digestOf = nullptr);
   std::unique_ptr<State> state_;
 };
 
