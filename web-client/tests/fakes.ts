@@ -7,6 +7,7 @@ import type {ValueDecoder} from '../core/decode/draco';
 import {QtetError} from '../core/protocol/errors';
 import {kFrameHeaderBytes} from '../core/protocol/messages';
 import type {Socket} from '../core/transport/reconnecting_socket';
+import type {Transport} from '../core/transport/transport';
 import type {FromWorker} from '../core/session/worker_messages';
 
 /** The states that a session has reported. */
@@ -42,6 +43,22 @@ export class FakeSocket implements Socket {
   sentOf(type: string): Record<string, unknown>[] {
     return this.sent.filter((message) => message.type === type);
   }
+}
+
+/** A transport that is always connected. `what` replaces its methods. */
+export function carrier(what: Partial<Transport>): Transport {
+  return {
+    isConnected: true,
+    connect: () => undefined,
+    open: () => undefined,
+    stop: () => undefined,
+    pause: () => undefined,
+    resume: () => true,
+    aim: () => undefined,
+    applied: () => undefined,
+    disconnect: () => undefined,
+    ...what,
+  };
 }
 
 export function frame(options: {

@@ -101,6 +101,16 @@ export class RequestedPart {
     );
   }
 
+  /** All blocks up to the limit are here with the fields. */
+  get isHere(): boolean {
+    return this.isReceived(this.target?.chunks);
+  }
+
+  /** The mesh is complete, or the limit is reached with the fields. */
+  get isSettled(): boolean {
+    return this.isComplete || (this.isReached && this.isHere);
+  }
+
   /** The fields ahead are here for the decoded mesh. */
   get isAheadReceived(): boolean {
     const {assembler} = this;

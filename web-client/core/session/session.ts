@@ -17,8 +17,11 @@ import {ProgressReporter} from './progress_reporter';
 import type {Publisher} from './publisher';
 import {RequestedPart} from './requested_part';
 import {canPause, isAtRest, stateMessage, type SessionState} from './session_state';
+import {Throttle} from './throttle';
 import type {FromWorker, Source} from './worker_messages';
 
+/** Between two openings for other wishes. A server refuses more than 50 a second (STREAM.md). */
+const kReopenMs = 100;
 /** The share of the cells at which memory ended that is kept: pictures need memory, too. */
 const kFittingShare = 0.7;
 
@@ -67,6 +70,7 @@ export class Session implements TransportHandlers {
   private readonly requested: RequestedPart;
   private readonly decoding: Decoding;
   private readonly progress: ProgressReporter;
+  private readonly reopening = new Throttle(() => this.bring(), kReopenMs);
 
   constructor(
     private readonly assembler: Assembler,
@@ -111,23 +115,20 @@ export class Session implements TransportHandlers {
     if (this.requested.changeFields(fields)) {
       this.sendPlan();
       this.progress.changed();
-      if (this.state.name === 'failed') return;
-      this.advance();
-      if (this.state.name === 'paused') return;
-      if (!this.requested.isComplete && !this.requested.isReceived()) return this.reopen();
     }
-    if (isAtRest(this.state) && !this.requested.isAheadReceived) this.openAhead();
+    if (this.state.name === 'failed') return;
+    this.advance();
+    this.bring();
   }
 
   /** Refines up to this limit. A coarser limit goes back. */
   setLimit(limit: Limit): void {
     this.requested.limit = limit;
     if (!this.assembler.manifest || this.state.name === 'failed') return;
-    const wasPaused = this.endPause();
+    this.endPause();
     this.guarded(() => {
       if (this.requested.isReached) this.goBack();
-      if (this.requested.isReached) this.hold();
-      else this.goOn(wasPaused);
+      this.goOn();
       this.progress.changed();
     });
   }
@@ -148,7 +149,7 @@ export class Session implements TransportHandlers {
     const {names, limit} = this.requested;
     if (this.state.name === 'failed')
       this.start({...this.source, fields: names, limit, paused: false});
-    else if (this.endPause()) this.goOn(true);
+    else if (this.endPause()) this.goOn();
   }
 
   // ---- TransportHandlers
@@ -196,16 +197,17 @@ export class Session implements TransportHandlers {
       this.stream.received(frame.payload.length);
       if (isFirst && this.takeManifest()) return;
       const {name} = this.state;
-      const isThere = this.requested.isReached || this.requested.isComplete;
-      if (name !== 'streaming' && name !== 'paused' && !isThere) this.enter({name: 'streaming'});
+      if (name !== 'streaming' && name !== 'paused' && !this.requested.isSettled)
+        this.enter({name: 'streaming'});
       this.advanceSoon();
     });
   }
 
   down(attempt: number, delayMs: number): void {
+    if (!isAtRest(this.state)) this.enter({name: 'reconnecting', attempt, delayMs});
     // If nothing is missing, the connection may end. Asking for more connects again.
-    if (isAtRest(this.state)) this.stream.disconnect();
-    else this.enter({name: 'reconnecting', attempt, delayMs});
+    else if (this.state.name === 'paused' || this.requested.isAheadReceived)
+      this.stream.disconnect();
   }
 
   failed(error: QtetError): void {
@@ -215,8 +217,10 @@ export class Session implements TransportHandlers {
   }
 
   private done(): void {
-    if (this.requested.isReceived(this.requested.target?.chunks)) {
+    if (this.requested.isHere) {
       this.advanceSoon();
+    } else if (!this.stream.brings(this.requested.keys)) {
+      return; // another stream is opened soon, or once a pause ends
     } else if (this.stream.mayEndEarly) {
       this.open();
     } else {
@@ -252,18 +256,25 @@ export class Session implements TransportHandlers {
     this.stream.open(this.source.mesh, this.requested);
   }
 
-  /** Brings the fields ahead. The picture is complete, and stays so. */
-  private openAhead(): void {
-    if (!this.stream.isConnected) this.stream.connect();
-    else if (!this.stream.brings(this.requested.keys)) this.open();
-  }
-
-  /** Opens a stream on the present connection, or connects first. */
-  private reopen(): void {
-    const {isConnected} = this.stream;
-    this.enter({name: isConnected ? 'streaming' : 'connecting'});
-    if (isConnected) this.open();
-    else this.stream.connect();
+  /**
+   * Sees to it that what is wanted and not here comes: by the present stream, or else by another
+   * one. Wishes that follow each other fast open one together.
+   */
+  private bring(): void {
+    const {requested, state, stream} = this;
+    if (state.name === 'paused' || state.name === 'failed') return;
+    if (requested.isHere && requested.isAheadReceived) return;
+    const {isConnected} = stream;
+    if (isAtRest(state) && !requested.isHere)
+      this.enter({name: isConnected ? 'streaming' : 'connecting'});
+    if (isConnected && stream.brings(requested.keys)) {
+      stream.aim(requested);
+      if (!stream.resume()) this.open();
+    } else if (isConnected || !stream.isConnecting) {
+      if (!this.reopening.take()) return;
+      if (isConnected) this.open();
+      else stream.connect();
+    }
   }
 
   /** Returns true if the stream was opened again, now that the fields are known. */
@@ -292,12 +303,10 @@ export class Session implements TransportHandlers {
       if (hasChanged) this.publisher.changed(this.requested.isComplete);
       this.progress.changed();
       if (this.state.name === 'failed') return;
-      const isComplete = this.requested.isComplete;
-      if (isComplete) this.complete();
-      if (isComplete && this.requested.ahead.length > 0) this.stream.giveCredit();
-      else if (isComplete) return;
-      else if (this.requested.isReached) this.hold();
-      else if (this.state.name !== 'paused') this.stream.giveCredit();
+      if (this.requested.isComplete) this.complete();
+      else if (this.requested.isSettled) this.hold();
+      if (this.state.name === 'paused') return;
+      if (!this.requested.isSettled || !this.requested.isAheadReceived) this.stream.giveCredit();
     });
   }
 
@@ -348,15 +357,14 @@ export class Session implements TransportHandlers {
   }
 
   /** Continues after a pause or a new limit: first with what is here, then with the network. */
-  private goOn(wasPaused: boolean): void {
+  private goOn(): void {
     this.state = {name: 'streaming'}; // reported below, unless decoding ends it at once
     this.advance();
-    if (this.requested.isComplete || this.requested.isReached) return;
-    if (this.requested.isReceived()) return this.enter({name: 'streaming'});
-    if (!this.stream.isConnected || !this.stream.brings(this.requested.keys)) return this.reopen();
-    this.enter({name: 'streaming'});
-    this.stream.aim(this.requested);
-    if (wasPaused && !this.stream.resume()) this.open();
+    if (this.state.name === 'streaming') {
+      const isUnderWay = this.requested.isHere || this.stream.isConnected;
+      this.enter({name: isUnderWay ? 'streaming' : 'connecting'});
+    }
+    this.bring();
   }
 
   private guarded(action: () => void): void {
@@ -403,6 +411,7 @@ export class Session implements TransportHandlers {
   private forget(): void {
     this.baseReported = false;
     if (this.early) this.early = [];
+    this.reopening.drop();
     this.decoding.forget();
     this.stream.forget();
     this.requested.forget();
