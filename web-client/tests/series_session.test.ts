@@ -1,6 +1,6 @@
 // How a session follows a series that plays: fields ahead, and wishes that follow each other fast.
 
-import {afterEach, beforeEach, expect, test, vi} from 'vitest';
+import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import {Assembler} from '../core/decode/assembler';
 import {kFull} from '../core/protocol/limit';
 import {parseFrame, type OpenRequest} from '../core/protocol/messages';
@@ -183,4 +183,51 @@ test('aPauseIsNotEndedByFieldsAhead', () => {
   expect([requests.length, state()]).toEqual([1, 'paused']);
   session.resume();
   expect(requests.at(-1)!.fields).toEqual(['b', 'c']);
+});
+
+describe('a field ahead', () => {
+  test('thatIsDamagedEndsOnlyWhatIsAhead', () => {
+    codec.corruptField = 2;
+    startWhole();
+    session.want([0], [1, 2]);
+    receive(...wholeField(1), ...wholeField(2));
+    expect([errorsOf(told), state()]).toEqual([['bad-checksum'], 'complete']);
+    const count = requests.length;
+    session.want([1], [1, 2]);
+    vi.advanceTimersByTime(1000);
+    expect([requests.length, state()]).toEqual([count, 'complete']);
+    session.want([2], [1, 2]);
+    expect(requests.at(-1)!.fields).toEqual(['c']);
+    receive(fieldFrame(1, 0, 2));
+    expect([errorsOf(told), state()]).toEqual([['bad-checksum', 'bad-checksum'], 'failed']);
+  });
+
+  test('thatIsDamagedLetsTheShownOneGoOn', () => {
+    codec.corruptField = 1;
+    start();
+    session.want([0], [1]);
+    receive(...chunkOf(0, 0), fieldFrame(1, 0, 1), ...chunkOf(1, 0));
+    expect([errorsOf(told), state()]).toEqual([['bad-checksum'], 'complete']);
+  });
+
+  test('thatDoesNotFitLeavesWhatIsShown', () => {
+    codec.fieldRoom = 5;
+    startWhole();
+    session.want([0], [1, 2]);
+    receive(...wholeField(1), ...wholeField(2));
+    expect([errorsOf(told), state()]).toEqual([['out-of-memory'], 'complete']);
+    expect([codec.restarts, codec.chunksApplied]).toEqual([1, 2]);
+    expect(kLog.fields.map((_, field) => codec.fieldChunksApplied(field))).toEqual([2, 0, 0, 0]);
+  });
+
+  test('makesRoomForOneThatIsShown', () => {
+    codec.fieldRoom = 5;
+    startWhole();
+    session.want([0], [1]);
+    receive(...wholeField(1));
+    session.want([2], []);
+    receive(...wholeField(2));
+    expect([errorsOf(told), state(), codec.chunksApplied]).toEqual([[], 'complete', 2]);
+    expect(kLog.fields.map((_, field) => codec.fieldChunksApplied(field))).toEqual([0, 0, 2, 0]);
+  });
 });

@@ -58,6 +58,11 @@ export class LogStream {
     return keys.every((key) => this.keys.includes(key));
   }
 
+  /** Whatever of this field comes is of no use. */
+  giveUp(lost: string): void {
+    this.keys = this.keys.filter((key) => key !== lost);
+  }
+
   connect(): void {
     this.isConnecting = true;
     this.transport?.connect();

@@ -16,6 +16,8 @@ export class RequestedPart {
   fields: readonly number[] = [];
   /** Fields that may be shown soon. They come and are decoded behind all else. */
   ahead: readonly number[] = [];
+  /** Something ahead has failed: each field waits until it is shown. */
+  private isAheadEnded = false;
   limit: Limit = kFull;
   /** The chunks that the log's copy holds. */
   private chunks = Infinity;
@@ -31,6 +33,32 @@ export class RequestedPart {
   /** Must be called before another log. */
   forget(): void {
     this.fields = this.ahead = [];
+    this.isAheadEnded = false;
+  }
+
+  changeAhead(fields: readonly number[]): void {
+    if (!this.isAheadEnded) this.ahead = fields;
+  }
+
+  /** Returns false if that was done before. */
+  endAhead(): boolean {
+    const {isAheadEnded} = this;
+    this.ahead = [];
+    this.isAheadEnded = true;
+    return !isAheadEnded;
+  }
+
+  /** Fields that the shown mesh does not need are decoded. */
+  get hasOthers(): boolean {
+    const {codec, manifest} = this.assembler;
+    const isOther = (field: number): boolean =>
+      codec.fieldChunksApplied(field) > 0 && !this.shows(field);
+    return manifest?.fields.some((_, field) => isOther(field)) === true;
+  }
+
+  /** Whether the shown mesh needs this field. */
+  shows(field: number): boolean {
+    return this.assembler.withParents(this.fields).includes(field);
   }
 
   /** All fields that have to come, those that others are predicted from among them. */

@@ -8,6 +8,7 @@ import {errorCode, errorText, QtetError} from '../protocol/errors';
 import {kFull, type Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import type {Frame, ServerMessage} from '../protocol/messages';
+import {kFirstFieldPart, kHeadPart} from '../protocol/parts';
 import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
 import type {CoarseVolume} from './coarse_volume';
@@ -39,6 +40,10 @@ const kWaysOutOfNothing: Record<string, string> = {
     'is damaged: "qtet verify" says where.',
   'out-of-memory': ' Close other tabs and try again.',
 };
+
+const kNoRoomAhead =
+  'The instants of the series need more memory than the browser gives to a page.';
+const kWithoutAhead = ' What is shown stays. The others come when they are shown.';
 
 export type TransportFactory = (
   source: Source,
@@ -79,7 +84,12 @@ export class Session implements TransportHandlers {
     private readonly newTransport: TransportFactory = makeTransport,
   ) {
     this.requested = new RequestedPart(assembler);
-    this.decoding = new Decoding(assembler, this.requested, () => this.advance());
+    this.decoding = new Decoding(
+      assembler,
+      this.requested,
+      () => this.advance(),
+      (thrown) => this.aheadFailed(thrown),
+    );
     this.progress = new ProgressReporter(() => this.sendProgress());
     publisher.onFirst = () => this.advance();
     publisher.pace.untilLast = () => this.untilDecoded();
@@ -111,7 +121,7 @@ export class Session implements TransportHandlers {
   /** Brings these fields (indexes into the manifest) instead of the previous ones. */
   want(fields: readonly number[], ahead: readonly number[] = []): void {
     if (!this.assembler.manifest) return;
-    this.requested.ahead = ahead;
+    this.requested.changeAhead(ahead);
     if (this.requested.changeFields(fields)) {
       this.sendPlan();
       this.progress.changed();
@@ -190,6 +200,9 @@ export class Session implements TransportHandlers {
     try {
       this.assembler.take(frame);
     } catch (thrown) {
+      const fields = fieldsIn(frame);
+      const isAhead = fields.length > 0 && !fields.some((field) => this.requested.shows(field));
+      if (isAhead) return this.aheadFailed(thrown, fields);
       return this.endBy(thrown); // blocks before it are sound, and decoding goes on
     }
     this.guarded(() => {
@@ -371,7 +384,8 @@ export class Session implements TransportHandlers {
     try {
       action();
     } catch (thrown) {
-      if (errorCode(thrown) === 'out-of-memory' && this.stayAtWhatFits()) return;
+      if (errorCode(thrown) === 'out-of-memory' && (this.release() || this.stayAtWhatFits()))
+        return;
       this.decoding.stop();
       this.endBy(thrown);
     }
@@ -383,6 +397,35 @@ export class Session implements TransportHandlers {
     this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
   }
 
+  /** Nothing more comes ahead. What is shown stays and goes on. `fields` have lost a block. */
+  private aheadFailed(thrown: unknown, fields: readonly number[] = []): void {
+    for (const field of fields) this.stream.giveUp(this.assembler.fieldKeys[field]!);
+    const code = errorCode(thrown);
+    const isMemory = code === 'out-of-memory';
+    const cause = isMemory ? kNoRoomAhead : errorText(thrown).replace(/\.?$/, '.');
+    if (this.requested.endAhead())
+      this.send({type: 'error', code, message: `${cause}${kWithoutAhead}`});
+    if (isMemory) this.restart(() => undefined);
+  }
+
+  /** Leaves only what is shown in the codec. Returns false if nothing else is there. */
+  private release(): boolean {
+    if (!this.requested.hasOthers) return false;
+    this.restart(() => this.advance());
+    return true;
+  }
+
+  /** Decodes what is shown in a fresh codec. `then` is called if it fits. */
+  private restart(then: () => void): void {
+    this.decoding.stop();
+    this.guarded(() => {
+      this.assembler.codec.restart();
+      this.goBack();
+      this.progress.changed();
+      then();
+    });
+  }
+
   /**
    * Starts again in a fresh codec, at a limit that leaves room. Returns false if not even the base
    * mesh fits.
@@ -390,18 +433,14 @@ export class Session implements TransportHandlers {
   private stayAtWhatFits(): boolean {
     const {tetrahedra} = this.requested.statistics;
     if (tetrahedra === 0) return false;
-    this.decoding.stop();
     this.stream.disconnect();
     const value = Math.max(1, Math.floor(kFittingShare * tetrahedra));
     this.requested.limit = {kind: 'cells', value};
-    this.guarded(() => {
-      this.assembler.codec.restart();
-      this.goBack();
+    this.restart(() => {
       const message =
         'The whole mesh needs more memory than the browser gives to a page.' +
         kWaysOut['out-of-memory']!;
       this.send({type: 'error', code: 'out-of-memory', message});
-      this.progress.changed();
       this.hold();
     });
     return true;
@@ -442,4 +481,10 @@ export class Session implements TransportHandlers {
     const here = this.assembler.wholeFields;
     this.send({type: 'progress', statistics, received: this.stream.receivedBytes, here});
   }
+}
+
+/** The fields that the frame has blocks of; none if it has others, too. */
+function fieldsIn({firstPart, parts}: Frame): number[] {
+  if (firstPart < kFirstFieldPart || firstPart === kHeadPart) return [];
+  return Array.from({length: parts}, (_, part) => firstPart - kFirstFieldPart + part);
 }

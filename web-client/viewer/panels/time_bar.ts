@@ -33,7 +33,7 @@ const kMarkup = `
 
 export interface TimeHost {
   readonly mesh: ShownMesh;
-  /** Brings the picture in line: other fields are wanted ahead. */
+  /** Brings the picture in line with the bar. */
   apply(): void;
 }
 
@@ -60,7 +60,7 @@ export class TimeBar {
     onClick(this.bar, '.play', () => this.toggle());
     this.slider.addEventListener('input', () => this.show(Number(this.slider.value)));
     this.speed.addEventListener('change', () => this.isPlaying && this.play());
-    signal.addEventListener('abort', () => this.stop());
+    signal.addEventListener('abort', () => this.end());
   }
 
   /** The mesh has a series. */
@@ -77,7 +77,7 @@ export class TimeBar {
     const {manifest, firstField} = mesh;
     if (this.known !== manifest) {
       this.known = manifest;
-      this.stop();
+      this.end();
       this.times = manifest ? timesOf(manifest.fields) : [];
     }
     const isSeries = this.times.length > 1;
@@ -96,6 +96,7 @@ export class TimeBar {
     );
     const wanted = settings.time ?? this.times[0]!.time;
     this.at = nearestTo(this.times, wanted);
+    mesh.ahead = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
     const {slider} = this;
     slider.max = String(this.times.length - 1);
     slider.value = String(this.at);
@@ -129,7 +130,7 @@ export class TimeBar {
 
   /** To the next instant or the one before, round the ends. */
   step(by: number): void {
-    this.stop();
+    this.end();
     this.show(this.at + by);
   }
 
@@ -137,11 +138,16 @@ export class TimeBar {
     clearInterval(this.timer);
     this.waitingSince = 0;
     this.timer = setInterval(() => this.tick(), kStepMs / Number(this.speed.value));
-    if (this.chooseAhead()) this.host.apply();
+    this.host.apply();
     this.showPlaying();
   }
 
   private stop(): void {
+    this.end();
+    this.host.apply();
+  }
+
+  private end(): void {
     clearInterval(this.timer);
     this.timer = undefined;
     this.showPlaying();
@@ -176,22 +182,7 @@ export class TimeBar {
     const count = this.times.length;
     if (count === 0) return;
     this.at = (at + count) % count;
-    this.chooseAhead(); // the attribute's change applies it
     this.attributes.write('time', this.at === 0 ? null : this.times[this.at]!.text);
-  }
-
-  /** Whether other fields are wanted ahead than before. */
-  private chooseAhead(): boolean {
-    const half = kAhead / 2;
-    const first = this.at - (this.at % half);
-    const count = this.times.length;
-    const ahead = Array.from(
-      {length: Math.min(kAhead, count)},
-      (_, i) => this.fields[(first + i) % count]!,
-    ).filter((field) => field >= 0);
-    if (ahead.join() === this.host.mesh.ahead.join()) return false;
-    this.host.mesh.ahead = ahead;
-    return true;
   }
 
   private showPlaying(): void {
@@ -216,4 +207,12 @@ function nearestTo(times: readonly {time: number}[], wanted: number): number {
     if (Math.abs(time - wanted) < Math.abs(times[best]!.time - wanted)) best = i;
   });
   return best;
+}
+
+/** By time the fields of a series (-1: none): those to fetch while the one at `at` is shown. */
+export function fieldsAhead(fields: readonly number[], at: number): number[] {
+  const half = kAhead / 2;
+  const from = at - (at % half);
+  const round = [...fields.slice(from), ...fields.slice(0, from)];
+  return round.slice(0, kAhead).filter((field) => field >= 0);
 }
