@@ -53,6 +53,8 @@ test('aFieldWaitsForThoseThatItIsPredictedFrom', () => {
   for (const field of [1, 0, 2]) assembler.take(parseFrame(fieldFrame(1, 1, field)));
   expect(step()).toEqual([2, 2, 2]);
   expect(assembler.wholeFields).toEqual([0, 1, 2]);
+  assembler.forget();
+  expect([assembler.wholeFields, assembler.withParents([2])]).toEqual([[], [2]]);
 });
 
 test('thePlanTellsOfEachChunkWithItsBytesAndItsLevel', () => {

@@ -22,6 +22,7 @@ import {
 } from './fakes';
 
 const kLog: FakeLog = {fields: ['a', 'b', 'c', 'd'], chunks: 2};
+const kSeries: FakeLog = {fields: ['T@0', 'T@1'], chunks: 2};
 
 let codec: FakeCodec;
 let session: Session;
@@ -41,7 +42,7 @@ beforeEach(() => {
 });
 afterEach(() => void vi.useRealTimers());
 
-function start(source: Partial<Source> = {}): void {
+function start(source: Partial<Source> = {}, log = kLog): void {
   const assembler = new Assembler(codec, kFakeValues);
   session = new Session(
     assembler,
@@ -70,7 +71,7 @@ function start(source: Partial<Source> = {}): void {
     ...source,
   });
   session.connected();
-  receive(headFrame(1, kLog));
+  receive(headFrame(1, log));
 }
 
 function receive(...frames: ArrayBuffer[]): void {
@@ -230,4 +231,15 @@ describe('a field ahead', () => {
     expect([errorsOf(told), state(), codec.chunksApplied]).toEqual([[], 'complete', 2]);
     expect(kLog.fields.map((_, field) => codec.fieldChunksApplied(field))).toEqual([0, 0, 2, 0]);
   });
+});
+
+test('aFileIsAskedForTheInstantOfASeriesAtTheTime', () => {
+  codec = new FakeCodec(kSeries);
+  start({fields: ['T'], time: 0.8}, kSeries);
+  expect(requests.at(-1)!.fields).toEqual(['T@1']);
+  start({fields: null, time: 0.8}, kSeries);
+  expect(requests.at(-1)!.fields).toEqual(['T@1']);
+  start({fields: ['T']}, kSeries);
+  expect(requests.at(-1)!.fields).toEqual(['T@0']);
+  expect(errorsOf(told)).toEqual([]);
 });

@@ -34,6 +34,7 @@ export class Assembler implements LogTable {
     this.manifest = this.ledger = this.head = null;
     this.blocks = [];
     this.received = [];
+    this.parents = [];
   }
 
   // ---- LogTable

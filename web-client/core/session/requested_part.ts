@@ -5,6 +5,7 @@ import type {Statistics} from '../decode/statistics';
 import {errorOfLevel, kFull, limitReached, type Limit} from '../protocol/limit';
 import {fieldKeys} from '../protocol/fields';
 import type {OpenRequest, Target} from '../protocol/messages';
+import {fieldOfSeries, showTime, shownInstant} from '../protocol/series';
 import type {Source} from './worker_messages';
 
 export class RequestedPart {
@@ -19,12 +20,15 @@ export class RequestedPart {
   /** Something ahead has failed: each field waits until it is shown. */
   private isAheadEnded = false;
   limit: Limit = kFull;
+  /** The time that series begin with; null: the first. */
+  private time: number | null = null;
   /** The chunks that the log's copy holds. */
   private chunks = Infinity;
 
   constructor(private readonly assembler: Assembler) {}
 
-  begin({fields, limit, chunks = Infinity}: Source): void {
+  begin({fields, limit, time = null, chunks = Infinity}: Source): void {
+    this.time = time;
     this.names = fields;
     this.limit = limit;
     this.chunks = chunks;
@@ -73,11 +77,14 @@ export class RequestedPart {
   findFields(): string | undefined {
     const {fields, opening} = this.assembler.manifest!;
     const keys = fieldKeys(fields);
-    const unknown = this.names?.find((name) => !keys.includes(name));
-    this.fields = (this.names ?? []).map((name) => keys.indexOf(name)).filter((i) => i >= 0);
+    showTime(fields, this.time);
+    const fieldOf = (name: string): number =>
+      keys.includes(name) ? keys.indexOf(name) : fieldOfSeries(fields, name);
+    const unknown = this.names?.find((name) => fieldOf(name) < 0);
+    this.fields = (this.names ?? []).map(fieldOf).filter((field) => field >= 0);
     const wantsFirst = this.names === null || unknown !== undefined;
     if (this.fields.length === 0 && keys.length > 0 && wantsFirst)
-      this.fields = [opening?.field ?? 0];
+      this.fields = [shownInstant(fields, opening?.field ?? 0)];
     return unknown;
   }
 

@@ -88,10 +88,7 @@ export class TimeBar {
     const shown = color && fields[color.field]!;
     this.fields = this.times.map(({time}) =>
       fields.findIndex(
-        ({instant, association}) =>
-          instant?.time === time &&
-          instant.series === shown?.instant?.series &&
-          association === shown.association,
+        ({instant}) => instant?.time === time && instant.series === shown?.instant?.series,
       ),
     );
     const wanted = settings.time ?? this.times[0]!.time;
