@@ -82,6 +82,17 @@ test('anotherSeriesHasOtherFieldsAheadAndAFieldOfNoneHasNone', () => {
   expect(mesh.ahead).toEqual([]);
 });
 
+test('instantsAreLookedUpOnceForASeries', () => {
+  const {fields} = mesh.manifest!;
+  let reads = 0;
+  const {instant} = fields[4]!;
+  Object.defineProperty(fields[4]!, 'instant', {get: () => (++reads, instant)});
+  write('range', '0,1');
+  const once = reads;
+  write('field', 'S');
+  expect(reads - once).toBeGreaterThan(once);
+});
+
 test('fieldsAheadGoRoundTheEndAndLeaveGapsOut', () => {
   const fields = Array.from({length: 40}, (_, i) => i);
   expect(fieldsAhead(fields, 15)).toEqual(fields.slice(0, 32));

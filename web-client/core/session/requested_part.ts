@@ -66,7 +66,7 @@ export class RequestedPart {
   }
 
   /** All fields that have to come, those that others are predicted from among them. */
-  private get needed(): number[] {
+  private get needed(): readonly number[] {
     return this.assembler.withParents([...this.fields, ...this.ahead]);
   }
 

@@ -1,5 +1,6 @@
 // The time of a series: play, step, loop, and which instants are here.
 
+import type {FieldInfo} from '../../core/protocol/fields';
 import {shownInstant, timesOf} from '../../core/protocol/series';
 import {find, onClick} from '../page/find';
 import type {Attributes} from '../page/page';
@@ -40,7 +41,9 @@ export interface TimeHost {
 export class TimeBar {
   private readonly bar: HTMLElement;
   private times: readonly {time: number; text: string}[] = [];
-  /** By time: the field of the shown series, -1 for none. */
+  /** The key of the shown series; null: none, or another mesh's. */
+  private series: string | null = null;
+  /** By time: its field, -1 for none. */
   private fields: number[] = [];
   private at = 0;
   private timer: ReturnType<typeof setInterval> | undefined;
@@ -79,18 +82,14 @@ export class TimeBar {
       this.known = manifest;
       this.end();
       this.times = manifest ? timesOf(manifest.fields) : [];
+      this.choose(null, []);
     }
     const isSeries = this.times.length > 1;
     this.bar.hidden = !isSeries;
     if (!isSeries || !manifest) return;
     const {fields} = manifest;
     const color = shownScalar(this.attributes.read('field'), fields, firstField);
-    const shown = color && fields[color.field]!;
-    this.fields = this.times.map(({time}) =>
-      fields.findIndex(
-        ({instant}) => instant?.time === time && instant.series === shown?.instant?.series,
-      ),
-    );
+    this.choose((color && fields[color.field]!.instant?.series) ?? null, fields);
     const wanted = settings.time ?? this.times[0]!.time;
     this.at = nearestTo(this.times, wanted);
     mesh.ahead = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
@@ -101,6 +100,17 @@ export class TimeBar {
     slider.setAttribute('aria-valuetext', text);
     find(this.bar, 'output').textContent = `t = ${text}`;
     this.follow();
+  }
+
+  /** A mesh may have thousands of instants: they are looked up once. */
+  private choose(series: string | null, fields: readonly FieldInfo[]): void {
+    if (series !== null && series === this.series) return;
+    this.series = series;
+    const byTime = new Map<number, number>();
+    fields.forEach(({instant}, field) => {
+      if (instant?.series === series) byTime.set(instant.time, field);
+    });
+    this.fields = this.times.map(({time}) => byTime.get(time) ?? -1);
   }
 
   /** Must be called when more is here, or on the screen. */
