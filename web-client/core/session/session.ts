@@ -127,7 +127,7 @@ export class Session implements TransportHandlers {
       this.progress.changed();
     }
     if (this.state.name === 'failed') return;
-    this.advance();
+    this.advanceSoon();
     this.bring();
   }
 
