@@ -39,7 +39,9 @@ test('aFieldWaitsForThoseThatItIsPredictedFrom', () => {
   codec.parentsOf = [[], [0], [1]];
   assembler = new Assembler(codec, kFakeValues);
   assembler.take(parseFrame(headFrame(1, {fields: ['a', 'b', 'c'], chunks: 2})));
-  expect(assembler.withParents([2])).toEqual([0, 1, 2]);
+  const fields = [2];
+  expect(assembler.withParents(fields)).toEqual([0, 1, 2]);
+  expect(assembler.withParents(fields)).toBe(assembler.withParents(fields));
   const step = (): number[] => {
     while (assembler.step([2], true)) continue;
     return [0, 1, 2].map((field) => codec.fieldChunksApplied(field));
@@ -53,6 +55,8 @@ test('aFieldWaitsForThoseThatItIsPredictedFrom', () => {
   for (const field of [1, 0, 2]) assembler.take(parseFrame(fieldFrame(1, 1, field)));
   expect(step()).toEqual([2, 2, 2]);
   expect(assembler.wholeFields).toEqual([0, 1, 2]);
+  assembler.forget();
+  expect([assembler.wholeFields, assembler.withParents(fields)]).toEqual([[], [2]]);
 });
 
 test('thePlanTellsOfEachChunkWithItsBytesAndItsLevel', () => {

@@ -7,6 +7,7 @@ import type {ValueDecoder} from '../core/decode/draco';
 import {QtetError} from '../core/protocol/errors';
 import {kFrameHeaderBytes} from '../core/protocol/messages';
 import type {Socket} from '../core/transport/reconnecting_socket';
+import type {Transport} from '../core/transport/transport';
 import type {FromWorker} from '../core/session/worker_messages';
 
 /** The states that a session has reported. */
@@ -42,6 +43,22 @@ export class FakeSocket implements Socket {
   sentOf(type: string): Record<string, unknown>[] {
     return this.sent.filter((message) => message.type === type);
   }
+}
+
+/** A transport that is always connected. `what` replaces its methods. */
+export function carrier(what: Partial<Transport>): Transport {
+  return {
+    isConnected: true,
+    connect: () => undefined,
+    open: () => undefined,
+    stop: () => undefined,
+    pause: () => undefined,
+    resume: () => true,
+    aim: () => undefined,
+    applied: () => undefined,
+    disconnect: () => undefined,
+    ...what,
+  };
 }
 
 export function frame(options: {
@@ -130,6 +147,7 @@ export class FakeCodec implements Codec {
   isWhole = true;
   chunksApplied = 0;
   corrupt = -1;
+  corruptField = Infinity;
   private fieldChunks: number[] = [];
   private readonly headBytes: number;
 
@@ -139,6 +157,8 @@ export class FakeCodec implements Codec {
 
   /** How many chunks fit into memory. */
   room = Infinity;
+  /** How many blocks of fields do. */
+  fieldRoom = Infinity;
   restarts = 0;
   restart(): void {
     ++this.restarts;
@@ -172,8 +192,9 @@ export class FakeCodec implements Codec {
   blockCodec(): number {
     return 2;
   }
-  checkBlock(chunk: number): void {
-    if (chunk === this.corrupt) throw new QtetError('bad-checksum', `chunk ${chunk} is damaged`);
+  checkBlock(chunk: number, part: number): void {
+    if (chunk === this.corrupt || part === kFirstFieldPart + this.corruptField)
+      throw new QtetError('bad-checksum', `chunk ${chunk} is damaged`);
   }
   apply(chunk: number): void {
     if (chunk >= this.room) throw new QtetError('out-of-memory', 'no room');
@@ -182,6 +203,8 @@ export class FakeCodec implements Codec {
     ++this.chunksApplied;
   }
   applyField(field: number, chunk: number): void {
+    if (this.fieldChunks.reduce((sum, chunks) => sum + chunks, 0) >= this.fieldRoom)
+      throw new QtetError('out-of-memory', 'no room');
     if (chunk !== this.fieldChunks[field] || chunk >= this.chunksApplied)
       throw new QtetError('bad-order', `field chunk ${chunk}`);
     ++this.fieldChunks[field];

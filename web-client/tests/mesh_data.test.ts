@@ -73,6 +73,8 @@ describe('a manifest', () => {
       components: 1,
       association,
       isWhole: false,
+      type: 0,
+      bits: 8,
       step: 1,
       minimum: [0],
       range: [0, 255],

@@ -1,6 +1,8 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
 import type {Assembler} from '../core/decode/assembler';
 import {kPlainDisplay} from '../core/picture/display';
+import type {FieldInfo} from '../core/protocol/fields';
+import {markSeries} from '../core/protocol/series';
 import {Publisher} from '../core/session/publisher';
 import {kNoStatistics} from '../core/decode/statistics';
 import type {Snapshot} from '../core/session/worker_messages';
@@ -161,4 +163,37 @@ test('creasesComeWithAPictureOfTheirOwn', () => {
   publisher.useCreases(() => Uint8Array.of(1, 1, 1));
   expect(untilNext()).toBeLessThanOrEqual(501);
   expect(pictures.map(({surface}) => surface?.creases?.join())).toEqual([undefined, '1,1,1']);
+});
+
+test('aComponentOfASeriesHasOneRangeForAllInstants', () => {
+  const fields = ['V@0', 'V@1'].map((name, instant): FieldInfo => ({
+    name,
+    components: 2,
+    association: 'point',
+    step: 1,
+    bits: 3,
+    minimum: [-instant, 0],
+    range: [0, 8],
+  }));
+  markSeries(fields);
+  const codec = new FakeCodec({fields: ['V@0', 'V@1'], chunks: 1});
+  codec.open();
+  codec.chunksApplied = 1;
+  for (const field of [0, 1]) codec.applyField(field, 0);
+  const assembler = {codec, manifest: {fields}, statistics: () => kNoStatistics};
+  publisher = new Publisher(
+    assembler as unknown as Assembler,
+    (snapshot) => void pictures.push(snapshot),
+  );
+  for (const field of [0, 1]) {
+    publisher.show({...kPlainDisplay, color: {field, component: 0}});
+    publisher.changed(true);
+    untilNext();
+    publisher.shown();
+    expect(pictures.at(-1)).toMatchObject({
+      scaleRange: [-8, 8],
+      extent: [7 / 16, 15 / 16],
+      middle: [7 / 16, 15 / 16],
+    });
+  }
 });

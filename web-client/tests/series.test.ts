@@ -2,7 +2,15 @@ import {describe, expect, test} from 'vitest';
 import {parseScalar, scalarText} from '../core/layers/field_values';
 import {kMagnitude} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/fields';
-import {markSeries, shownInstant, showTime, timesOf} from '../core/protocol/series';
+import {
+  instantKey,
+  instantName,
+  markSeries,
+  shownInstant,
+  showTime,
+  timesOf,
+} from '../core/protocol/series';
+import {keyToAsk} from '../viewer/stream_control';
 
 function field(name: string, high = 1, association: 'point' | 'cell' = 'point'): FieldInfo {
   return {name, components: 1, association, step: 1, minimum: [0], range: [0, high]};
@@ -67,4 +75,117 @@ describe('a series', () => {
     expect(parseScalar('cell:T', both)?.field).toBe(3);
     expect(both.map(({range}) => range[1])).toEqual([1, 1, 8, 8]);
   });
+});
+
+describe('a time', () => {
+  test('isADecimalNumberThatADoubleHolds', () => {
+    for (const [text, time] of [
+      ['-1.5e+2', -150],
+      ['.5', 0.5],
+      ['5.', 5],
+      ['0e999', 0],
+      ['1e-310', 1e-310],
+    ] as const)
+      expect(instantName(`T@${text}`)).toEqual({series: 'T', time, text});
+    for (const text of ['', '+1', ' 1', '1 ', '0x1', 'inf', 'nan', '1e', '.', '1e999', '1e-999'])
+      expect(instantName(`T@${text}`)).toBe(null);
+  });
+
+  test('isBehindANameAndItsLastAt', () => {
+    expect(instantName('@3')).toBe(null);
+    expect(instantName('a@b@3')?.series).toBe('a@b');
+    expect(marked(field('@3', 1, 'cell'), field('@4', 1, 'cell'))[0]!.instant).toBe(undefined);
+  });
+});
+
+describe('instants', () => {
+  const vectors = (name: string, association: 'point' | 'cell' = 'point'): FieldInfo => ({
+    ...field(name, 1, association),
+    components: 2,
+    minimum: [-1, 0],
+    bits: 3,
+  });
+  const seriesOf = (...fields: FieldInfo[]): unknown[] =>
+    marked(...fields).map(({instant}) => instant?.series);
+
+  test('ofOneTimeAreOneAndTheSecondIsAFieldOfItsOwn', () => {
+    expect(seriesOf(field('T@0'), field('T@0.0'))).toEqual([undefined, undefined]);
+    expect(seriesOf(field('T@0'), field('T@-0.0'), field('T@1'))).toEqual(['T', undefined, 'T']);
+  });
+
+  test('agreeInComponentsAndType', () => {
+    expect(seriesOf(field('T@0'), vectors('T@1'))).toEqual([undefined, undefined]);
+    expect(seriesOf({...field('T@0'), type: 0}, {...field('T@1'), type: 1})).toEqual([
+      undefined,
+      undefined,
+    ]);
+  });
+
+  test('haveAKeyThatNothingElseHas', () => {
+    const fields = marked(
+      field('T'),
+      field('T@0'),
+      field('T@1'),
+      vectors('T@2'),
+      vectors('T@3'),
+      field('S@2', 1, 'cell'),
+      field('S@3', 1, 'cell'),
+      field('S@0'),
+      field('S@1'),
+    );
+    expect(fields.map(({instant}) => instant?.series)).toEqual([
+      undefined,
+      ...['T@0', 'T@0', 'T@2', 'T@2', 'cell:S', 'cell:S', 'S', 'S'],
+    ]);
+    showTime(fields, 9);
+    expect(parseScalar('T', fields)?.field).toBe(0);
+    for (const [text, shown] of [
+      ['T@0', 2],
+      ['T@2[1]', 4],
+      ['cell:S', 6],
+      ['S', 8],
+    ] as const) {
+      const scalar = parseScalar(text, fields)!;
+      expect(scalar.field).toBe(shown);
+      expect(scalarText(scalar, fields)).toBe(text);
+    }
+  });
+
+  test('keepTheComponent', () => {
+    const fields = marked(
+      vectors('V@0'),
+      vectors('V@1'),
+      vectors('V@0', 'cell'),
+      vectors('V@1', 'cell'),
+    );
+    showTime(fields, 1);
+    expect(parseScalar('V[0]', fields)).toEqual({field: 1, component: 0});
+    expect(parseScalar('point:V[0]', fields)).toEqual({field: 1, component: 0});
+    expect(parseScalar('cell:V[1]', fields)).toEqual({field: 3, component: 1});
+    expect(parseScalar('cell:W[1]', fields)).toBe(null);
+    const ofCells = marked(vectors('V@0', 'cell'), vectors('V@1', 'cell'));
+    expect(parseScalar('cell:V[1]', ofCells)).toEqual({field: 0, component: 1});
+    expect(parseScalar('point:V[1]', ofCells)).toBe(null);
+  });
+
+  test('haveTheValuesOfTheirComponentsTogether', () => {
+    const fields = marked(vectors('V@0'), {...vectors('V@1'), minimum: [-4, 2], step: 2});
+    expect(fields[0]!.instant!.ranges).toEqual([
+      [-4, 10],
+      [0, 16],
+    ]);
+  });
+});
+
+test('theInstantNearestToTheTimeIsAskedFor', () => {
+  const keys = ['T@0', 'T@0.5', 'T@1', 'cell:T@0', 'cell:T@1', 'V@0', 'V@1', 'p', 'q[0]'];
+  expect(instantKey(keys, 'T', 0.25)).toBe('T@0');
+  expect(instantKey(keys, 'p', 0)).toBe(undefined);
+  expect(keyToAsk('T', keys, null)).toBe('T@0');
+  expect(keyToAsk('cell:T', keys, 0.9)).toBe('cell:T@1');
+  expect(keyToAsk('V[1]', keys, 0.9)).toBe('V@1');
+  expect(keyToAsk('T@0.5', keys, 0.9)).toBe('T@0.5');
+  expect(keyToAsk('q[0]', keys, 0)).toBe('q[0]');
+  expect(keyToAsk('p[2]', keys, 0)).toBe('p');
+  expect(keyToAsk('lost', keys, 0)).toBe('lost');
 });

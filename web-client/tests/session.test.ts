@@ -4,12 +4,12 @@ import {kLongestDelayMs} from '../core/transport/backoff';
 import {kPlainDisplay} from '../core/picture/display';
 import {kFull} from '../core/protocol/limit';
 import {Publisher} from '../core/session/publisher';
-import {parseFrame, type OpenRequest} from '../core/protocol/messages';
+import {parseFrame} from '../core/protocol/messages';
 import {Session} from '../core/session/session';
 import {SocketTransport} from '../core/transport/socket_transport';
-import type {Transport} from '../core/transport/transport';
 import type {FromWorker, Snapshot, Source} from '../core/session/worker_messages';
 import {
+  carrier,
   errorsOf,
   FakeCodec,
   FakeSocket,
@@ -631,22 +631,6 @@ describe('memory', () => {
   });
 });
 
-/** A transport that is always connected. `what` replaces its methods. */
-function carrier(what: Partial<Transport>): Transport {
-  return {
-    isConnected: true,
-    connect: () => undefined,
-    open: () => undefined,
-    stop: () => undefined,
-    pause: () => undefined,
-    resume: () => true,
-    aim: () => undefined,
-    applied: () => undefined,
-    disconnect: () => undefined,
-    ...what,
-  };
-}
-
 test('creditIsGivenBackOnceForWhatWasApplied', () => {
   const given: number[] = [];
   const assembler = new Assembler(codec, kFakeValues);
@@ -663,49 +647,4 @@ test('creditIsGivenBackOnceForWhatWasApplied', () => {
   giving.frame(parseFrame(fieldFrame(1, 0, 0)));
   giving.setLimit(kFull); // decoding continues without a new byte
   expect(given).toEqual([fakeHead(kLog).length, 2 * kFakeBlockBytes, kFakeBlockBytes]);
-});
-
-test('fieldsAheadComeBehindAllElseAndChangeNothingThatIsShown', () => {
-  const log: FakeLog = {fields: ['a', 'b', 'c'], chunks: 2};
-  codec = new FakeCodec(log);
-  const assembler = new Assembler(codec, kFakeValues);
-  const requests: OpenRequest[] = [];
-  const told: FromWorker[] = [];
-  const started = new Session(
-    assembler,
-    new Publisher(assembler, () => undefined),
-    (message) => told.push(message),
-    () => carrier({open: (request) => requests.push(request)}),
-  );
-  started.start({
-    url: 'ws://x',
-    log: '',
-    transport: 'auto',
-    mesh: 'm',
-    fields: ['a'],
-    limit: kFull,
-  });
-  started.connected();
-  started.frame(parseFrame(headFrame(1, log)));
-  for (const chunk of [0, 1]) {
-    started.frame(parseFrame(meshFrame(1, chunk)));
-    started.frame(parseFrame(fieldFrame(1, chunk, 0)));
-  }
-  vi.advanceTimersByTime(1000);
-  expect(statesOf(told).at(-1)).toBe('complete');
-  const before = statesOf(told).length;
-  started.want([0], [1, 2]);
-  expect(requests.at(-1)).toMatchObject({
-    fields: ['a', 'b', 'c'],
-    have: {chunks: 2, fields: {a: 2, b: 0, c: 0}},
-  });
-  for (const chunk of [0, 1])
-    for (const field of [1, 2]) started.frame(parseFrame(fieldFrame(2, chunk, field)));
-  vi.advanceTimersByTime(1000);
-  expect(codec.fieldChunksApplied(2)).toBe(2);
-  expect(statesOf(told)).toHaveLength(before);
-  const count = requests.length;
-  started.want([1], [1, 2]);
-  vi.advanceTimersByTime(1000);
-  expect([requests.length, statesOf(told).at(-1)]).toEqual([count, 'complete']);
 });

@@ -5,6 +5,7 @@ import {scalarKey} from '../core/layers/field_values';
 import {fieldLayers} from '../core/layers/layers';
 import {errorCode, errorText, QtetError} from '../core/protocol/errors';
 import {kFull, type Limit} from '../core/protocol/limit';
+import {instantKey, instantName} from '../core/protocol/series';
 import type {Client} from '../core/session/client';
 import type {StreamState} from '../core/session/worker_messages';
 import {kTransportKinds} from '../core/transport/auto_transport';
@@ -32,6 +33,8 @@ const kOfOneMesh = [
 export interface StreamListeners {
   /** The limit to begin with. */
   limit(): Limit;
+  /** The time of series to begin with; null: the first. */
+  time(): number | null;
   /** A mesh is opened. `isSame`: it is the previous one again. */
   opens(isSame: boolean): void;
   changed(state: StreamState, attempt: number, delayMs: number): void;
@@ -182,6 +185,7 @@ export class StreamControl {
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
       fields,
+      time: listeners.time(),
       limit: listeners.limit(),
       pictureFirst: true,
       paused: kept.paused,
@@ -201,9 +205,13 @@ export class StreamControl {
       const text = page.read(layer.name);
       return text === null ? null : layer.fieldOf(text);
     });
-    const named = [page.read('field') ?? entry?.firstField ?? '', ...ofLayers]
+    const {fields: keys, firstField} = entry ?? {fields: [], firstField: ''};
+    const time = this.listeners.time();
+    const series = instantName(firstField)?.series;
+    const first = (series && instantKey(keys, series, time)) ?? firstField;
+    const named = [page.read('field') ?? first, ...ofLayers]
       .filter((text) => text !== null && text !== '')
-      .map((text) => (entry?.fields.includes(text!) ? text! : scalarKey(text!)));
+      .map((text) => keyToAsk(text!, keys, time));
     return named.length > 0 ? [...new Set(named)] : null;
   }
 
@@ -212,4 +220,15 @@ export class StreamControl {
     if (this.page.read('quality') !== null) this.page.write('quality', null);
     else this.client.setLimit(kFull);
   }
+}
+
+/** The key of the field that the text means in a mesh with these keys. It may have a component. */
+export function keyToAsk(text: string, keys: readonly string[], time: number | null): string {
+  const plain = scalarKey(text);
+  return (
+    [text, plain].find((key) => keys.includes(key)) ??
+    instantKey(keys, text, time) ??
+    instantKey(keys, plain, time) ??
+    plain
+  );
 }

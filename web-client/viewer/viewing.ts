@@ -74,6 +74,7 @@ export class Viewing implements LaterHost {
     });
     this.stream = new StreamControl(page, kept, client, {
       limit: () => this.settings.limit,
+      time: () => this.settings.time,
       opens: (isSame) => {
         this.forget(isSame);
         this.notices.endOf('stream', 'page');

@@ -25,6 +25,8 @@ export class Assembler implements LogTable {
   private received: number[] = [];
   /** By field: those that it is predicted from. */
   private parents: number[][] = [];
+  /** Results of withParents, which every step asks for. */
+  private orders = new WeakMap<readonly number[], number[]>();
   constructor(
     readonly codec: Codec,
     private readonly values: ValueDecoder,
@@ -34,6 +36,7 @@ export class Assembler implements LogTable {
     this.manifest = this.ledger = this.head = null;
     this.blocks = [];
     this.received = [];
+    this.useParents([]);
   }
 
   // ---- LogTable
@@ -65,7 +68,9 @@ export class Assembler implements LogTable {
   }
 
   /** These fields, each behind those that it is predicted from, each once. */
-  withParents(fields: readonly number[]): number[] {
+  withParents(fields: readonly number[]): readonly number[] {
+    const known = this.orders.get(fields);
+    if (known) return known;
     const out = new Set<number>();
     const add = (field: number): void => {
       if (out.has(field)) return;
@@ -73,7 +78,9 @@ export class Assembler implements LogTable {
       out.add(field);
     };
     for (const field of fields) add(field);
-    return [...out];
+    const order = [...out];
+    this.orders.set(fields, order);
+    return order;
   }
 
   /** The mesh's figures with these fields. */
@@ -187,9 +194,14 @@ export class Assembler implements LogTable {
     );
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
-    this.parents = this.manifest.fields.map((_, field) => this.codec.parents(field));
+    this.useParents(this.manifest.fields.map((_, field) => this.codec.parents(field)));
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
     this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
+  }
+
+  private useParents(parents: number[][]): void {
+    this.parents = parents;
+    this.orders = new WeakMap();
   }
 
   private keep(chunk: number, part: number, bytes: Uint8Array): void {

@@ -3,6 +3,7 @@
 
 import {kMagnitude, scalarRange, type Scalar} from '../picture/field_scale';
 import {fieldKeys, type FieldInfo} from '../protocol/fields';
+import {fieldOfSeries} from '../protocol/series';
 
 /** Reads "1, 2.5 3e-4" as numbers. The result is empty if anything in it is no number. */
 export function parseNumbers(text: string): number[] {
@@ -14,20 +15,25 @@ export function parseNumbers(text: string): number[] {
   return numbers.every(Number.isFinite) ? numbers : [];
 }
 
-/** A series' key means the instant that is shown. */
+/** The field that the key means: of a series the instant that is shown; -1 for none. */
+function fieldOfKey(key: string, fields: readonly FieldInfo[]): number {
+  const called = (name: string): number => {
+    const ofSeries = fieldOfSeries(fields, name);
+    return ofSeries >= 0 ? ofSeries : fieldKeys(fields).indexOf(name);
+  };
+  const own = called(key);
+  const [, association, name] = /^(point|cell):(.*)$/s.exec(key) ?? [];
+  if (own >= 0 || name === undefined) return own;
+  const other = called(name);
+  return fields[other]?.association === association ? other : -1;
+}
+
 export function parseScalar(text: string | null, fields: readonly FieldInfo[]): Scalar | null {
   if (text === null) return null;
-  const keys = fieldKeys(fields);
-  const indexOf = (key: string): number => {
-    const own = keys.indexOf(key);
-    return own >= 0
-      ? own
-      : fields.findIndex(({instant}) => instant?.isShown === true && instant.series === key);
-  };
-  const whole = indexOf(text);
+  const whole = fieldOfKey(text, fields);
   if (whole >= 0) return {field: whole, component: kMagnitude};
   const match = /^(.*)\[(\d+)\]$/s.exec(text);
-  const field = match ? indexOf(match[1]!) : -1;
+  const field = match ? fieldOfKey(match[1]!, fields) : -1;
   if (field < 0) return null;
   const component = Number(match![2]);
   return {field, component: component < fields[field]!.components ? component : kMagnitude};

@@ -2,13 +2,15 @@
 
 /** A field's place in a series. */
 export interface Instant {
-  /** The key of the field without its time. */
+  /** The series' key. No other series and no field outside of this one has it. */
   series: string;
   time: number;
   /** The time as the field's name has it. */
   text: string;
   /** The series' key means this instant now. */
   isShown: boolean;
+  /** By component: the values that the series' instants can have. */
+  ranges: [number, number][];
 }
 
 export interface FieldInfo {
@@ -18,6 +20,10 @@ export interface FieldInfo {
   /** value of component c = minimum[c] + step * integer */
   step: number;
   minimum: number[];
+  /** of the integers */
+  bits?: number;
+  /** The number of the input's type (codec/FORMAT.md, "Manifest"). */
+  type?: number;
   /** The input held whole numbers. */
   isWhole?: boolean;
   /** of the values; of the magnitudes if components > 1; of all instants of a series */

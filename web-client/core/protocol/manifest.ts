@@ -189,17 +189,20 @@ function readField(
   const association = (associationAndMissing & ~kMissingFlag) === kOfCells ? 'cell' : 'point';
   const name = reader.text();
   if (name === '') throw damaged('has a field without a name');
-  const type = reader.byte();
-  if ((type & kMissingFlag) !== (associationAndMissing & kMissingFlag))
+  const typeAndMissing = reader.byte();
+  if ((typeAndMissing & kMissingFlag) !== (associationAndMissing & kMissingFlag))
     throw damaged('contradicts itself in whether a field has missing values');
-  if ((type & ~kMissingFlag) >= kFieldTypes) throw damaged('has a field of an unknown type');
+  const type = typeAndMissing & ~kMissingFlag;
+  if (type >= kFieldTypes) throw damaged('has a field of an unknown type');
   const bits = reader.byte();
   if (bits < 1 || bits > kMaxFieldBits) throw damaged(`has a field of ${bits} bits`);
   return {
     name,
     components,
     association,
-    isWhole: (type & ~kMissingFlag) >= kFirstWholeType,
+    isWhole: type >= kFirstWholeType,
+    type,
+    bits,
     step: reader.step(),
     minimum: reader.numbers(components),
     range: reader.numbers(2) as [number, number],

@@ -1,45 +1,82 @@
 // Series: fields that are the instants of one quantity, called NAME@TIME (codec/RECORDS.md,
-// "Series").
+// "Series"). The rules are those of seriesOf (simplify/series/series.h).
 
 import {fieldKeys, type FieldInfo, type Instant} from './fields';
 
 /** TIME of a name NAME@TIME. */
 const kDecimal = /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
+type Time = Pick<Instant, 'time' | 'text'>;
+
+/** The parts of NAME@TIME; null for a name that does not end in "@" and a finite number. */
+export function instantName(name: string): ({series: string} & Time) | null {
+  const at = name.lastIndexOf('@');
+  const text = name.slice(at + 1);
+  if (at < 1 || !kDecimal.test(text)) return null;
+  const time = Number(text);
+  const isTooSmall = time === 0 && /^[^e]*[1-9]/i.test(text);
+  return Number.isFinite(time) && !isTooSmall ? {series: name.slice(0, at), time, text} : null;
+}
+
 /**
  * Marks the instants of all series of two and more, the first of each as shown. They get one range:
  * that of the whole series.
  */
 export function markSeries(fields: FieldInfo[]): void {
-  const members = new Map<string, FieldInfo[]>();
-  fieldKeys(fields).forEach((key, field) => {
-    const at = key.lastIndexOf('@');
-    const text = key.slice(at + 1);
-    const time = kDecimal.test(text) ? Number(text) : NaN;
-    if (at < 1 || !Number.isFinite(time)) return;
-    const info = fields[field]!;
-    info.instant = {series: key.slice(0, at), time, text, isShown: false};
-    const {association, components} = info;
-    const kind = JSON.stringify([info.instant.series, association, components]);
-    members.set(kind, [...(members.get(kind) ?? []), info]);
+  /** By kind and time: the field. */
+  const kinds = new Map<string, Map<number, number>>();
+  fields.forEach(({name, association, components, type}, field) => {
+    const instant = instantName(name);
+    if (!instant) return;
+    const kind = JSON.stringify([instant.series, association, components, type]);
+    const times = kinds.get(kind) ?? new Map<number, number>();
+    kinds.set(kind, times);
+    if (!times.has(instant.time)) times.set(instant.time, field);
   });
-  for (const infos of members.values()) {
-    if (infos.length < 2) {
-      for (const info of infos) delete info.instant;
-      continue;
+  const keys = fieldKeys(fields);
+  const series = [...kinds.values()]
+    .filter(({size}) => size > 1)
+    .map((times) => [...times.values()])
+    .sort(([a], [b]) => (isOfCells(fields[a!]!) ? 1 : 0) - (isOfCells(fields[b!]!) ? 1 : 0));
+  const instants = new Set(series.flat());
+  const taken = new Set(keys.filter((_, field) => !instants.has(field)));
+  for (const members of series) {
+    const infos = members.map((field) => fields[field]!);
+    const key = freeKey(infos[0]!, keys[members[0]!]!, taken);
+    taken.add(key);
+    const range = union(infos.map((info) => info.range));
+    const ranges = infos[0]!.minimum.map((_, c) => union(infos.map((info) => rangeOf(info, c))));
+    for (const info of infos) {
+      const {time, text} = instantName(info.name)!;
+      info.instant = {series: key, time, text, isShown: false, ranges};
+      info.range = range;
     }
-    const ranges = infos.map(({range}) => range);
-    const all: [number, number] = [
-      Math.min(...ranges.map(([low]) => low)),
-      Math.max(...ranges.map(([, high]) => high)),
-    ];
-    for (const info of infos) info.range = all;
   }
   showTime(fields, null);
 }
 
+const isOfCells = ({association}: FieldInfo): boolean => association === 'cell';
+
+/** The key of the series that begins with `first`: NAME or cell:NAME, else that of `first`. */
+function freeKey(first: FieldInfo, firstKey: string, taken: ReadonlySet<string>): string {
+  const {series} = instantName(first.name)!;
+  const choices = isOfCells(first) ? [series, `cell:${series}`] : [series];
+  return choices.find((key) => !taken.has(key)) ?? firstKey;
+}
+
+const union = (ranges: [number, number][]): [number, number] => [
+  Math.min(...ranges.map(([low]) => low)),
+  Math.max(...ranges.map(([, high]) => high)),
+];
+
+/** The values that a component can have. */
+function rangeOf({minimum, step, bits = 0}: FieldInfo, component: number): [number, number] {
+  const low = minimum[component]!;
+  return [low, low + step * (2 ** bits - 1)];
+}
+
 /** The instants of all series, each time once, ascending. */
-export function timesOf(fields: readonly FieldInfo[]): {time: number; text: string}[] {
+export function timesOf(fields: readonly FieldInfo[]): Time[] {
   const times = new Map<number, string>();
   for (const {instant} of fields) if (instant) times.set(instant.time, instant.text);
   return [...times].map(([time, text]) => ({time, text})).sort((a, b) => a.time - b.time);
@@ -47,29 +84,44 @@ export function timesOf(fields: readonly FieldInfo[]): {time: number; text: stri
 
 /** Lets each series' key mean its instant nearest to the time; null: the first one. */
 export function showTime(fields: readonly FieldInfo[], time: number | null): void {
-  const nearest = new Map<string, Instant>();
-  const distance = (instant: Instant): number =>
-    time === null ? instant.time : Math.abs(instant.time - time);
-  for (const {instant, association} of fields) {
+  const shown = new Map<string, Instant>();
+  for (const {instant} of fields) {
     if (!instant) continue;
     instant.isShown = false;
-    const kind = `${association} ${instant.series}`;
-    const best = nearest.get(kind);
-    const isNearer = !best || distance(instant) < distance(best);
-    const isEarlier = best && distance(instant) === distance(best) && instant.time < best.time;
-    if (isNearer || isEarlier) nearest.set(kind, instant);
+    const best = shown.get(instant.series);
+    if (!best || isNearer(instant, best, time)) shown.set(instant.series, instant);
   }
-  for (const instant of nearest.values()) instant.isShown = true;
+  for (const instant of shown.values()) instant.isShown = true;
+}
+
+/** The earlier one of two that are equally near. */
+function isNearer(a: Time, b: Time, time: number | null): boolean {
+  const more = time === null ? 0 : Math.abs(a.time - time) - Math.abs(b.time - time);
+  return more < 0 || (more === 0 && a.time < b.time);
+}
+
+/** Among a mesh's keys that of the series' instant nearest to the time; undefined for none. */
+export function instantKey(
+  keys: readonly string[],
+  seriesKey: string,
+  time: number | null,
+): string | undefined {
+  let best: {key: string; instant: Time} | undefined;
+  for (const key of keys) {
+    const instant = instantName(key);
+    if (instant?.series !== seriesKey) continue;
+    if (!best || isNearer(instant, best.instant, time)) best = {key, instant};
+  }
+  return best?.key;
+}
+
+/** The instant that is shown of the series with this key; -1 if there is no such series. */
+export function fieldOfSeries(fields: readonly FieldInfo[], key: string): number {
+  return fields.findIndex(({instant}) => instant?.isShown === true && instant.series === key);
 }
 
 /** The instant that is shown of the field's series; a field of none is itself. */
 export function shownInstant(fields: readonly FieldInfo[], field: number): number {
-  const info = fields[field];
-  if (!info?.instant) return field;
-  return fields.findIndex(
-    ({instant, association}) =>
-      instant?.isShown === true &&
-      instant.series === info.instant!.series &&
-      association === info.association,
-  );
+  const instant = fields[field]?.instant;
+  return instant ? fieldOfSeries(fields, instant.series) : field;
 }

@@ -17,11 +17,15 @@ export class Decoding {
   /** Bytes decoded so far, and the time that took. */
   private pace = {bytes: 0, ms: 0};
 
-  /** `again` is called when there may be more to decode. */
+  /**
+   * `again` is called when there may be more to decode, `aheadFailed` with the codec's error about
+   * a field that is only ahead.
+   */
   constructor(
     private readonly assembler: Assembler,
     private readonly requested: RequestedPart,
     private readonly again: () => void,
+    private readonly aheadFailed: (thrown: unknown) => void,
   ) {
     this.slices = new Slices(again);
   }
@@ -43,7 +47,7 @@ export class Decoding {
     let applied = false;
     while (!(pictureFirst && this.awaitsPicture())) {
       if (this.step()) applied = true;
-      else if (!this.assembler.step(this.requested.ahead, false)) break;
+      else if (!this.stepAhead()) break;
       if (performance.now() < start + kSliceMs) continue;
       this.slices.call();
       break;
@@ -78,6 +82,15 @@ export class Decoding {
 
   private step(): boolean {
     return this.assembler.step(this.requested.fields, !this.requested.isReached);
+  }
+
+  private stepAhead(): boolean {
+    try {
+      return this.assembler.step(this.requested.ahead, false);
+    } catch (thrown) {
+      this.aheadFailed(thrown);
+      return false;
+    }
   }
 
   private awaitsPicture(): boolean {

@@ -1,5 +1,6 @@
 // A session's connection, and the stream that was opened on it last.
 
+import type {Target} from '../protocol/messages';
 import type {Transport} from '../transport/transport';
 import type {RequestedPart} from './requested_part';
 
@@ -21,6 +22,10 @@ export class LogStream {
   /** Keys of the fields that the stream brings. */
   private keys: readonly string[] = [];
   private end: End = 'limit';
+  private target: Target | null = null;
+  private isPaused = false;
+  /** A connection is there, or its transport tries to make one. */
+  isConnecting = false;
   /** Bytes received whose credit has not been returned: they are not applied yet. */
   private unapplied = 0;
 
@@ -53,11 +58,18 @@ export class LogStream {
     return keys.every((key) => this.keys.includes(key));
   }
 
+  /** Whatever of this field comes is of no use. */
+  giveUp(lost: string): void {
+    this.keys = this.keys.filter((key) => key !== lost);
+  }
+
   connect(): void {
+    this.isConnecting = true;
     this.transport?.connect();
   }
 
   disconnect(): void {
+    this.isConnecting = false;
     this.transport?.disconnect();
   }
 
@@ -65,7 +77,9 @@ export class LogStream {
     const fields = keys.filter((name) => name !== '');
     this.keys = fields;
     this.end = needsHead ? 'head' : 'limit';
+    this.target = target;
     this.unapplied = 0;
+    this.isPaused = false;
     this.transport?.open({
       mesh,
       fields,
@@ -78,19 +92,24 @@ export class LogStream {
 
   /** Moves the end of the stream to the limit of now. */
   aim({target}: RequestedPart): void {
+    if (target?.chunks === this.target?.chunks) return;
+    this.target = target;
     if (!this.endsAtHead) this.end = 'later limit';
     this.transport?.aim(target);
   }
 
   /** Returns false if there is nothing to pause. */
   pause(): boolean {
+    this.isPaused = true;
     this.transport?.pause();
     return this.transport !== null;
   }
 
-  /** Returns false if the stream cannot continue; it must be opened again. */
+  /** Ends a pause. Returns false if the stream cannot continue; it must be opened again. */
   resume(): boolean {
-    return this.transport?.resume() === true;
+    const {isPaused} = this;
+    this.isPaused = false;
+    return !isPaused || this.transport?.resume() === true;
   }
 
   received(bytes: number): void {

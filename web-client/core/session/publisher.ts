@@ -15,6 +15,7 @@ import {meshArrays} from '../picture/mesh_arrays';
 import {amountsOf, middleOf} from '../picture/spread';
 import {noSoup, pointBounds, type CreasesOf} from '../picture/triangle_soup';
 import {volumeCells, type VolumeCells} from '../picture/volume';
+import type {FieldInfo} from '../protocol/fields';
 import {PicturePace} from './picture_pace';
 import type {Snapshot} from './worker_messages';
 
@@ -171,6 +172,8 @@ export class Publisher {
     const {color, volume} = this.display;
     const scale = color && mesh.scale(color);
     const info = color && this.assembler.manifest!.fields[color.field];
+    const isComponent = info && info.components > 1 && color.component >= 0;
+    const ofSeries = isComponent ? seriesExtent(info, color.component) : null;
     if (this.meshChanged || this.bounds.length === 0)
       this.bounds = pointBounds(mesh.points, mesh.boundary);
     return {
@@ -178,19 +181,25 @@ export class Publisher {
       color: scale ? color : null,
       statistics: this.assembler.statistics(fieldsOf(this.display)),
       costMs: 0,
-      // The range of a component is known from its values only.
-      extent:
-        scale && info && info.components > 1 && color.component >= 0
-          ? scale.extent(mesh.tetrahedra)
-          : [0, 1],
-      // A series has one range of colours.
-      middle: scale && !info?.instant ? this.middleOf(color, scale, mesh) : [0, 1],
+      // The range of a component is known from its values only; a series has one for all of it.
+      extent: ofSeries ?? (scale && isComponent ? scale.extent(mesh.tetrahedra) : [0, 1]),
+      middle: ofSeries ?? (scale && !info?.instant ? this.middleOf(color, scale, mesh) : [0, 1]),
       ...(volume && scale
         ? {amounts: keptOf(this.amounts, color, () => amountsOf(scale, mesh))}
         : {}),
       scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
     };
   }
+}
+
+/** The part of scalarRange that a component of a series can have; null for other fields. */
+function seriesExtent(info: FieldInfo, component: number): [number, number] | null {
+  if (!info.instant) return null;
+  const [low, high] = scalarRange(info, component);
+  const shareOf = (value: number): number =>
+    high > low ? Math.min(1, Math.max(0, (value - low) / (high - low))) : 0;
+  const [from, to] = info.instant.ranges[component]!;
+  return [shareOf(from), shareOf(to)];
 }
 
 /** The value of a colour: as it was when it was first asked for. */

@@ -5,6 +5,7 @@ import type {Statistics} from '../decode/statistics';
 import {errorOfLevel, kFull, limitReached, type Limit} from '../protocol/limit';
 import {fieldKeys} from '../protocol/fields';
 import type {OpenRequest, Target} from '../protocol/messages';
+import {fieldOfSeries, showTime, shownInstant} from '../protocol/series';
 import type {Source} from './worker_messages';
 
 export class RequestedPart {
@@ -16,13 +17,18 @@ export class RequestedPart {
   fields: readonly number[] = [];
   /** Fields that may be shown soon. They come and are decoded behind all else. */
   ahead: readonly number[] = [];
+  /** Something ahead has failed: each field waits until it is shown. */
+  private isAheadEnded = false;
   limit: Limit = kFull;
+  /** The time that series begin with; null: the first. */
+  private time: number | null = null;
   /** The chunks that the log's copy holds. */
   private chunks = Infinity;
 
   constructor(private readonly assembler: Assembler) {}
 
-  begin({fields, limit, chunks = Infinity}: Source): void {
+  begin({fields, limit, time = null, chunks = Infinity}: Source): void {
+    this.time = time;
     this.names = fields;
     this.limit = limit;
     this.chunks = chunks;
@@ -31,10 +37,36 @@ export class RequestedPart {
   /** Must be called before another log. */
   forget(): void {
     this.fields = this.ahead = [];
+    this.isAheadEnded = false;
+  }
+
+  changeAhead(fields: readonly number[]): void {
+    if (!this.isAheadEnded) this.ahead = fields;
+  }
+
+  /** Returns false if that was done before. */
+  endAhead(): boolean {
+    const {isAheadEnded} = this;
+    this.ahead = [];
+    this.isAheadEnded = true;
+    return !isAheadEnded;
+  }
+
+  /** Fields that the shown mesh does not need are decoded. */
+  get hasOthers(): boolean {
+    const {codec, manifest} = this.assembler;
+    const isOther = (field: number): boolean =>
+      codec.fieldChunksApplied(field) > 0 && !this.shows(field);
+    return manifest?.fields.some((_, field) => isOther(field)) === true;
+  }
+
+  /** Whether the shown mesh needs this field. */
+  shows(field: number): boolean {
+    return this.assembler.withParents(this.fields).includes(field);
   }
 
   /** All fields that have to come, those that others are predicted from among them. */
-  private get needed(): number[] {
+  private get needed(): readonly number[] {
     return this.assembler.withParents([...this.fields, ...this.ahead]);
   }
 
@@ -45,11 +77,14 @@ export class RequestedPart {
   findFields(): string | undefined {
     const {fields, opening} = this.assembler.manifest!;
     const keys = fieldKeys(fields);
-    const unknown = this.names?.find((name) => !keys.includes(name));
-    this.fields = (this.names ?? []).map((name) => keys.indexOf(name)).filter((i) => i >= 0);
+    showTime(fields, this.time);
+    const fieldOf = (name: string): number =>
+      keys.includes(name) ? keys.indexOf(name) : fieldOfSeries(fields, name);
+    const unknown = this.names?.find((name) => fieldOf(name) < 0);
+    this.fields = (this.names ?? []).map(fieldOf).filter((field) => field >= 0);
     const wantsFirst = this.names === null || unknown !== undefined;
     if (this.fields.length === 0 && keys.length > 0 && wantsFirst)
-      this.fields = [opening?.field ?? 0];
+      this.fields = [shownInstant(fields, opening?.field ?? 0)];
     return unknown;
   }
 
@@ -99,6 +134,16 @@ export class RequestedPart {
         .withParents(this.fields)
         .every((field) => assembler.receivedOfField(field) >= chunks)
     );
+  }
+
+  /** All blocks up to the limit are here with the fields. */
+  get isHere(): boolean {
+    return this.isReceived(this.target?.chunks);
+  }
+
+  /** The mesh is complete, or the limit is reached with the fields. */
+  get isSettled(): boolean {
+    return this.isComplete || (this.isReached && this.isHere);
   }
 
   /** The fields ahead are here for the decoded mesh. */

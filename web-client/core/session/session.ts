@@ -8,6 +8,7 @@ import {errorCode, errorText, QtetError} from '../protocol/errors';
 import {kFull, type Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import type {Frame, ServerMessage} from '../protocol/messages';
+import {kFirstFieldPart, kHeadPart} from '../protocol/parts';
 import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
 import type {CoarseVolume} from './coarse_volume';
@@ -17,8 +18,11 @@ import {ProgressReporter} from './progress_reporter';
 import type {Publisher} from './publisher';
 import {RequestedPart} from './requested_part';
 import {canPause, isAtRest, stateMessage, type SessionState} from './session_state';
+import {Throttle} from './throttle';
 import type {FromWorker, Source} from './worker_messages';
 
+/** Between two openings for other wishes. A server refuses more than 50 a second (STREAM.md). */
+const kReopenMs = 100;
 /** The share of the cells at which memory ended that is kept: pictures need memory, too. */
 const kFittingShare = 0.7;
 
@@ -36,6 +40,10 @@ const kWaysOutOfNothing: Record<string, string> = {
     'is damaged: "qtet verify" says where.',
   'out-of-memory': ' Close other tabs and try again.',
 };
+
+const kNoRoomAhead =
+  'The instants of the series need more memory than the browser gives to a page.';
+const kWithoutAhead = ' What is shown stays. The others come when they are shown.';
 
 export type TransportFactory = (
   source: Source,
@@ -67,6 +75,7 @@ export class Session implements TransportHandlers {
   private readonly requested: RequestedPart;
   private readonly decoding: Decoding;
   private readonly progress: ProgressReporter;
+  private readonly reopening = new Throttle(() => this.bring(), kReopenMs);
 
   constructor(
     private readonly assembler: Assembler,
@@ -75,7 +84,12 @@ export class Session implements TransportHandlers {
     private readonly newTransport: TransportFactory = makeTransport,
   ) {
     this.requested = new RequestedPart(assembler);
-    this.decoding = new Decoding(assembler, this.requested, () => this.advance());
+    this.decoding = new Decoding(
+      assembler,
+      this.requested,
+      () => this.advance(),
+      (thrown) => this.aheadFailed(thrown),
+    );
     this.progress = new ProgressReporter(() => this.sendProgress());
     publisher.onFirst = () => this.advance();
     publisher.pace.untilLast = () => this.untilDecoded();
@@ -107,27 +121,24 @@ export class Session implements TransportHandlers {
   /** Brings these fields (indexes into the manifest) instead of the previous ones. */
   want(fields: readonly number[], ahead: readonly number[] = []): void {
     if (!this.assembler.manifest) return;
-    this.requested.ahead = ahead;
+    this.requested.changeAhead(ahead);
     if (this.requested.changeFields(fields)) {
       this.sendPlan();
       this.progress.changed();
-      if (this.state.name === 'failed') return;
-      this.advance();
-      if (this.state.name === 'paused') return;
-      if (!this.requested.isComplete && !this.requested.isReceived()) return this.reopen();
     }
-    if (isAtRest(this.state) && !this.requested.isAheadReceived) this.openAhead();
+    if (this.state.name === 'failed') return;
+    this.advanceSoon();
+    this.bring();
   }
 
   /** Refines up to this limit. A coarser limit goes back. */
   setLimit(limit: Limit): void {
     this.requested.limit = limit;
     if (!this.assembler.manifest || this.state.name === 'failed') return;
-    const wasPaused = this.endPause();
+    this.endPause();
     this.guarded(() => {
       if (this.requested.isReached) this.goBack();
-      if (this.requested.isReached) this.hold();
-      else this.goOn(wasPaused);
+      this.goOn();
       this.progress.changed();
     });
   }
@@ -148,7 +159,7 @@ export class Session implements TransportHandlers {
     const {names, limit} = this.requested;
     if (this.state.name === 'failed')
       this.start({...this.source, fields: names, limit, paused: false});
-    else if (this.endPause()) this.goOn(true);
+    else if (this.endPause()) this.goOn();
   }
 
   // ---- TransportHandlers
@@ -189,6 +200,9 @@ export class Session implements TransportHandlers {
     try {
       this.assembler.take(frame);
     } catch (thrown) {
+      const fields = fieldsIn(frame);
+      const isAhead = fields.length > 0 && !fields.some((field) => this.requested.shows(field));
+      if (isAhead) return this.aheadFailed(thrown, fields);
       return this.endBy(thrown); // blocks before it are sound, and decoding goes on
     }
     this.guarded(() => {
@@ -196,16 +210,17 @@ export class Session implements TransportHandlers {
       this.stream.received(frame.payload.length);
       if (isFirst && this.takeManifest()) return;
       const {name} = this.state;
-      const isThere = this.requested.isReached || this.requested.isComplete;
-      if (name !== 'streaming' && name !== 'paused' && !isThere) this.enter({name: 'streaming'});
+      if (name !== 'streaming' && name !== 'paused' && !this.requested.isSettled)
+        this.enter({name: 'streaming'});
       this.advanceSoon();
     });
   }
 
   down(attempt: number, delayMs: number): void {
+    if (!isAtRest(this.state)) this.enter({name: 'reconnecting', attempt, delayMs});
     // If nothing is missing, the connection may end. Asking for more connects again.
-    if (isAtRest(this.state)) this.stream.disconnect();
-    else this.enter({name: 'reconnecting', attempt, delayMs});
+    else if (this.state.name === 'paused' || this.requested.isAheadReceived)
+      this.stream.disconnect();
   }
 
   failed(error: QtetError): void {
@@ -215,8 +230,10 @@ export class Session implements TransportHandlers {
   }
 
   private done(): void {
-    if (this.requested.isReceived(this.requested.target?.chunks)) {
+    if (this.requested.isHere) {
       this.advanceSoon();
+    } else if (!this.stream.brings(this.requested.keys)) {
+      return; // another stream is opened soon, or once a pause ends
     } else if (this.stream.mayEndEarly) {
       this.open();
     } else {
@@ -252,18 +269,25 @@ export class Session implements TransportHandlers {
     this.stream.open(this.source.mesh, this.requested);
   }
 
-  /** Brings the fields ahead. The picture is complete, and stays so. */
-  private openAhead(): void {
-    if (!this.stream.isConnected) this.stream.connect();
-    else if (!this.stream.brings(this.requested.keys)) this.open();
-  }
-
-  /** Opens a stream on the present connection, or connects first. */
-  private reopen(): void {
-    const {isConnected} = this.stream;
-    this.enter({name: isConnected ? 'streaming' : 'connecting'});
-    if (isConnected) this.open();
-    else this.stream.connect();
+  /**
+   * Sees to it that what is wanted and not here comes: by the present stream, or else by another
+   * one. Wishes that follow each other fast open one together.
+   */
+  private bring(): void {
+    const {requested, state, stream} = this;
+    if (state.name === 'paused' || state.name === 'failed') return;
+    if (requested.isHere && requested.isAheadReceived) return;
+    const {isConnected} = stream;
+    if (isAtRest(state) && !requested.isHere)
+      this.enter({name: isConnected ? 'streaming' : 'connecting'});
+    if (isConnected && stream.brings(requested.keys)) {
+      stream.aim(requested);
+      if (!stream.resume()) this.open();
+    } else if (isConnected || !stream.isConnecting) {
+      if (!this.reopening.take()) return;
+      if (isConnected) this.open();
+      else stream.connect();
+    }
   }
 
   /** Returns true if the stream was opened again, now that the fields are known. */
@@ -292,12 +316,10 @@ export class Session implements TransportHandlers {
       if (hasChanged) this.publisher.changed(this.requested.isComplete);
       this.progress.changed();
       if (this.state.name === 'failed') return;
-      const isComplete = this.requested.isComplete;
-      if (isComplete) this.complete();
-      if (isComplete && this.requested.ahead.length > 0) this.stream.giveCredit();
-      else if (isComplete) return;
-      else if (this.requested.isReached) this.hold();
-      else if (this.state.name !== 'paused') this.stream.giveCredit();
+      if (this.requested.isComplete) this.complete();
+      else if (this.requested.isSettled) this.hold();
+      if (this.state.name === 'paused') return;
+      if (!this.requested.isSettled || !this.requested.isAheadReceived) this.stream.giveCredit();
     });
   }
 
@@ -348,22 +370,22 @@ export class Session implements TransportHandlers {
   }
 
   /** Continues after a pause or a new limit: first with what is here, then with the network. */
-  private goOn(wasPaused: boolean): void {
+  private goOn(): void {
     this.state = {name: 'streaming'}; // reported below, unless decoding ends it at once
     this.advance();
-    if (this.requested.isComplete || this.requested.isReached) return;
-    if (this.requested.isReceived()) return this.enter({name: 'streaming'});
-    if (!this.stream.isConnected || !this.stream.brings(this.requested.keys)) return this.reopen();
-    this.enter({name: 'streaming'});
-    this.stream.aim(this.requested);
-    if (wasPaused && !this.stream.resume()) this.open();
+    if (this.state.name === 'streaming') {
+      const isUnderWay = this.requested.isHere || this.stream.isConnected;
+      this.enter({name: isUnderWay ? 'streaming' : 'connecting'});
+    }
+    this.bring();
   }
 
   private guarded(action: () => void): void {
     try {
       action();
     } catch (thrown) {
-      if (errorCode(thrown) === 'out-of-memory' && this.stayAtWhatFits()) return;
+      if (errorCode(thrown) === 'out-of-memory' && (this.release() || this.stayAtWhatFits()))
+        return;
       this.decoding.stop();
       this.endBy(thrown);
     }
@@ -375,6 +397,35 @@ export class Session implements TransportHandlers {
     this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
   }
 
+  /** Nothing more comes ahead. What is shown stays and goes on. `fields` have lost a block. */
+  private aheadFailed(thrown: unknown, fields: readonly number[] = []): void {
+    for (const field of fields) this.stream.giveUp(this.assembler.fieldKeys[field]!);
+    const code = errorCode(thrown);
+    const isMemory = code === 'out-of-memory';
+    const cause = isMemory ? kNoRoomAhead : errorText(thrown).replace(/\.?$/, '.');
+    if (this.requested.endAhead())
+      this.send({type: 'error', code, message: `${cause}${kWithoutAhead}`});
+    if (isMemory) this.restart(() => undefined);
+  }
+
+  /** Leaves only what is shown in the codec. Returns false if nothing else is there. */
+  private release(): boolean {
+    if (!this.requested.hasOthers) return false;
+    this.restart(() => this.advance());
+    return true;
+  }
+
+  /** Decodes what is shown in a fresh codec. `then` is called if it fits. */
+  private restart(then: () => void): void {
+    this.decoding.stop();
+    this.guarded(() => {
+      this.assembler.codec.restart();
+      this.goBack();
+      this.progress.changed();
+      then();
+    });
+  }
+
   /**
    * Starts again in a fresh codec, at a limit that leaves room. Returns false if not even the base
    * mesh fits.
@@ -382,18 +433,14 @@ export class Session implements TransportHandlers {
   private stayAtWhatFits(): boolean {
     const {tetrahedra} = this.requested.statistics;
     if (tetrahedra === 0) return false;
-    this.decoding.stop();
     this.stream.disconnect();
     const value = Math.max(1, Math.floor(kFittingShare * tetrahedra));
     this.requested.limit = {kind: 'cells', value};
-    this.guarded(() => {
-      this.assembler.codec.restart();
-      this.goBack();
+    this.restart(() => {
       const message =
         'The whole mesh needs more memory than the browser gives to a page.' +
         kWaysOut['out-of-memory']!;
       this.send({type: 'error', code: 'out-of-memory', message});
-      this.progress.changed();
       this.hold();
     });
     return true;
@@ -403,6 +450,7 @@ export class Session implements TransportHandlers {
   private forget(): void {
     this.baseReported = false;
     if (this.early) this.early = [];
+    this.reopening.drop();
     this.decoding.forget();
     this.stream.forget();
     this.requested.forget();
@@ -433,4 +481,10 @@ export class Session implements TransportHandlers {
     const here = this.assembler.wholeFields;
     this.send({type: 'progress', statistics, received: this.stream.receivedBytes, here});
   }
+}
+
+/** The fields that the frame has blocks of; none if it has others, too. */
+function fieldsIn({firstPart, parts}: Frame): number[] {
+  if (firstPart < kFirstFieldPart || firstPart === kHeadPart) return [];
+  return Array.from({length: parts}, (_, part) => firstPart - kFirstFieldPart + part);
 }

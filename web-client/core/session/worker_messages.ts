@@ -23,8 +23,10 @@ export type StreamState =
 
 export interface Source extends LogAddress {
   mesh: string;
-  /** Keys of the fields to begin with; null: the opening's; empty: none. */
+  /** Keys of the fields, or series in a file, to begin with; null: the opening's; empty: none. */
   fields: string[] | null;
+  /** The time at which series begin; null: the first. */
+  time?: number | null;
   limit: Limit;
   /** The network stays idle until `resume`. */
   paused?: boolean;

@@ -26,7 +26,7 @@ const kAxes = ['x', 'y', 'z'];
 export function scalarTitle({field, component}: Scalar, fields: readonly FieldInfo[]): string {
   const info = fields[field]!;
   const twins = fields.filter(({name}) => name === info.name).length > 1;
-  const plain = info.instant ? info.name.slice(0, info.name.lastIndexOf('@')) : info.name;
+  const plain = info.instant?.series.replace(/^cell:/, '') ?? info.name;
   const name = twins && info.association === 'cell' ? `${plain} (cells)` : plain;
   if (info.components === 1) return name;
   if (component === kMagnitude) return `${name}, magnitude`;

@@ -1,5 +1,6 @@
 // The time of a series: play, step, loop, and which instants are here.
 
+import type {FieldInfo} from '../../core/protocol/fields';
 import {shownInstant, timesOf} from '../../core/protocol/series';
 import {find, onClick} from '../page/find';
 import type {Attributes} from '../page/page';
@@ -33,14 +34,16 @@ const kMarkup = `
 
 export interface TimeHost {
   readonly mesh: ShownMesh;
-  /** Brings the picture in line: other fields are wanted ahead. */
+  /** Brings the picture in line with the bar. */
   apply(): void;
 }
 
 export class TimeBar {
   private readonly bar: HTMLElement;
   private times: readonly {time: number; text: string}[] = [];
-  /** By time: the field of the shown series, -1 for none. */
+  /** The key of the shown series; null: none, or another mesh's. */
+  private series: string | null = null;
+  /** By time: its field, -1 for none. */
   private fields: number[] = [];
   private at = 0;
   private timer: ReturnType<typeof setInterval> | undefined;
@@ -60,7 +63,7 @@ export class TimeBar {
     onClick(this.bar, '.play', () => this.toggle());
     this.slider.addEventListener('input', () => this.show(Number(this.slider.value)));
     this.speed.addEventListener('change', () => this.isPlaying && this.play());
-    signal.addEventListener('abort', () => this.stop());
+    signal.addEventListener('abort', () => this.end());
   }
 
   /** The mesh has a series. */
@@ -77,25 +80,19 @@ export class TimeBar {
     const {manifest, firstField} = mesh;
     if (this.known !== manifest) {
       this.known = manifest;
-      this.stop();
+      this.end();
       this.times = manifest ? timesOf(manifest.fields) : [];
+      this.choose(null, []);
     }
     const isSeries = this.times.length > 1;
     this.bar.hidden = !isSeries;
     if (!isSeries || !manifest) return;
     const {fields} = manifest;
     const color = shownScalar(this.attributes.read('field'), fields, firstField);
-    const shown = color && fields[color.field]!;
-    this.fields = this.times.map(({time}) =>
-      fields.findIndex(
-        ({instant, association}) =>
-          instant?.time === time &&
-          instant.series === shown?.instant?.series &&
-          association === shown.association,
-      ),
-    );
+    this.choose((color && fields[color.field]!.instant?.series) ?? null, fields);
     const wanted = settings.time ?? this.times[0]!.time;
     this.at = nearestTo(this.times, wanted);
+    mesh.ahead = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
     const {slider} = this;
     slider.max = String(this.times.length - 1);
     slider.value = String(this.at);
@@ -103,6 +100,17 @@ export class TimeBar {
     slider.setAttribute('aria-valuetext', text);
     find(this.bar, 'output').textContent = `t = ${text}`;
     this.follow();
+  }
+
+  /** A mesh may have thousands of instants: they are looked up once. */
+  private choose(series: string | null, fields: readonly FieldInfo[]): void {
+    if (series !== null && series === this.series) return;
+    this.series = series;
+    const byTime = new Map<number, number>();
+    fields.forEach(({instant}, field) => {
+      if (instant?.series === series) byTime.set(instant.time, field);
+    });
+    this.fields = this.times.map(({time}) => byTime.get(time) ?? -1);
   }
 
   /** Must be called when more is here, or on the screen. */
@@ -129,7 +137,7 @@ export class TimeBar {
 
   /** To the next instant or the one before, round the ends. */
   step(by: number): void {
-    this.stop();
+    this.end();
     this.show(this.at + by);
   }
 
@@ -137,11 +145,16 @@ export class TimeBar {
     clearInterval(this.timer);
     this.waitingSince = 0;
     this.timer = setInterval(() => this.tick(), kStepMs / Number(this.speed.value));
-    if (this.chooseAhead()) this.host.apply();
+    this.host.apply();
     this.showPlaying();
   }
 
   private stop(): void {
+    this.end();
+    this.host.apply();
+  }
+
+  private end(): void {
     clearInterval(this.timer);
     this.timer = undefined;
     this.showPlaying();
@@ -176,22 +189,7 @@ export class TimeBar {
     const count = this.times.length;
     if (count === 0) return;
     this.at = (at + count) % count;
-    this.chooseAhead(); // the attribute's change applies it
     this.attributes.write('time', this.at === 0 ? null : this.times[this.at]!.text);
-  }
-
-  /** Whether other fields are wanted ahead than before. */
-  private chooseAhead(): boolean {
-    const half = kAhead / 2;
-    const first = this.at - (this.at % half);
-    const count = this.times.length;
-    const ahead = Array.from(
-      {length: Math.min(kAhead, count)},
-      (_, i) => this.fields[(first + i) % count]!,
-    ).filter((field) => field >= 0);
-    if (ahead.join() === this.host.mesh.ahead.join()) return false;
-    this.host.mesh.ahead = ahead;
-    return true;
   }
 
   private showPlaying(): void {
@@ -216,4 +214,12 @@ function nearestTo(times: readonly {time: number}[], wanted: number): number {
     if (Math.abs(time - wanted) < Math.abs(times[best]!.time - wanted)) best = i;
   });
   return best;
+}
+
+/** By time the fields of a series (-1: none): those to fetch while the one at `at` is shown. */
+export function fieldsAhead(fields: readonly number[], at: number): number[] {
+  const half = kAhead / 2;
+  const from = at - (at % half);
+  const round = [...fields.slice(from), ...fields.slice(0, from)];
+  return round.slice(0, kAhead).filter((field) => field >= 0);
 }

@@ -1,0 +1,101 @@
+import {afterEach, beforeEach, expect, test, vi} from 'vitest';
+import type {FieldInfo} from '../core/protocol/fields';
+import type {Manifest} from '../core/protocol/manifest';
+import {markSeries} from '../core/protocol/series';
+import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
+import {fieldsAhead, TimeBar} from '../viewer/panels/time_bar';
+
+/** As much of an element as the bar uses. */
+class Part {
+  hidden = false;
+  value = '';
+  readonly style = {};
+  readonly classList = {toggle: () => undefined};
+  private readonly parts = new Map<string, Part>();
+  private readonly listeners = new Map<string, () => void>();
+
+  querySelector(selector: string): Part {
+    const part = this.parts.get(selector) ?? new Part();
+    this.parts.set(selector, part);
+    return part;
+  }
+  setAttribute(): void {
+    return;
+  }
+  addEventListener(type: string, listener: () => void): void {
+    this.listeners.set(type, listener);
+  }
+  dispatch(type: string): void {
+    this.listeners.get(type)!();
+  }
+}
+
+function field(name: string): FieldInfo {
+  return {name, components: 1, association: 'point', step: 1, minimum: [0], range: [0, 1]};
+}
+
+let mesh: ShownMesh;
+let bar: TimeBar;
+let root: Part;
+let attributes: Map<string, string>;
+let write: (name: string, value: string | null) => void;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  mesh = new ShownMesh();
+  const fields = ['T@0', 'T@1', 'S@0', 'S@1', 'p'].map(field);
+  markSeries(fields);
+  mesh.manifest = {fields} as Manifest;
+  attributes = new Map();
+  root = new Part();
+  const read = (name: string): string | null => attributes.get(name) ?? null;
+  const apply = (): void => bar.update(settingsFor(mesh, read), mesh);
+  write = (name: string, value: string | null): void => {
+    if (value === null) attributes.delete(name);
+    else attributes.set(name, value);
+    apply();
+  };
+  bar = new TimeBar(
+    root as unknown as ParentNode,
+    {read, write},
+    {mesh, apply},
+    new AbortController().signal,
+  );
+  apply();
+});
+afterEach(() => void vi.useRealTimers());
+
+test('onlyASeriesThatPlaysHasFieldsAhead', () => {
+  bar.step(1);
+  expect(mesh.ahead).toEqual([]);
+  bar.toggle();
+  expect([bar.isPlaying, mesh.ahead]).toEqual([true, [0, 1]]);
+  bar.toggle();
+  expect([bar.isPlaying, mesh.ahead]).toEqual([false, []]);
+});
+
+test('anotherSeriesHasOtherFieldsAheadAndAFieldOfNoneHasNone', () => {
+  bar.toggle();
+  write('field', 'S');
+  expect(mesh.ahead).toEqual([2, 3]);
+  write('field', 'p');
+  expect(mesh.ahead).toEqual([]);
+});
+
+test('instantsAreLookedUpOnceForASeries', () => {
+  const {fields} = mesh.manifest!;
+  let reads = 0;
+  const {instant} = fields[4]!;
+  Object.defineProperty(fields[4]!, 'instant', {get: () => (++reads, instant)});
+  write('range', '0,1');
+  const once = reads;
+  write('field', 'S');
+  expect(reads - once).toBeGreaterThan(once);
+});
+
+test('fieldsAheadGoRoundTheEndAndLeaveGapsOut', () => {
+  const fields = Array.from({length: 40}, (_, i) => i);
+  expect(fieldsAhead(fields, 15)).toEqual(fields.slice(0, 32));
+  expect(fieldsAhead(fields, 16)).toEqual([...fields.slice(16), ...fields.slice(0, 8)]);
+  expect(fieldsAhead([4, -1, 5], 1)).toEqual([4, 5]);
+});
