@@ -51,7 +51,7 @@ class LogFile {
   /// chunk and part in the message). Keeps none of them in memory.
   [[nodiscard]] Status verifyChecksums() const;
   /// Lets the system take the memory of these bytes of a mapped file. They can be read as before,
-  /// from the file. What reads a whole log calls it behind itself.
+  /// from the file. Readers of whole logs call it behind themselves.
   void release(std::uint64_t offset, std::uint64_t size) const;
 
  private:
