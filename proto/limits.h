@@ -7,13 +7,16 @@
 
 namespace qtet {
 
-/// Bytes of the manifest in a log: the most levels and fields that there may be, at two bytes a
-/// figure, take 5 MB.
+/// Bytes of the manifest in a log. Known errors of 256 fields at the most levels that there may be
+/// take 5 MB, at two bytes a figure.
 inline constexpr std::uint32_t kMaxManifestBytes = 8u << 20;
 /// Chunks of one log: at 16 KB a chunk, a 16 GB log.
 inline constexpr std::uint32_t kMaxChunks = 1u << 20;
-/// Fields of one log; each costs 8 bytes in every table entry.
-inline constexpr std::uint32_t kMaxFields = 256;
+/// Fields of one log. Each costs some 7 bytes in every row of the chunk table, which a viewer
+/// fetches before its first picture.
+inline constexpr std::uint32_t kMaxFields = 1024;
+/// The highest number of a field that a manifest's opening can name, in a byte.
+inline constexpr std::uint32_t kMaxOpeningField = 255;
 /// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is
 /// shorter.
 inline constexpr std::uint32_t kMaxNameBytes = 256;

@@ -1,5 +1,6 @@
 #include "codec/log/chunk_writer.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "codec/log/value_block.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
+#include "proto/series.h"
 
 namespace qtet {
 namespace {
@@ -22,14 +24,19 @@ std::uint64_t bitsOf(std::int32_t value) {
 }  // namespace
 
 ChunkWriter::ChunkWriter(std::span<const FieldInfo> fields, CodecId valueCodec)
-    : fields_(fields), valueCodec_(valueCodec) {
+    : fields_(fields), valueCodec_(valueCodec), counts_(1 + fields.size(), true) {
   open_.values.resize(1 + fields.size());
   open_.seen.resize(1 + fields.size());
+  for (const Series& series : seriesOf(fields)) {
+    for (const std::size_t f : series.fields) counts_[1 + f] = false;
+    counts_[1 + std::ranges::min(series.fields)] = true;
+  }
 }
 
 void ChunkWriter::endRecord() {
   ++open_.row.records;
   for (std::size_t part = 0; part < open_.values.size(); ++part) {
+    if (!counts_[part]) continue;
     const std::uint64_t more = part > 0 && isCellField(fields_[part - 1]) ? 0 : kMoreBits;
     const std::vector<std::int32_t>& written = open_.values[part].written();
     for (std::size_t& i = open_.seen[part]; i < written.size(); ++i)
@@ -51,6 +58,7 @@ Status ChunkWriter::close(std::uint32_t lastLevel, std::uint32_t endSlot, const 
   row.newBoundaryTriangles = end.triangles - open_.first.triangles;
   row.valueCodec = valueCodec_;
   if (Status s = addBlock(open_.structure.finish()); !s) return s;
+  closedBytes_ += row.blocks.front().size;
   std::uint64_t valueBytes = 0;
   for (std::size_t part = 0; part < open_.values.size(); ++part) {
     std::vector<std::int32_t>& written = open_.values[part].written();
@@ -58,10 +66,11 @@ Status ChunkWriter::close(std::uint32_t lastLevel, std::uint32_t endSlot, const 
         encodeValueBlock(written, part == 0 ? 3 : fields_[part - 1].components, valueCodec_);
     if (!block) return std::unexpected(block.error());
     if (Status s = addBlock(*block); !s) return s;
-    valueBytes += block->size();
+    if (counts_[part]) valueBytes += block->size();
     written.clear();
     open_.seen[part] = 0;
   }
+  closedBytes_ += valueBytes;
   const std::uint64_t valueBits = std::exchange(open_.valueBits, 0);
   if (!rows_.empty()) {
     valueBytes_ += valueBytes;

@@ -24,8 +24,11 @@ class ChunkWriter {
   [[nodiscard]] std::span<Values> fields() { return std::span(open_.values).subspan(1); }
   /// Counts a record of the open chunk, whose values have been written.
   void endRecord();
-  /// Bytes of the open chunk's blocks, about.
+  /// Bytes of the open chunk's blocks, about. Only the first instant of a series counts: a viewer
+  /// fetches one at a time.
   [[nodiscard]] std::uint64_t estimatedBytes() const;
+  /// The same of the closed chunks, exactly.
+  [[nodiscard]] std::uint64_t closedBytes() const { return closedBytes_; }
 
   /// close() ends the open chunk, after which the mesh has slots up to `end`. begin() opens the
   /// next one, which begins in `firstLevel`. Errors: limit-exceeded, bad-codec.
@@ -51,9 +54,11 @@ class ChunkWriter {
 
   std::span<const FieldInfo> fields_;
   CodecId valueCodec_;
+  std::vector<bool> counts_;  // by part: its bytes count in those of a chunk
   OpenChunk open_;
   // of the chunks closed since the base mesh: what the values took, and the estimates
   std::uint64_t valueBytes_ = 0, valueBits_ = 0;
+  std::uint64_t closedBytes_ = 0;
   std::vector<ChunkEntry> rows_;
   Bytes body_;
 };

@@ -46,7 +46,7 @@ class LevelRuns {
 
  private:
   [[nodiscard]] std::uint64_t target() const {
-    return std::min(chunkBytes_, std::max(kMinChunkBytes, chunks_.body().size() / kGrowth));
+    return std::min(chunkBytes_, std::max(kMinChunkBytes, chunks_.closedBytes() / kGrowth));
   }
 
   // Whether the next chunk should begin with the next level. It should if another level, like the

@@ -54,11 +54,11 @@ void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uin
 /// The opening follows its field, or goes with it.
 void keepOpening(Manifest& manifest, const std::vector<std::uint32_t>& kept) {
   if (!manifest.opening) return;
-  const auto place = std::ranges::find(kept, manifest.opening->field);
-  if (place == kept.end()) {
-    manifest.opening.reset();
+  const auto place = std::ranges::find(kept, manifest.opening->field) - kept.begin();
+  if (static_cast<std::size_t>(place) < kept.size() && place <= kMaxOpeningField) {
+    manifest.opening->field = static_cast<std::uint8_t>(place);
   } else {
-    manifest.opening->field = static_cast<std::uint8_t>(place - kept.begin());
+    manifest.opening.reset();
   }
 }
 
@@ -87,7 +87,7 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   if (!manifest) return std::unexpected(manifest.error());
   if (kept.size() + added.size() > kMaxFields)
     return fail(ErrorCode::kLimitExceeded,
-                "the log would have more than 256 fields; remove some first");
+                "the log would have more than 1,024 fields; remove some first");
   LogIndex index = log.index();
   std::vector<ManifestField> fields;
   index.fields.clear();

@@ -10,12 +10,12 @@
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/predicates.h"
 #include "proto/limits.h"
+#include "proto/series.h"
 #include "simplify/clean/float_spacing.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/volume_sign.h"
-#include "simplify/series/series.h"
 
 namespace qtet {
 namespace {

@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "codec/files/atomic_file.h"
 #include "codec/log/log_index.h"
 #include "codec/log/target_choice.h"
 #include "proto/field_key.h"
 #include "proto/level_error_json.h"
 #include "simplify/commands/command_measure.h"
+#include "simplify/commands/extract_times.h"
 #include "simplify/log/kept_input.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/log/write_mesh.h"
@@ -35,19 +38,41 @@ Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& man
   return levelFor(targetOf(parsed, manifest), manifest, index);
 }
 
-/// Leaves a mesh of either kind only the `wanted` fields: their numbers, ascending.
-void keepFields(LatticeMesh& mesh, const std::vector<std::uint32_t>& wanted) {
-  for (std::size_t f = mesh.fields.size(); f-- > 0;) {
-    if (std::ranges::binary_search(wanted, f)) continue;
-    mesh.fields.erase(mesh.fields.begin() + static_cast<std::ptrdiff_t>(f));
-    mesh.values.erase(mesh.values.begin() + static_cast<std::ptrdiff_t>(f));
-  }
+// ---- a mesh of either kind with some of its fields
+
+struct LatticeField {
+  FieldInfo info;
+  std::vector<std::int32_t> values;
+};
+
+std::vector<LatticeField> takeFields(LatticeMesh& mesh) {
+  std::vector<LatticeField> out;
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    out.push_back({std::move(mesh.fields[f]), std::move(mesh.values[f])});
+  mesh.fields.clear(), mesh.values.clear();
+  return out;
 }
 
-void keepFields(TetMesh& mesh, const std::vector<std::uint32_t>& wanted) {
-  for (std::size_t f = mesh.fields.size(); f-- > 0;)
-    if (!std::ranges::binary_search(wanted, f))
-      mesh.fields.erase(mesh.fields.begin() + static_cast<std::ptrdiff_t>(f));
+std::vector<MeshField> takeFields(TetMesh& mesh) { return std::exchange(mesh.fields, {}); }
+
+void addField(LatticeMesh& mesh, LatticeField&& field, const std::string& name) {
+  field.info.name = name;
+  mesh.fields.push_back(std::move(field.info));
+  mesh.values.push_back(std::move(field.values));
+}
+
+void addField(TetMesh& mesh, MeshField&& field, const std::string& name) {
+  field.name = name;
+  mesh.fields.push_back(std::move(field));
+}
+
+Result<Bytes> bytesOf(const LatticeMesh& mesh, const std::string& ending,
+                      const MeshFileOptions& options) {
+  return meshFileBytes(mesh, ending, options);
+}
+
+Result<Bytes> bytesOf(const TetMesh& mesh, const std::string& ending, const MeshFileOptions&) {
+  return meshFileBytes(fileMesh(mesh), ending);
 }
 
 /// The fields of the log's levels; of the last level also what its closing blocks hold.
@@ -82,24 +107,118 @@ Result<std::vector<std::uint32_t>> wantedFields(const ParsedWords& parsed,
   return wanted;
 }
 
-/// At the last level the input itself, as far as the log kept it.
-Result<Bytes> inputFile(const OpenedLog& log, const LatticeMesh& finest,
-                        const std::vector<std::uint32_t>& wanted, const MeshOutput& output) {
+constexpr const char* kCollection = ".pvd";
+
+/// The files of a collection: NAME/NAME_0000.vtu and so on, beside NAME.pvd.
+std::filesystem::path fileOfCollection(const std::filesystem::path& collection,
+                                       std::size_t number) {
+  const std::string name = collection.stem().string(), digits = std::to_string(number);
+  return std::filesystem::path(name) /
+         (name + "_" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits +
+          ".vtu");
+}
+
+/// Writes a file of each instant into a new folder, and then the collection. After an error neither
+/// is there.
+template <class BytesOfFile>
+Status writeCollection(const MeshOutput& output, const std::vector<InstantFile>& files,
+                       const BytesOfFile& bytesOfFile, MeshOutputReport& report, Console& console) {
+  namespace fs = std::filesystem;
+  const fs::path parent = output.file.parent_path();
+  const fs::path folder = parent / output.file.stem();
+  std::error_code code;
+  if (!fs::create_directory(folder, code))
+    return fail(ErrorCode::kIo, "the folder " + folder.string() + " for the instants " +
+                                    (code ? "cannot be made: " + code.message()
+                                          : "exists; remove it or choose another output"));
+  std::vector<std::pair<std::optional<double>, std::string>> written;
+  std::uint64_t size = 0;
+  const auto write = [&]() -> Status {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const Result<Bytes> bytes = bytesOfFile(files[i], i + 1 == files.size());
+      if (!bytes) return std::unexpected(bytes.error());
+      const fs::path name = fileOfCollection(output.file, i);
+      if (Status s = writeFileAtomically(parent / name, *bytes); !s) return s;
+      written.emplace_back(files[i].time, name.generic_string());
+      report.json["files"].push_back(
+          {{"time", files[i].time.value_or(0)}, {"file", name.generic_string()}});
+      size += bytes->size();
+    }
+    const std::string text = collectionText(written);
+    size += text.size();
+    return writeFileAtomically(
+        output.file, ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  };
+  if (Status s = write(); !s) {
+    fs::remove_all(folder, code);
+    return s;
+  }
+  report.sentence += ", " + counted(files.size(), "instant", "instants") + " in " + folder.string();
+  reportMeshOutput(output, size, report, console);
+  return {};
+}
+
+/// Writes the mesh with each file's fields; `numbers` are those of its own fields, ascending.
+template <class Mesh>
+Status writeFiles(Mesh& mesh, const std::vector<std::uint32_t>& numbers,
+                  const std::vector<InstantFile>& files, const MeshOutput& output,
+                  MeshOutputReport& report, Console& console) {
+  auto all = takeFields(mesh);
+  const bool isCollection = output.ending == kCollection;
+  const auto bytesOfFile = [&](const InstantFile& file, bool isLast) {
+    takeFields(mesh);
+    for (const FieldInFile& field : file.fields) {
+      const auto at = std::ranges::lower_bound(numbers, field.number) - numbers.begin();
+      auto& own = all[static_cast<std::size_t>(at)];
+      addField(mesh, field.isInstant || isLast ? std::move(own) : auto(own), field.name);
+    }
+    return bytesOf(mesh, isCollection ? ".vtu" : output.ending, output.options);
+  };
+  if (isCollection) return writeCollection(output, files, bytesOfFile, report, console);
+  const Result<Bytes> bytes = bytesOfFile(files.front(), true);
+  if (!bytes) return std::unexpected(bytes.error());
+  return writeMeshOutput(output, *bytes, report, console);
+}
+
+/// At the last level the input itself is written, as far as the log kept it.
+Status writeInput(const OpenedLog& log, const LatticeMesh& finest,
+                  const std::vector<InstantFile>& files, const MeshOutput& output,
+                  MeshOutputReport& report, Console& console) {
   Result<RestoredInput> input = restoreInput(log.file, finest);
   if (!input) return std::unexpected(input.error());
   const bool exact = input->exactPositions ||
                      std::ranges::find(input->exactFields, true) != input->exactFields.end();
-  keepFields(input->mesh, wanted);
-  keepFields(input->lattice, wanted);
-  return exact && !needsLattice(output.ending)
-             ? meshFileBytes(fileMesh(input->mesh), output.ending)
-             : meshFileBytes(input->lattice, output.ending, output.options);
+  const bool asRead = exact && !needsLattice(output.ending);
+  std::vector<std::uint32_t> numbers(asRead ? input->mesh.fields.size()
+                                            : input->lattice.fields.size());
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  return asRead ? writeFiles(input->mesh, numbers, files, output, report, console)
+                : writeFiles(input->lattice, numbers, files, output, report, console);
 }
 
-/// `known`: the fields that the numbers of `wanted` mean, those of the manifest first.
+/// The files that `--time` and the output's kind ask for.
+Result<std::vector<InstantFile>> filesOf(const ParsedWords& parsed, const MeshOutput& output,
+                                         const std::vector<ManifestField>& known,
+                                         const std::vector<std::uint32_t>& wanted) {
+  const bool isCollection = output.ending == kCollection;
+  if (!parsed.has("time") && !isCollection) {
+    InstantFile all;
+    for (const std::uint32_t f : wanted) all.fields.push_back({f, known[f].name, false});
+    return std::vector<InstantFile>{std::move(all)};
+  }
+  const std::string asked = parsed.has("time") ? parsed.get<std::string>("time") : "all";
+  auto files = instantFiles(known, wanted, asked, parsed.get<std::string>("LOG"));
+  if (files && files->size() > 1 && !isCollection)
+    throw UsageError("--time " + asked + " means " + std::to_string(files->size()) +
+                     " instants; -o NAME.pvd writes a file of each");
+  return files;
+}
+
+/// `known`: the fields that the numbers of `wanted` mean, those of the manifest first. Those of an
+/// instant are called as in its file.
 MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
                           const std::vector<ManifestField>& known,
-                          const std::vector<std::uint32_t>& wanted, const std::string& ending) {
+                          const std::vector<FieldInFile>& wanted, const std::string& ending) {
   const ManifestLevel& told = manifest.levels[level];
   const std::size_t last = manifest.levels.size() - 1;
   MeshOutputReport out{"level " + std::to_string(level) + " of " + std::to_string(last) + ", " +
@@ -113,9 +232,10 @@ MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
   std::vector<ManifestField> fields;
   LevelError error = told.error.value_or(LevelError());
   error.fields.clear();
-  for (const std::uint32_t f : wanted) {
+  for (const auto& [f, name, isInstant] : wanted) {
     if (!holdsFields(ending, known[f].association)) continue;
     fields.push_back(known[f]);
+    fields.back().name = name;
     if (told.error && f < told.error->fields.size()) error.fields.push_back(told.error->fields[f]);
   }
   out.json["fields"] = writtenFieldsJson(fields, ending);
@@ -125,8 +245,12 @@ MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
 
 Status extract(const ParsedWords& parsed, Console& console) {
   const auto input = parsed.get<std::string>("LOG");
-  const Result<MeshOutput> output = meshOutputOf(parsed, input);
+  const Result<MeshOutput> output =
+      meshOutputOf(parsed, input, std::string(kWrittenEndings) + " " + kCollection);
   if (!output) return std::unexpected(output.error());
+  if (output->isStandardOutput && output->ending == kCollection)
+    throw UsageError(
+        "a .pvd names other files, which the standard output cannot hold; give -o NAME.pvd");
   const Result<OpenedLog> log = openLog(input);
   if (!log) return std::unexpected(log.error());
 
@@ -137,15 +261,22 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const std::vector<ManifestField> known = fieldsOf(*log, restores);
   const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, known);
   if (!wanted) return std::unexpected(wanted.error());
-  const Result<LatticeMesh> mesh =
-      meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(*wanted));
+  const auto files = filesOf(parsed, *output, known, *wanted);
+  if (!files) return std::unexpected(files.error());
+  std::vector<std::uint32_t> decoded;
+  for (const std::uint32_t f : *wanted)
+    if (std::ranges::any_of(*files, [f](const InstantFile& file) {
+          return std::ranges::find(file.fields, f, &FieldInFile::number) != file.fields.end();
+        }))
+      decoded.push_back(f);
+  Result<LatticeMesh> mesh =
+      meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(decoded));
   if (!mesh) return std::unexpected(mesh.error());
-  const Result<Bytes> bytes = restores ? inputFile(*log, *mesh, *wanted, *output)
-                                       : meshFileBytes(*mesh, output->ending, output->options);
-  if (!bytes) return std::unexpected(bytes.error());
-  MeshOutputReport report = reportOf(log->manifest, *level, known, *wanted, output->ending);
+  const std::string ending = output->ending == kCollection ? ".vtu" : output->ending;
+  MeshOutputReport report = reportOf(log->manifest, *level, known, files->front().fields, ending);
   report.json["input"] = input;
-  return writeMeshOutput(*output, *bytes, report, console);
+  return restores ? writeInput(*log, *mesh, *files, *output, report, console)
+                  : writeFiles(*mesh, decoded, *files, *output, report, console);
 }
 
 }  // namespace
@@ -164,25 +295,32 @@ int runExtract(const Words& words, Console& console) {
       "boundary-error", po::value<double>(),
       "the coarsest level whose boundary is nowhere further than this from the original's, as a "
       "fraction of the diagonal")("fields", po::value<std::string>()->default_value("all"),
-                                  kFieldsHelp);
+                                  kFieldsHelp)(
+      "time", po::value<std::string>(),
+      "of series, whose instants are fields NAME@TIME: those of one time, first or last, called "
+      "NAME; all, or FROM:TO:EVERY, every so many between two times, with -o NAME.pvd; without it "
+      "all instants are fields of one file");
   const ParsedWords parsed(
       words,
       {"extract",
        "extract LOG.qtet (--level K | --tets N | --ratio R | --error NAME=E | --boundary-error E) "
-       "-o OUT",
+       "[--time T] -o OUT",
        "Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk, .msh (Gmsh "
        "2.2) or .usda (OpenUSD), its boundary as\n"
        ".obj, .glb (glTF with Draco) or .drc. .obj holds no fields, .glb and .drc hold those of "
-       "points. Where no level is small enough it is level 0.\n"
+       "points. NAME.pvd (ParaView) names a .vtu for each instant of the log's series, in a new "
+       "folder "
+       "NAME. Where no level is small enough it is level 0.\n"
        "The last level is the input's mesh, with its own numbering and numbers where the log was "
        "made with --keep-order and --lossless.\n"
        "Errors are those that the log tells, measured when it was made (qtet info shows them).\n"
        "--json: output, kind, bytes, level, levels, tetrahedra, vertices and boundaryTriangles of "
        "the level, fields [{name, association,\ncomponents, type}] that the file holds, error as "
-       "in qtet info with the same fields, input.",
+       "in qtet info with the same fields, input; of a .pvd also files [{time, file}].",
        "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error "
        "Density=0.01 -o near.vtu\n"
        "  qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb\n"
+       "  qtet extract wake.qtet --tets 50000 --time 0:1 -o wake.pvd\n"
        "  curl -sL http://HOST/v1/meshes/fin/log | qtet extract - --ratio 0.1 --to vtu -o - "
        ">c.vtu\n"},
       options, {"LOG"});

@@ -107,14 +107,18 @@ struct MeshOutputReport {
   OrderedJson json;  ///< the members beside `output`, `kind` and `bytes`
 };
 
-/// The output that -o and --to name, checked as checkOutput does. Throws UsageError, also where
-/// --json and the file both want the standard output.
-[[nodiscard]] Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input);
+/// The output that -o and --to name, checked as checkOutput does; `endings` are those that it may
+/// have. Throws UsageError, also where --json and the file both want the standard output.
+[[nodiscard]] Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input,
+                                              const std::string& endings = kWrittenEndings);
 
 /// Writes the file whole or not at all, and reports it on the standard output: the sentence, or
 /// with --json one object. Where the file is the standard output the sentence is a note.
 [[nodiscard]] Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> bytes,
                                      const MeshOutputReport& report, Console& console);
+/// The report alone, about a file of so many bytes that is written.
+void reportMeshOutput(const MeshOutput& output, std::uint64_t bytes, const MeshOutputReport& report,
+                      Console& console);
 
 /// [{name, association, components, type}] of the fields that a file of this kind holds; `Field` is
 /// MeshField or ManifestField.

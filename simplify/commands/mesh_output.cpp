@@ -16,7 +16,8 @@ void addMeshOutputOptions(boost::program_options::options_description& options) 
       "json", "print one JSON object");
 }
 
-Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input) {
+Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input,
+                                const std::string& endings) {
   MeshOutput out{parsed.get<std::string>("output"), {}, false, parsed.has("json")};
   out.isStandardOutput = out.file == "-";
   if (out.isStandardOutput && out.asJson)
@@ -39,8 +40,8 @@ Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& in
   std::filesystem::path judged = out.isStandardOutput ? "standard-output" : out.file;
   judged.replace_extension(out.ending);
   if (Status checked = checkOutput(
-          out.isStandardOutput ? std::filesystem::temp_directory_path() / judged : judged,
-          kWrittenEndings, input);
+          out.isStandardOutput ? std::filesystem::temp_directory_path() / judged : judged, endings,
+          input);
       !checked)
     return std::unexpected(checked.error());
   if (!out.isStandardOutput && judged != out.file) {
@@ -62,16 +63,20 @@ Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> b
     return {};
   }
   if (Status written = writeFileAtomically(output.file, bytes); !written) return written;
+  reportMeshOutput(output, bytes.size(), report, console);
+  return {};
+}
+
+void reportMeshOutput(const MeshOutput& output, std::uint64_t bytes, const MeshOutputReport& report,
+                      Console& console) {
   if (!output.asJson) {
-    console.out << output.file.string() << ": " << report.sentence << ", " << bytes.size()
-                << " bytes\n";
-    return {};
+    console.out << output.file.string() << ": " << report.sentence << ", " << bytes << " bytes\n";
+    return;
   }
   OrderedJson json = {
-      {"output", output.file.string()}, {"kind", output.ending.substr(1)}, {"bytes", bytes.size()}};
+      {"output", output.file.string()}, {"kind", output.ending.substr(1)}, {"bytes", bytes}};
   json.update(report.json);
   printJson(json, console);
-  return {};
 }
 
 }  // namespace qtet

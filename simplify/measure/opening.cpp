@@ -5,8 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "proto/limits.h"
+#include "proto/series.h"
 #include "simplify/mesh/vector3.h"
 
 namespace qtet {
@@ -219,18 +222,30 @@ class Scene {
   Vector3 seenHigh_{kEverywhere, kEverywhere, kEverywhere};
 };
 
+/// Those that an opening can name: of a series the first instant alone, which a viewer shows first.
+std::vector<std::size_t> openingFields(const LatticeMesh& mesh) {
+  std::vector<bool> isLater(mesh.fields.size());
+  for (const Series& series : seriesOf(std::span(mesh.fields)))
+    for (const std::size_t f : std::span(series.fields).subspan(1)) isLater[f] = true;
+  std::vector<std::size_t> out;
+  for (std::size_t f = 0; f < mesh.fields.size() && f <= kMaxOpeningField; ++f)
+    if (!isLater[f]) out.push_back(f);
+  return out;
+}
+
 }  // namespace
 
 std::optional<Opening> openingOf(const LatticeMesh& mesh, const std::optional<Focus>& focus) {
   const Scene scene(mesh, focus);
+  const std::vector<std::size_t> fields = openingFields(mesh);
   Opening best;
   double most = 0;
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+  for (const std::size_t f : fields)
     if (const double colors = scene.colorsOnBoundary(Values(mesh, f)); colors > most)
       most = colors, best.field = static_cast<std::uint8_t>(f);
   if (most < kUniform && !focus) {
     most *= kBetter;
-    for (std::size_t f = 0; f < mesh.fields.size(); ++f)
+    for (const std::size_t f : fields)
       for (std::uint8_t axis = 0; axis < 3; ++axis)
         if (const double colors = scene.colorsOnCut(Values(mesh, f), axis); colors > most)
           most = colors, best = {static_cast<std::uint8_t>(f), axis};

@@ -1,5 +1,7 @@
 #include "simplify/series/series.h"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 namespace qtet {

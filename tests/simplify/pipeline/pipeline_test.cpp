@@ -179,7 +179,8 @@ TEST(Arrays, whatALogCannotHoldIsNamed) {
           [](TetMesh& m) { m.fields[2].values[5] = std::numeric_limits<double>::quiet_NaN(); });
   refused("two point fields are called Swirl", [](TetMesh& m) { m.fields[0].name = "Swirl"; });
   refused(
-      "more than 256 fields", [](TetMesh& m) { m.fields.resize(257); }, ErrorCode::kLimitExceeded);
+      "more than 1024 fields", [](TetMesh& m) { m.fields.resize(1025); },
+      ErrorCode::kLimitExceeded);
 }
 
 }  // namespace

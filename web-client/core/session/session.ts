@@ -397,7 +397,7 @@ export class Session implements TransportHandlers {
     this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
   }
 
-  /** Nothing more comes ahead. What is shown stays and goes on. `fields` have lost a block. */
+  /** Nothing more comes ahead. The shown field goes on. `fields` have lost a block. */
   private aheadFailed(thrown: unknown, fields: readonly number[] = []): void {
     for (const field of fields) this.stream.giveUp(this.assembler.fieldKeys[field]!);
     const code = errorCode(thrown);

@@ -1,0 +1,45 @@
+// Series: fields that are the instants of one quantity, called NAME@TIME.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proto/field_key.h"
+
+namespace qtet {
+
+struct Series {
+  std::string name;
+  std::vector<std::size_t> fields;  ///< numbers of the instants' fields, by time
+  std::vector<double> times;        ///< ascending, as many
+};
+
+/// The series of two and more instants, in the order of their first fields. Instants agree in
+/// association, components and type; of two with one time the first counts.
+template <class Field>
+[[nodiscard]] std::vector<Series> seriesOf(std::span<const Field> fields) {
+  std::vector<Series> out;
+  std::vector<const Field*> firsts;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const auto name = instantName(fields[f].name);
+    if (!name) continue;
+    std::size_t s = 0;
+    while (s < out.size() &&
+           !(out[s].name == name->series && firsts[s]->association == fields[f].association &&
+             firsts[s]->components == fields[f].components && firsts[s]->type == fields[f].type))
+      ++s;
+    if (s == out.size())
+      out.push_back({std::string(name->series), {}, {}}), firsts.push_back(&fields[f]);
+    const auto at = std::ranges::lower_bound(out[s].times, name->time);
+    if (at != out[s].times.end() && *at == name->time) continue;
+    out[s].fields.insert(out[s].fields.begin() + (at - out[s].times.begin()), f);
+    out[s].times.insert(at, name->time);
+  }
+  std::erase_if(out, [](const Series& series) { return series.fields.size() < 2; });
+  return out;
+}
+
+}  // namespace qtet
