@@ -1,8 +1,14 @@
 // `qtet page`: one HTML file with the viewer and a log in it.
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <charconv>
+#include <numeric>
+#include <span>
 
 #include "codec/files/atomic_file.h"
+#include "codec/refine/log_edit.h"
+#include "proto/series.h"
+#include "simplify/commands/columns.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
@@ -12,6 +18,7 @@
 #include "simplify/publish/publish_site.h"
 #include "simplify/publish/single_page.h"
 #include "simplify/read/process/guarded_folder.h"
+#include "simplify/series/fewer_instants.h"
 
 namespace qtet {
 namespace {
@@ -40,6 +47,53 @@ std::optional<std::uint64_t> maxBytesOf(const ParsedWords& parsed) {
   return number * factor;
 }
 
+/// A page, the log that it was made of, and that log's instants where some were left out.
+struct MadePage {
+  Result<SinglePage> page;
+  fs::path log;
+  std::string instants{};  ///< "; it holds 13 of 50 instants"
+
+  [[nodiscard]] bool isCut() const {
+    return page ? page->chunks > 0 : page.error().code == ErrorCode::kLimitExceeded;
+  }
+};
+
+/// Instants of the longest series, of these fields alone.
+std::size_t instantsOf(const Manifest& manifest, const std::vector<std::uint32_t>& fields) {
+  std::vector<ManifestField> kept;
+  for (const std::uint32_t f : fields) kept.push_back(manifest.fields[f]);
+  std::size_t out = 0;
+  for (const Series& series : seriesOf(std::span<const ManifestField>(kept)))
+    out = std::max(out, series.fields.size());
+  return out;
+}
+
+/// Where the log does not fit, instants of its series go before levels do.
+Result<MadePage> fittingPage(const fs::path& folder, const fs::path& log, const fs::path& viewer,
+                             const SinglePageOptions& options) {
+  MadePage out{pageOf(folder, log, viewer, options), log};
+  if (!out.isCut()) return out;
+  const Result<OpenedLog> whole = openLog(log);
+  if (!whole) return std::unexpected(whole.error());
+  const Manifest& manifest = whole->manifest;
+  std::vector<std::uint32_t> all(manifest.fields.size());
+  std::iota(all.begin(), all.end(), 0u);
+  for (const auto& kept : fewerInstants(manifest, whole->file.index())) {
+    const fs::path part = folder / std::to_string(kept.size());
+    const Result<Bytes> bytes = withFields(whole->file, kept, {});
+    if (!bytes) return std::unexpected(bytes.error());
+    std::error_code code;
+    fs::create_directory(part, code);
+    if (Status s = writeFileAtomically(part / log.filename(), *bytes); !s)
+      return std::unexpected(s.error());
+    out = {pageOf(part, part / log.filename(), viewer, options), part / log.filename(),
+           "; it holds " + grouped(instantsOf(manifest, kept)) + " of " +
+               grouped(instantsOf(manifest, all)) + " instants"};
+    if (!out.isCut()) break;
+  }
+  return out;
+}
+
 /// "it holds 20,145 of 212,544 tetrahedra: boundary within 0.3 % of the diagonal, T rms 0.2 %".
 Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
   const Result<OpenedLog> log = openLog(path);
@@ -56,8 +110,11 @@ Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
                     grouped(levels.back().tetrahedra) + " tetrahedra";
   if (error == nullptr) return out;
   out += ": boundary within " + percentText(error->boundaryDistance()) + " of the diagonal";
-  for (std::size_t f = 0; f < error->fields.size(); ++f)
+  const std::size_t shown = std::min(kShownFields, error->fields.size());
+  for (std::size_t f = 0; f < shown; ++f)
     out += ", " + fieldKey(log->manifest, f) + " rms " + percentText(error->fields[f].rms);
+  if (shown < error->fields.size())
+    out += ", and " + std::to_string(error->fields.size() - shown) + " more fields";
   return out;
 }
 
@@ -73,7 +130,9 @@ int runPage(const Words& words, Console& console) {
       "view", po::value<std::string>()->default_value(""),
       "what it shows first, as behind the ? of the viewer's address: 'field=p&clip=x:0.5'")(
       "max-bytes", po::value<std::string>(),
-      "cut the log so that the page is no larger: 5000000, 500k, 5M")(
+      "no larger a page: instants of series are left out, every second one first, then fine "
+      "levels; "
+      "5000000, 500k, 5M")(
       "fields", po::value<std::string>()->default_value("all"),
       "of a mesh: all, none, or names between commas, as `qtet simplify --fields` takes them");
   addReadOptions(options);
@@ -92,18 +151,22 @@ int runPage(const Words& words, Console& console) {
     return reportFailure(checked.error(), false, console);
   const SinglePageOptions wanted{maxBytesOf(parsed), parsed.get<std::string>("view")};
   const GuardedFolder folder("page");
-  if (Status made = folder.made(); !made) return reportFailure(made.error(), false, console);
+  if (Status isThere = folder.made(); !isThere)
+    return reportFailure(isThere.error(), false, console);
   const fs::path log = folder.path() / (meshNameOf(input) + ".qtet");
-  if (const int made = provideLog(input, log, parsed, console); made != kExitOk) return made;
+  if (const int provided = provideLog(input, log, parsed, console); provided != kExitOk)
+    return provided;
   const fs::path viewer =
       parsed.has("viewer") ? fs::path(parsed.get<std::string>("viewer")) : installation().viewer;
-  const Result<SinglePage> page = pageOf(folder.path(), log, viewer, wanted);
+  const Result<MadePage> made = fittingPage(folder.path(), log, viewer, wanted);
+  if (!made) return reportFailure(made.error(), false, console);
+  const Result<SinglePage>& page = made->page;
   if (!page) return reportFailure(page.error(), false, console);
-  std::string held;
+  std::string held = made->instants;
   if (page->chunks > 0) {
-    const Result<std::string> part = heldPart(log, page->chunks);
+    const Result<std::string> part = heldPart(made->log, page->chunks);
     if (!part) return reportFailure(part.error(), false, console);
-    held = *part;
+    held += *part;
   }
   if (Status written = writeFileAtomically(output, page->bytes); !written)
     return reportFailure(written.error(), false, console);

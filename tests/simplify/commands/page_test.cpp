@@ -1,5 +1,9 @@
 // `qtet page`: one HTML file of the viewer and a log.
 #include "simplify/publish/single_page.h"
+
+#include <cmath>
+
+#include "simplify/samples/samples.h"
 #include "tests/simplify/commands/tool_run.h"
 
 namespace qtet {
@@ -55,6 +59,31 @@ TEST_F(Page, cutsTheLogToTheBytesThatAreAllowed) {
     EXPECT_LE(fs::file_size(folder_ / "box.html"), most);
   }
   EXPECT_EQ(page("box.qtet -o box.html --max-bytes 5M").out.find("tetrahedra"), std::string::npos);
+}
+
+/// Every second one of five instants stays, then the ends.
+TEST_F(Page, instantsGoBeforeLevels) {
+  TetMesh mesh = boxSample();
+  mesh.fields.clear();
+  for (int instant = 0; instant < 5; ++instant) {
+    MeshField& field = mesh.fields.emplace_back(
+        MeshField{"T@" + std::to_string(instant), 9, "float32", {}, "point"});
+    for (std::size_t i = 0; i < 9 * mesh.points.size(); ++i)
+      field.values.push_back(std::sin(static_cast<double>(i) * (7 + 0.37 * instant)));
+  }
+  write("series.vtu", mesh);
+  ASSERT_EQ(run("simplify series.vtu -o series.qtet --measure none").code, 0);
+  ASSERT_EQ(page("series.qtet -o all.html").code, 0);
+  std::uint64_t most = fs::file_size(folder_ / "all.html");
+  for (const char* held : {"3 of 5 instants", "2 of 5 instants"}) {
+    const Ran ran = page("series.qtet -o some.html --max-bytes " + std::to_string(most - 1));
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.out.find(held), std::string::npos) << ran.out;
+    EXPECT_EQ(ran.out.find("tetrahedra"), std::string::npos) << ran.out;
+    most = fs::file_size(folder_ / "some.html");
+  }
+  const Ran ran = page("series.qtet -o some.html --max-bytes " + std::to_string(most - 1));
+  EXPECT_NE(ran.out.find("2 of 5 instants; it holds"), std::string::npos) << ran.out << ran.err;
 }
 
 TEST_F(Page, whatItCannotTakeIsToldBeforeAnythingIsWritten) {
