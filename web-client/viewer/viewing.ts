@@ -121,12 +121,20 @@ export class Viewing implements LaterHost {
     this.later?.tellWrongParts();
     this.later?.panels.update(this.settings, mesh);
     this.later?.time.update(this.settings, mesh);
+    this.startPlaying();
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     const {limit} = this.settings;
     if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
     this.showDisplay();
     this.showRange();
+  }
+
+  private startPlaying(): void {
+    const {kept, later} = this;
+    if (!kept.playing || !later?.time.isShown) return;
+    kept.playing = false;
+    later.time.isPlaying = true;
   }
 
   // ---- ActionsHost, PanelsHost
@@ -165,6 +173,12 @@ export class Viewing implements LaterHost {
 
   pointAt(point: Vector | null): void {
     this.pointed = point;
+  }
+
+  // ---- TimeHost
+
+  timeChanged(time: number, playing: boolean): void {
+    this.page.dispatch('time-change', {time, playing});
   }
 
   failed(code: string, message: string): void {
