@@ -99,7 +99,7 @@ export class TimeBar {
     this.choose((color && fields[color.field]!.instant?.series) ?? null, fields);
     const wanted = settings.time ?? this.times[0]!.time;
     this.at = nearestTo(this.times, wanted);
-    mesh.ahead = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
+    mesh.playing = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
     const {slider} = this;
     slider.max = String(this.times.length - 1);
     slider.value = String(this.at);
