@@ -54,8 +54,9 @@ void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uin
 /// The opening follows its field, or goes with it.
 void keepOpening(Manifest& manifest, const std::vector<std::uint32_t>& kept) {
   if (!manifest.opening) return;
-  const auto place = std::ranges::find(kept, manifest.opening->field) - kept.begin();
-  if (static_cast<std::size_t>(place) < kept.size() && place <= kMaxOpeningField) {
+  const auto place =
+      static_cast<std::size_t>(std::ranges::find(kept, manifest.opening->field) - kept.begin());
+  if (place < kept.size() && place <= kMaxOpeningField) {
     manifest.opening->field = static_cast<std::uint8_t>(place);
   } else {
     manifest.opening.reset();

@@ -9,9 +9,9 @@
 
 namespace qtet {
 
-/// The fields that stay if every second instant of each series goes, then every second one of the
-/// others, and so on up to the ends of windows (decodingOrder). Each list is ascending, and holds
-/// what its fields are predicted from. Empty where no instant can go.
+/// The fields that stay if every second instant of each series goes. Each further list lacks every
+/// second instant of the one before, up to the ends of windows (decodingOrder). Lists ascend, and
+/// hold what their fields are predicted from. Empty where no instant can go.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> fewerInstants(const Manifest& manifest,
                                                                     const LogIndex& index);
 

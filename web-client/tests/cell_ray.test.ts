@@ -1,6 +1,14 @@
 import {describe, expect, test} from 'vitest';
 import type {Vector} from '../core/protocol/geometry';
-import {along, barycentric, below, placesOf, stretches, type Ray} from '../core/picture/cell_ray';
+import {
+  along,
+  barycentric,
+  below,
+  cellAt,
+  placesOf,
+  stretches,
+  type Ray,
+} from '../core/picture/cell_ray';
 import {cubes} from './cubes';
 
 const {points, tetrahedra} = cubes(4, 10);
@@ -46,6 +54,17 @@ describe('a line through cells', () => {
     expect(below([plane], line, {cell: 3, from: 7, to: 9})).toBeNull();
     expect(below([{normal: [0, 1, 0], offset: -1}], line, {cell: 3, from: 1, to: 9})).toBeNull();
   });
+});
+
+test.each<[Vector]>([[[11.3, 17.7, 3.1]], [[40, 0, 40]], [[40.2, 17.7, 3.1]], [[0, -1e-9, 0]]])(
+  'the cell at %j holdsItOrIsBesideIt',
+  (place) => {
+    expect(Math.min(...barycentric(cells, cellAt(cells, place), place))).toBeGreaterThan(-0.05);
+  },
+);
+
+test('aHoleIsNoCell', () => {
+  expect(cellAt({points, tetrahedra: Uint32Array.of(1, 1, 2, 3)}, [1, 1, 1])).toBe(-1);
 });
 
 describe('the places of a line', () => {

@@ -1,7 +1,8 @@
 import {expect, test} from 'vitest';
 import type {LineValues} from '../core/session/inspector';
 import type {FieldInfo} from '../core/protocol/fields';
-import {tableOf} from '../viewer/panels/line_table';
+import {markSeries} from '../core/protocol/series';
+import {tableOf, timeTableOf} from '../viewer/panels/line_table';
 
 const info = (name: string, components: number): FieldInfo => ({
   name,
@@ -29,6 +30,16 @@ test('eachRowIsAPlaceWithAllFieldsThatAreHere', async () => {
     '"distance","x","y","z","p","a ""b"", x","a ""b"", y"',
     '0,1,2,3,0.3,4,',
     '0.5,1,2,3.5,,,',
+  ]);
+});
+
+test('eachRowOverTimeIsAnInstantWithItsComponents', async () => {
+  const fields = ['u@0', 'u@0.5'].map((name) => ({...info(name, 2), minimum: [0, 0]}));
+  markSeries(fields);
+  expect((await timeTableOf([0, 1], [[1, 2], []], fields).text()).split('\r\n')).toEqual([
+    '"time","u, x","u, y"',
+    '0,1,2',
+    '0.5,,',
   ]);
 });
 

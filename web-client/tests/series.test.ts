@@ -5,6 +5,7 @@ import type {FieldInfo} from '../core/protocol/fields';
 import {
   instantKey,
   instantName,
+  instantsOf,
   markSeries,
   shownInstant,
   showTime,
@@ -30,6 +31,10 @@ describe('a series', () => {
     field('lone@1'),
     field('x@y'),
   );
+
+  test('hasItsInstantsInTheOrderOfTime', () => {
+    expect(instantsOf(fields, 'T')).toEqual([0, 2, 1]);
+  });
 
   test('isTwoInstantsAndMoreWithOneRange', () => {
     expect(fields.map(({instant}) => instant?.time)).toEqual([

@@ -218,6 +218,9 @@ describe('a field ahead', () => {
     receive(...wholeField(1), ...wholeField(2));
     expect([errorsOf(told), state()]).toEqual([['out-of-memory'], 'complete']);
     expect([codec.restarts, codec.chunksApplied]).toEqual([1, 2]);
+    vi.advanceTimersByTime(100);
+    const ended = told.flatMap((its) => (its.type === 'progress' ? [its.aheadEnded] : []));
+    expect(ended.at(-1)).toBe(true);
     expect(kLog.fields.map((_, field) => codec.fieldChunksApplied(field))).toEqual([2, 0, 0, 0]);
   });
 

@@ -38,6 +38,8 @@ let mesh: ShownMesh;
 let bar: TimeBar;
 let root: Part;
 let attributes: Map<string, string>;
+let told: [number, boolean][];
+let follow: (time: number) => void;
 let write: (name: string, value: string | null) => void;
 
 beforeEach(() => {
@@ -48,6 +50,8 @@ beforeEach(() => {
   mesh.manifest = {fields} as Manifest;
   attributes = new Map();
   root = new Part();
+  told = [];
+  follow = () => undefined;
   const read = (name: string): string | null => attributes.get(name) ?? null;
   const apply = (): void => bar.update(settingsFor(mesh, read), mesh);
   write = (name: string, value: string | null): void => {
@@ -58,7 +62,14 @@ beforeEach(() => {
   bar = new TimeBar(
     root as unknown as ParentNode,
     {read, write},
-    {mesh, apply},
+    {
+      mesh,
+      apply,
+      timeChanged: (...change) => {
+        told.push(change);
+        follow(change[0]);
+      },
+    },
     new AbortController().signal,
   );
   apply();
@@ -80,6 +91,27 @@ test('anotherSeriesHasOtherFieldsAheadAndAFieldOfNoneHasNone', () => {
   expect(mesh.ahead).toEqual([2, 3]);
   write('field', 'p');
   expect(mesh.ahead).toEqual([]);
+});
+
+test('eachChangeOfTheTimeAndOfPlayingIsToldOnce', () => {
+  write('range', '0,1');
+  expect(told).toEqual([]);
+  write('time', '0.9');
+  write('time', '1');
+  bar.isPlaying = true;
+  bar.isPlaying = true;
+  bar.step(1);
+  expect(told).toEqual([
+    [1, false],
+    [1, true],
+    [0, false],
+  ]);
+});
+
+test('aListenerMaySetTheTimeThatItIsTold', () => {
+  follow = (time) => write('time', String(time));
+  write('time', '0.9');
+  expect([attributes.get('time'), told]).toEqual(['1', [[1, false]]]);
 });
 
 test('instantsAreLookedUpOnceForASeries', () => {

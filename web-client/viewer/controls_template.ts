@@ -258,6 +258,7 @@ export const kCards = `
   <p class="hint"></p>
   <div class="buttons">
     <button type="button" class="copy-result">Copy</button>
+    <button type="button" class="over-time" hidden>Over time</button>
     <button type="button" class="save-table" hidden>Save as CSV</button>
   </div>
 </section>`;

@@ -26,12 +26,13 @@
 //   projection   "parallel".
 //   camera       six numbers, as the property `cameraState` gives them.
 // Events         load (first picture), progress, refine (a finer picture), complete (the whole mesh
-//                is on the screen), error, camera-change, view-change (an attribute of the view).
-//                `detail` holds the figures, the error, the camera or the attribute.
+//                is on the screen), error, camera-change, view-change (an attribute of the view),
+//                time-change (another instant, or playing begins or ends). `detail` holds the
+//                figures, the error, the camera, the attribute or the time.
 // Slots          poster (shown until the first picture), progress (instead of the viewer's own).
 // Parts          canvas, panel, progress, legend, hint, marks, result, notice.
 // Methods        digest(), pause(), resume(), resetView(), look(direction), picture().
-// Properties     counts, statistics, state, view, cameraState, token.
+// Properties     counts, statistics, state, view, cameraState, playing, token.
 
 import {kNoStatistics, type Statistics} from '../core/decode/statistics';
 import type {Counts} from '../core/protocol/counts';
@@ -58,7 +59,7 @@ export class QtetViewer extends HTMLElement {
   client: Client | null = null;
   private readonly root = this.attachShadow({mode: 'open'});
   private readonly page = pageOf(this, this.root);
-  private readonly kept: Kept = {start: null, paused: false, opened: ''};
+  private readonly kept: Kept = {start: null, paused: false, playing: false, opened: ''};
   /** Exists from the first step on; before it the shadow root is empty. */
   private viewing: Viewing | null = null;
   private bearer = '';
@@ -122,6 +123,16 @@ export class QtetViewer extends HTMLElement {
     const {meshView} = this;
     if (state && meshView) meshView.cameraState = state;
     this.kept.start = meshView ? null : state && checkedCamera(state);
+  }
+
+  /** A series plays. Set before the series is known, it plays from then on. */
+  get playing(): boolean {
+    return this.kept.playing || this.viewing?.later?.time.isPlaying === true;
+  }
+  set playing(playing: boolean) {
+    const time = this.viewing?.later?.time;
+    if (time?.isShown) time.isPlaying = playing;
+    else this.kept.playing = playing;
   }
 
   /** SHA-256 of the decoded mesh (codec/FORMAT.md, "Mesh digest"); empty before there is one. */

@@ -1,6 +1,5 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
-import type {Statistics} from '../core/decode/statistics';
 import type {BaseFigures} from '../core/picture/base_figures';
 import type {Vector} from '../core/protocol/geometry';
 import type {Manifest} from '../core/protocol/manifest';
@@ -25,6 +24,8 @@ import {StreamControl} from './stream_control';
  * change what is shown.
  */
 const kLaterMs = 5000;
+
+type Progress = Extract<FromWorker, {type: 'progress'}>;
 
 export class Viewing implements LaterHost {
   mesh = new ShownMesh();
@@ -121,12 +122,20 @@ export class Viewing implements LaterHost {
     this.later?.tellWrongParts();
     this.later?.panels.update(this.settings, mesh);
     this.later?.time.update(this.settings, mesh);
+    this.startPlaying();
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     const {limit} = this.settings;
     if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
     this.showDisplay();
     this.showRange();
+  }
+
+  private startPlaying(): void {
+    const {kept, later} = this;
+    if (!kept.playing || !later?.time.isShown) return;
+    kept.playing = false;
+    later.time.isPlaying = true;
   }
 
   // ---- ActionsHost, PanelsHost
@@ -167,6 +176,12 @@ export class Viewing implements LaterHost {
     this.pointed = point;
   }
 
+  // ---- TimeHost
+
+  timeChanged(time: number, playing: boolean): void {
+    this.page.dispatch('time-change', {time, playing});
+  }
+
   failed(code: string, message: string): void {
     if (!this.page.element.isConnected) return;
     this.notices.add(code, message);
@@ -188,7 +203,7 @@ export class Viewing implements LaterHost {
       case 'snapshot':
         return this.takePicture(message.snapshot);
       case 'progress':
-        return this.takeProgress(message.statistics, message.here);
+        return this.takeProgress(message);
       case 'state':
         return this.stream.enter(message.state, message.attempt, message.delayMs);
       case 'error':
@@ -211,10 +226,10 @@ export class Viewing implements LaterHost {
     this.apply();
   }
 
-  private takeProgress(statistics: Statistics, here: number[]): void {
-    this.mesh.statistics = statistics;
-    this.mesh.here = here;
+  private takeProgress({statistics, here, aheadEnded}: Progress): void {
+    Object.assign(this.mesh, {statistics, here, aheadEnded});
     this.later?.time.follow();
+    this.later?.panels.inspect.takeProgress();
     this.shell?.progress.show(statistics);
     this.page.dispatch('progress', statistics);
   }

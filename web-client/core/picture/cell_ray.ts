@@ -110,6 +110,46 @@ export function barycentric(
   return [share(0), share(1), share(2), share(3)];
 }
 
+/** A place this near to a cell, in lattice units, may be its own: places are rounded. */
+const kNearby = 0.5;
+
+/** The cell at a place, or else one beside it; -1 if there are no cells. */
+export function cellAt(cells: Cells, place: Vector): number {
+  const count = cells.tetrahedra.length / 4;
+  let nearest = Infinity;
+  for (let cell = 0; cell < count; ++cell)
+    nearest = Math.min(nearest, boxDistance(cells, cell, place));
+  let best = -1;
+  let most = -Infinity;
+  for (let cell = 0; cell < count; ++cell) {
+    if (boxDistance(cells, cell, place) > Math.max(nearest, kNearby)) continue;
+    const least = Math.min(...barycentric(cells, cell, place));
+    if (least > most) [best, most] = [cell, least];
+  }
+  return best;
+}
+
+/** The largest distance along an axis from the cell's box to a place; Infinity for a hole. */
+function boxDistance({points, tetrahedra}: Cells, cell: number, place: Vector): number {
+  const a = 3 * tetrahedra[4 * cell]!,
+    b = 3 * tetrahedra[4 * cell + 1]!,
+    c = 3 * tetrahedra[4 * cell + 2]!,
+    d = 3 * tetrahedra[4 * cell + 3]!;
+  if (a === b) return Infinity;
+  let most = 0;
+  for (let axis = 0; axis < 3; ++axis) {
+    const x = place[axis]!;
+    const [p, q, r, s] = [
+      points[a + axis]!,
+      points[b + axis]!,
+      points[c + axis]!,
+      points[d + axis]!,
+    ];
+    most = Math.max(most, Math.min(p, q, r, s) - x, x - Math.max(p, q, r, s));
+  }
+  return most;
+}
+
 export function along({origin, direction}: Ray, t: number): Vector {
   return [origin[0] + t * direction[0], origin[1] + t * direction[1], origin[2] + t * direction[2]];
 }

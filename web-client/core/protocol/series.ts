@@ -120,6 +120,14 @@ export function fieldOfSeries(fields: readonly FieldInfo[], key: string): number
   return fields.findIndex(({instant}) => instant?.isShown === true && instant.series === key);
 }
 
+/** The fields that are the instants of the series with this key, by time. */
+export function instantsOf(fields: readonly FieldInfo[], key: string): number[] {
+  const timeOf = (field: number): number => fields[field]!.instant!.time;
+  return fields
+    .flatMap(({instant}, field) => (instant?.series === key ? [field] : []))
+    .sort((a, b) => timeOf(a) - timeOf(b));
+}
+
 /** The instant that is shown of the field's series; a field of none is itself. */
 export function shownInstant(fields: readonly FieldInfo[], field: number): number {
   const instant = fields[field]?.instant;

@@ -104,6 +104,10 @@ export class Client {
   line(from: Vector, to: Vector): Promise<LineValues[]> {
     return this.ask({type: 'line', from, to});
   }
+  /** Inspector.values: by field its values at a lattice place. */
+  values(place: Vector, fields: readonly number[]): Promise<number[][]> {
+    return this.ask({type: 'values', place, fields});
+  }
   /** Counts the values of the coloured field, as they are now; null while there are none. */
   histogram(axis: Axis): Promise<Histogram | null> {
     return this.ask({type: 'histogram', axis});

@@ -8,6 +8,7 @@ import {
   along,
   barycentric,
   below,
+  cellAt,
   placesOf,
   stretches,
   valueAt,
@@ -21,6 +22,7 @@ import {meshArrays} from '../picture/mesh_arrays';
 import type {Cells} from '../picture/section';
 import type {Vector} from '../protocol/geometry';
 import type {FieldInfo} from '../protocol/fields';
+import type {Manifest} from '../protocol/manifest';
 
 /** The values of one field at a place, one a component; NaN if missing. */
 export interface FieldValue {
@@ -58,6 +60,9 @@ export interface LineValues {
 }
 
 export class Inspector {
+  /** The cell of the last place that `values` was asked about, in which mesh. */
+  private found: {key: string; manifest: Manifest | null; cell: number} | null = null;
+
   constructor(private readonly assembler: Assembler) {}
 
   /** The first visible thing that `ray` (lattice coordinates) meets; null if there is none. */
@@ -109,6 +114,32 @@ export class Inspector {
     });
   }
 
+  /**
+   * By field its values at a lattice place, one a component; none if the field is not here for all
+   * of the mesh. A place beside the mesh has those of the cell next to it.
+   */
+  values(place: Vector, fields: readonly number[]): number[][] {
+    const mesh = meshArrays(this.assembler);
+    const cell = mesh ? this.cellOf(mesh, place) : -1;
+    if (!mesh || cell < 0) return fields.map(() => []);
+    const inside = barycentric(mesh, cell, place).map((share) => Math.max(0, share));
+    const sum = inside.reduce((a, b) => a + b);
+    const shares = inside.map((share) => share / sum);
+    const whole = new Set(this.assembler.wholeFields);
+    return fields.map((field) =>
+      whole.has(field) ? (this.valuesOf(mesh, cell, shares, field) ?? []) : [],
+    );
+  }
+
+  /** Looks through all cells once for a place and a mesh. */
+  private cellOf(cells: Cells, place: Vector): number {
+    const {codec, manifest} = this.assembler;
+    const key = JSON.stringify([place, codec.chunksApplied]);
+    if (this.found?.key !== key || this.found.manifest !== manifest)
+      this.found = {key, manifest, cell: cellAt(cells, place)};
+    return this.found.cell;
+  }
+
   /** Counts the values of the coloured field; null while there are none. */
   histogram(axis: Axis, {color}: Display): Histogram | null {
     const mesh = meshArrays(this.assembler);
@@ -145,19 +176,20 @@ export class Inspector {
   }
 
   private fieldsAt(cells: Cells, cell: number, lattice: Vector): FieldValue[] {
-    const {codec, manifest} = this.assembler;
     const shares = barycentric(cells, cell, lattice);
-    const corners = cornersOf(cells, cell);
-    const fields: FieldValue[] = [];
-    manifest!.fields.forEach((info, field) => {
-      const values = codec.field(field, info.components);
-      if (values)
-        fields.push({
-          field,
-          values: components(info, values, info.association === 'cell' ? [cell] : corners, shares),
-        });
+    return this.assembler.manifest!.fields.flatMap((_, field) => {
+      const values = this.valuesOf(cells, cell, shares, field);
+      return values ? [{field, values}] : [];
     });
-    return fields;
+  }
+
+  /** One a component; null while the field has no values. */
+  private valuesOf(cells: Cells, cell: number, shares: number[], field: number): number[] | null {
+    const {codec, manifest} = this.assembler;
+    const info = manifest!.fields[field]!;
+    const values = codec.field(field, info.components);
+    const tuples = info.association === 'cell' ? [cell] : cornersOf(cells, cell);
+    return values && components(info, values, tuples, shares);
   }
 }
 

@@ -18,7 +18,7 @@ export class RequestedPart {
   /** Fields that may be shown soon. They come and are decoded behind all else. */
   ahead: readonly number[] = [];
   /** Something ahead has failed: each field waits until it is shown. */
-  private isAheadEnded = false;
+  isAheadEnded = false;
   limit: Limit = kFull;
   /** The time that series begin with; null: the first. */
   private time: number | null = null;

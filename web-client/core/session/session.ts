@@ -397,7 +397,7 @@ export class Session implements TransportHandlers {
     this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
   }
 
-  /** Nothing more comes ahead. The shown field goes on. `fields` have lost a block. */
+  /** Nothing more comes ahead. The shown mesh stays and goes on. `fields` have lost a block. */
   private aheadFailed(thrown: unknown, fields: readonly number[] = []): void {
     for (const field of fields) this.stream.giveUp(this.assembler.fieldKeys[field]!);
     const code = errorCode(thrown);
@@ -405,6 +405,7 @@ export class Session implements TransportHandlers {
     const cause = isMemory ? kNoRoomAhead : errorText(thrown).replace(/\.?$/, '.');
     if (this.requested.endAhead())
       this.send({type: 'error', code, message: `${cause}${kWithoutAhead}`});
+    this.progress.changed();
     if (isMemory) this.restart(() => undefined);
   }
 
@@ -478,8 +479,13 @@ export class Session implements TransportHandlers {
 
   private sendProgress(): void {
     const statistics = this.requested.statistics;
-    const here = this.assembler.wholeFields;
-    this.send({type: 'progress', statistics, received: this.stream.receivedBytes, here});
+    this.send({
+      type: 'progress',
+      statistics,
+      received: this.stream.receivedBytes,
+      here: this.assembler.wholeFields,
+      aheadEnded: this.requested.isAheadEnded,
+    });
   }
 }
 

@@ -127,6 +127,7 @@ function obey(
     case 'pick':
     case 'probe':
     case 'line':
+    case 'values':
     case 'histogram':
       return void its
         .inspector()
@@ -146,7 +147,7 @@ function obey(
 function answered(
   inspector: Inspector,
   display: Display,
-  question: Extract<Question, {type: 'pick' | 'probe' | 'line' | 'histogram'}>,
+  question: Extract<Question, {type: 'pick' | 'probe' | 'line' | 'values' | 'histogram'}>,
 ): Answer {
   switch (question.type) {
     case 'pick':
@@ -155,6 +156,8 @@ function answered(
       return inspector.probe(question.from, question.to, display);
     case 'line':
       return inspector.line(question.from, question.to, display);
+    case 'values':
+      return inspector.values(question.place, question.fields);
     case 'histogram':
       return inspector.histogram(question.axis, display);
   }

@@ -55,6 +55,8 @@ export type Question =
   | {type: 'pick'; ray: Ray}
   | {type: 'probe'; from: Vector; to: Vector}
   | {type: 'line'; from: Vector; to: Vector}
+  /** Asks for fields at a lattice place. */
+  | {type: 'values'; place: Vector; fields: readonly number[]}
   /** Counts the values of the coloured field. */
   | {type: 'histogram'; axis: Axis}
   /** Asks for a volume with few cells. The page has version `have`. */
@@ -90,7 +92,8 @@ export interface Snapshot extends LayerSoups {
 /** With its run. Messages without one come from before the first start. */
 export type Posted = FromWorker & {run?: number};
 
-export type Answer = string | Pick | Probe | LineValues[] | Histogram | CoarseCells | null;
+export type Answer =
+  string | Pick | Probe | LineValues[] | number[][] | Histogram | CoarseCells | null;
 
 export type FromWorker =
   | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
@@ -105,8 +108,17 @@ export type FromWorker =
    */
   | {type: 'base'; figures: BaseFigures}
   | {type: 'snapshot'; snapshot: Snapshot}
-  /** `here`: the fields whose values are decoded for all of the present mesh. */
-  | {type: 'progress'; statistics: Statistics; received: number; here: number[]}
+  /**
+   * `here`: the fields whose values are decoded for all of the present mesh. `aheadEnded`: an error
+   * keeps fields ahead from coming.
+   */
+  | {
+      type: 'progress';
+      statistics: Statistics;
+      received: number;
+      here: number[];
+      aheadEnded: boolean;
+    }
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
   | {type: 'answer'; id: number; answer: Answer};

@@ -16,6 +16,8 @@ export interface QtetViewerEventMap {
   error: CustomEvent<{code: string; message: string}>;
   /** The camera has come to rest. */
   'camera-change': CustomEvent<CameraState>;
+  /** The time bar shows another instant, or begins or ends to play. */
+  'time-change': CustomEvent<{time: number; playing: boolean}>;
   'view-change': CustomEvent<{name: ViewAttribute; value: string | null}>;
 }
 

@@ -31,6 +31,8 @@ export interface Kept {
   start: CameraState | Direction | null;
   /** The stream was paused before there was one. */
   paused: boolean;
+  /** The series is to play once it has a time bar. */
+  playing: boolean;
   /** The server and the mesh that were opened last. */
   opened: string;
 }

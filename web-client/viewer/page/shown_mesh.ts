@@ -34,8 +34,12 @@ export class ShownMesh {
   statistics: Statistics = kNoStatistics;
   /** The fields that are here for all of the mesh. */
   here: readonly number[] = [];
-  /** Fields that may be shown soon. */
-  ahead: number[] = [];
+  /** Fields that the playing series shows soon. */
+  playing: readonly number[] = [];
+  /** Fields that are plotted over time. */
+  plotted: readonly number[] = [];
+  /** An error keeps the fields ahead from coming. */
+  aheadEnded = false;
   /** The newest picture. */
   snapshot: Snapshot | null = null;
   /** A picture that waits for a view. */
@@ -48,6 +52,11 @@ export class ShownMesh {
   /** The field that is shown if no attribute names one. */
   get firstField(): number {
     return this.manifest?.opening?.field ?? 0;
+  }
+
+  /** Fields that are wanted behind the shown ones. */
+  get ahead(): number[] {
+    return [...new Set([...this.playing, ...this.plotted])];
   }
 
   takeBase({bounds, chord}: BaseFigures): void {

@@ -10,6 +10,7 @@ import type {View} from '../../webgl/view';
 import {formatCount, formatTo, formatValue, resolutionOf} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
+import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
 import {ResultCard} from './result_card';
 
 export type Tool = 'none' | 'point' | 'line';
@@ -25,7 +26,7 @@ const kClickPixels = 5;
 /** Places are shown to this share of the lattice's span. */
 const kPlaceShare = 1e-4;
 
-export interface InspectHost {
+export interface InspectHost extends OverTimeHost {
   readonly client: Client | null;
   readonly view: View | null;
   readonly manifest: Manifest | null;
@@ -33,8 +34,6 @@ export interface InspectHost {
   readonly bounds: number[];
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
-  /** The title of the coloured field, for the plot. */
-  readonly fieldTitle: string;
   announce(text: string): void;
   /** The place that is pointed at, in lattice coordinates; null for none. */
   pointAt(point: Vector | null): void;
@@ -45,6 +44,7 @@ export class Inspect {
   private points: Pick[] = [];
   private pressed: {x: number; y: number} | null = null;
   private readonly card: ResultCard;
+  private readonly overTime: OverTime;
   private readonly marks: SVGSVGElement;
 
   /** Listens on the root, because another canvas may replace this one. */
@@ -57,7 +57,12 @@ export class Inspect {
       (text) => host.announce(text),
       () => this.clear(),
       () => void this.saveTable(),
+      () => void this.overTime.begin(this.points[0]!.lattice),
     );
+    this.overTime = new OverTime(host, {
+      open: (choose, isWanted) => this.openTimePlot(choose, isWanted),
+      close: () => this.card.closePlot(),
+    });
     this.marks = root.querySelector('.marks')!;
     const onCanvas = (
       type: 'pointerdown' | 'pointerup',
@@ -105,6 +110,10 @@ export class Inspect {
 
   clear(): void {
     this.points = [];
+    if (this.overTime.isOpen) {
+      this.overTime.end();
+      this.host.apply();
+    }
     this.card.hide();
     this.hint(kFirstHints[this.tool]);
     this.place();
@@ -115,6 +124,17 @@ export class Inspect {
   refresh(): void {
     const [from, to] = this.points;
     if (this.tool === 'line' && from && to) void this.showLine(from, to);
+  }
+
+  /** Brings the plot over time in line with the attributes. */
+  update(): void {
+    this.overTime.update();
+    this.card.offerOverTime(this.offersOverTime);
+  }
+
+  /** Must be called when more is here. */
+  takeProgress(): void {
+    this.overTime.takeProgress();
   }
 
   /** Must be called when the viewer has another size. */
@@ -170,8 +190,27 @@ export class Inspect {
       if (values.length > 1) rows.push([`${info.name}, magnitude`, format(Math.hypot(...values))]);
     }
     rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
-    this.card.show(`Cell ${formatCount(pick.cell)}`, rows, false);
+    const {isOpen} = this.overTime;
+    this.card.show(`Cell ${formatCount(pick.cell)}`, rows, isOpen);
+    this.card.offerOverTime(this.offersOverTime);
     this.placeCard();
+    if (isOpen) void this.overTime.begin(pick.lattice);
+  }
+
+  private get offersOverTime(): boolean {
+    const {isOffered, isOpen} = this.overTime;
+    return this.tool === 'point' && this.points.length > 0 && isOffered && !isOpen;
+  }
+
+  /** uPlot is loaded with the first plot. */
+  private async openTimePlot(
+    ...[choose, isWanted]: Parameters<TimeCard['open']>
+  ): ReturnType<TimeCard['open']> {
+    const {drawOverTime} = await import('./probe_plot');
+    if (!isWanted()) return null;
+    const plot = this.card.plotBy((root, place) => drawOverTime(root, place, choose));
+    this.placeCard();
+    return plot;
   }
 
   private async showLine(from: Pick, to: Pick): Promise<void> {
@@ -191,8 +230,12 @@ export class Inspect {
 
   private async saveTable(): Promise<void> {
     const {client, manifest} = this.host;
+    const {tableOf, timeTableOf} = await import('./probe_plot'); // the plot has loaded it
+    if (this.overTime.isOpen) {
+      const {instants, values} = this.overTime.table();
+      return save(timeTableOf(instants, values, manifest!.fields), 'over-time.csv');
+    }
     const [from, to] = this.points.map(({lattice}) => lattice);
-    const {tableOf} = await import('./probe_plot'); // the plot has loaded it
     const places = await client!.line(from!, to!);
     save(tableOf(places, manifest!.fields), 'line.csv');
   }

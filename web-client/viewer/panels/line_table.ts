@@ -1,4 +1,4 @@
-// A line's places and values as CSV.
+// A line's places and values, and a point's values over time, as CSV.
 
 import type {LineValues} from '../../core/session/inspector';
 import type {FieldInfo} from '../../core/protocol/fields';
@@ -17,7 +17,30 @@ export function tableOf(places: readonly LineValues[], infos: readonly FieldInfo
     const values = fields.flatMap((its) => its.values);
     return [at, ...position, ...titles.map((_, i) => values[i] ?? NaN)];
   });
-  const table = [['distance', 'x', 'y', 'z', ...titles], ...rows];
+  return csvOf([['distance', 'x', 'y', 'z', ...titles], ...rows]);
+}
+
+/**
+ * Each row is an instant: its time, and each component. `values` holds none of an instant that is
+ * not here.
+ */
+export function timeTableOf(
+  instants: readonly number[],
+  values: readonly number[][],
+  infos: readonly FieldInfo[],
+): Blob {
+  const field = instants[0]!;
+  const titles = infos[field]!.minimum.map((_, component) =>
+    scalarTitle({field, component}, infos),
+  );
+  const rows = instants.map((instant, i) => [
+    infos[instant]!.instant!.time,
+    ...titles.map((_, component) => values[i]![component] ?? NaN),
+  ]);
+  return csvOf([['time', ...titles], ...rows]);
+}
+
+function csvOf(table: (string | number)[][]): Blob {
   return new Blob([table.map((row) => row.map(cell).join(',')).join('\r\n')], {type: 'text/csv'});
 }
 

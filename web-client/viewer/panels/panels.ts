@@ -2,6 +2,7 @@
 // together.
 
 import {fieldLayers} from '../../core/layers/layers';
+import type {Scalar} from '../../core/picture/field_scale';
 import {kMaxPlanes} from '../../core/picture/display';
 import type {Vector} from '../../core/protocol/geometry';
 import type {Client} from '../../core/session/client';
@@ -29,6 +30,8 @@ export interface PanelsHost {
   readonly client: Client;
   readonly view: View | null;
   readonly mesh: ShownMesh;
+  /** Brings everything in line with the attributes and the mesh. */
+  apply(): void;
   /** The place that is pointed at, in lattice coordinates; null for none. */
   pointAt(point: Vector | null): void;
 }
@@ -89,6 +92,14 @@ export class Panels {
       get middle() {
         return cards.middle;
       },
+      get mesh() {
+        return host.mesh;
+      },
+      get color() {
+        return colorOf(page, host.mesh);
+      },
+      apply: () => host.apply(),
+      showTime: (text) => page.write('time', text),
       get fieldTitle() {
         return fieldTitle(page, host.mesh);
       },
@@ -106,6 +117,7 @@ export class Panels {
     const {manifest, bounds, firstField, snapshot} = mesh;
     const known: Scene | null = manifest && {manifest, bounds, firstField};
     for (const panel of this.simple) panel.update(settings, known);
+    this.inspect.update();
     this.handles.update(settings.planes, snapshot ? bounds : []);
   }
 
@@ -144,9 +156,13 @@ export class Panels {
   }
 }
 
-function fieldTitle({read}: Pick<Page, 'read'>, {manifest, firstField}: ShownMesh): string {
-  const color = manifest && shownScalar(read('field'), manifest.fields, firstField);
-  return manifest && color ? scalarTitle(color, manifest.fields) : '';
+function fieldTitle(page: Pick<Page, 'read'>, mesh: ShownMesh): string {
+  const color = colorOf(page, mesh);
+  return color ? scalarTitle(color, mesh.manifest!.fields) : '';
+}
+
+function colorOf({read}: Pick<Page, 'read'>, {manifest, firstField}: ShownMesh): Scalar | null {
+  return manifest && shownScalar(read('field'), manifest.fields, firstField);
 }
 
 /** The mesh as it is now: coarser and finer start from it. */

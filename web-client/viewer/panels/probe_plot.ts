@@ -1,5 +1,5 @@
-// A field along a line, drawn by uPlot, and all fields as a table. It is loaded at the first
-// request.
+// A field along a line or over time, drawn by uPlot, and the values as a table. It is loaded at the
+// first request.
 
 import uPlot from 'uplot';
 import plotStyles from 'uplot/dist/uPlot.min.css?inline';
@@ -7,11 +7,29 @@ import type {Probe} from '../../core/session/inspector';
 import {formatTo} from '../page/format';
 import {adopt} from '../page/trusted';
 
-export {tableOf} from './line_table';
+export {tableOf, timeTableOf} from './line_table';
 
 const kHeight = 170;
-/** The readout shows this share of the line and of the values' range. */
+/** The readout shows this share of the ranges. */
 const kShare = 1e-4;
+
+interface Curve {
+  at: readonly number[];
+  values: readonly number[];
+  title: string;
+}
+
+export interface TimeCurve extends Curve {
+  /** A line across the plot marks it. */
+  time: number;
+  /** The text while no value is pointed at. */
+  status: string;
+}
+
+export interface TimePlot {
+  show(curve: TimeCurve): void;
+  destroy(): void;
+}
 
 /**
  * Two values at one distance are a jump. The distances ascend, as uPlot requires. Missing values
@@ -23,9 +41,51 @@ export function drawProbe(
   probe: Probe,
   title: string,
 ): {destroy(): void} {
+  const curve = {...probe, title};
+  const plot = draw(root, place, curve, {
+    points: {show: false},
+    say: (i) => (i == null ? title : readout(curve, i)),
+  });
+  place.setAttribute('aria-label', `${title} along the line`);
+  return {destroy: () => plot.destroy()};
+}
+
+/** `choose` is called with the instant that was clicked. */
+export function drawOverTime(
+  root: ShadowRoot,
+  place: HTMLElement,
+  choose: (i: number) => void,
+): TimePlot {
+  let curve: TimeCurve = {at: [], values: [], title: '', time: NaN, status: ''};
+  const say = (i: number | null | undefined): string =>
+    i == null ? curve.status : readout(curve, i);
+  const plot = draw(root, place, curve, {
+    points: {show: true, size: 4},
+    say,
+    mark: () => curve.time,
+  });
+  plot.over.addEventListener('click', ({offsetX}) => choose(plot.posToIdx(offsetX)));
+  return {
+    show: (next) => {
+      curve = next;
+      place.setAttribute('aria-label', `${curve.title} over time`);
+      plot.setData(dataOf(curve));
+      readoutOf(place).textContent = say(plot.cursor.idx);
+    },
+    destroy: () => plot.destroy(),
+  };
+}
+
+interface Looks {
+  points: uPlot.Series.Points;
+  /** The text for the value that is pointed at. */
+  say(i: number | null | undefined): string;
+  /** A line across the plot stands there. */
+  mark?(): number;
+}
+
+function draw(root: ShadowRoot, place: HTMLElement, curve: Curve, looks: Looks): uPlot {
   adopt(root, plotStyles);
-  const known = probe.values.filter((value) => !Number.isNaN(value));
-  const resolution = kShare * (Math.max(...known) - Math.min(...known)) || kShare;
   const style = getComputedStyle(root.host);
   const ink = style.getPropertyValue('--ink-soft').trim();
   const axis: uPlot.Axis = {
@@ -35,11 +95,8 @@ export function drawProbe(
     font: '12px system-ui',
     values: (_self, ticks, _axis, _space, step) => ticks.map((tick) => formatTo(tick, step)),
   };
-  const data: uPlot.AlignedData = [
-    probe.at,
-    probe.values.map((value) => (Number.isNaN(value) ? null : value)),
-  ];
-  const plot = new uPlot(
+  place.setAttribute('role', 'img');
+  return new uPlot(
     {
       width: place.clientWidth,
       height: kHeight,
@@ -53,30 +110,49 @@ export function drawProbe(
       series: [
         {},
         {
-          label: title,
+          label: curve.title,
           stroke: style.getPropertyValue('--accent').trim(),
           width: 2,
-          points: {show: false},
+          points: looks.points,
         },
       ],
       hooks: {
-        setCursor: [
-          (self) => {
-            const i = self.cursor.idx;
-            const readout = place.parentElement!.querySelector('.hint')!;
-            readout.textContent =
-              i == null
-                ? title
-                : `${title} ${formatTo(probe.values[i]!, resolution)} at ` +
-                  formatTo(probe.at[i]!, kShare * probe.length);
-          },
-        ],
+        setCursor: [(self) => void (readoutOf(place).textContent = looks.say(self.cursor.idx))],
+        draw: [(self) => drawMark(self, looks.mark?.() ?? NaN, ink)],
       },
     },
-    data,
+    dataOf(curve),
     place,
   );
-  place.setAttribute('role', 'img');
-  place.setAttribute('aria-label', `${title} along the line`);
-  return {destroy: () => plot.destroy()};
+}
+
+const dataOf = ({at, values}: Curve): uPlot.AlignedData => [
+  [...at],
+  values.map((value) => (Number.isNaN(value) ? null : value)),
+];
+
+const readoutOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.hint')!;
+
+function readout({at, values, title}: Curve, i: number): string {
+  const known = values.filter((value) => !Number.isNaN(value));
+  return (
+    `${title} ${formatTo(values[i]!, resolutionIn(known))} at ` + formatTo(at[i]!, resolutionIn(at))
+  );
+}
+
+const resolutionIn = (values: readonly number[]): number =>
+  values.length > 0 ? kShare * (Math.max(...values) - Math.min(...values)) || kShare : kShare;
+
+function drawMark(plot: uPlot, at: number, ink: string): void {
+  const {ctx, bbox} = plot;
+  const x = plot.valToPos(at, 'x', true);
+  if (!(x >= bbox.left && x <= bbox.left + bbox.width)) return;
+  ctx.save();
+  ctx.strokeStyle = ink;
+  ctx.lineWidth = devicePixelRatio;
+  ctx.beginPath();
+  ctx.moveTo(x, bbox.top);
+  ctx.lineTo(x, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.restore();
 }

@@ -5,24 +5,33 @@ import type {Probe} from '../../core/session/inspector';
 import {placeCard, type Point, type Surroundings} from '../page/card_place';
 import {find, onClick} from '../page/find';
 
+interface Plot {
+  destroy(): void;
+}
+
 export class ResultCard {
   private readonly card: HTMLElement;
-  private plot: {destroy(): void} | null = null;
+  private plot: Plot | null = null;
   /** The text to copy. */
   private text = '';
   /** The user has chosen the card's place. */
   private dragged = false;
 
-  /** `closed` is called when the user closes it, `saveTable` when the line is to be saved. */
+  /**
+   * `closed` is called when the user closes it, `saveTable` when the plot's values are to be saved,
+   * `overTime` when they are wanted over time.
+   */
   constructor(
     private readonly root: ShadowRoot,
     private readonly announce: (text: string) => void,
     closed: () => void,
     saveTable: () => void,
+    overTime: () => void,
   ) {
     this.card = find(root, '.result');
     onClick(root, '.copy-result', () => void this.copy());
     onClick(root, '.save-table', saveTable);
+    onClick(root, '.over-time', overTime);
     onClick(root, '.close-result', closed);
     find(this.card, 'h2').addEventListener('pointerdown', (event) => this.drag(event));
   }
@@ -34,6 +43,7 @@ export class ResultCard {
   /** Opens it. `hasPlot` keeps room for one. */
   show(title: string, rows: [string, string][], hasPlot: boolean): void {
     this.endPlot();
+    this.offerOverTime(false);
     this.card.hidden = false;
     find(this.card, '.plot').hidden = !hasPlot;
     this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
@@ -49,6 +59,11 @@ export class ResultCard {
       }),
     );
     this.announce([title, ...rows.map((row) => row.join(' '))].join('. '));
+  }
+
+  /** Offers the plot over time, or not. */
+  offerOverTime(isOffered: boolean): void {
+    find(this.card, '.over-time').hidden = !isOffered;
   }
 
   /** Moves it to the best place, or keeps the one that the user has chosen. */
@@ -69,9 +84,24 @@ export class ResultCard {
   /** Draws the field along a line. uPlot is loaded with the first plot. */
   async drawPlot(probe: Probe, title: string): Promise<void> {
     const {drawProbe} = await import('./probe_plot');
+    this.plotBy((root, place) => drawProbe(root, place, probe, title));
+  }
+
+  /** Makes room for what `draw` draws. */
+  plotBy<Its extends Plot>(draw: (root: ShadowRoot, place: HTMLElement) => Its): Its {
     this.endPlot();
-    this.plot = drawProbe(this.root, find(this.card, '.plot'), probe, title);
+    const place = find(this.card, '.plot');
+    place.hidden = false;
+    const plot = draw(this.root, place);
+    this.plot = plot;
     find(this.card, '.save-table').hidden = false;
+    return plot;
+  }
+
+  /** Gives up the room of the plot. */
+  closePlot(): void {
+    this.endPlot();
+    find(this.card, '.plot').hidden = true;
   }
 
   private endPlot(): void {

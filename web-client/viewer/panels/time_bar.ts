@@ -36,6 +36,8 @@ export interface TimeHost {
   readonly mesh: ShownMesh;
   /** Brings the picture in line with the bar. */
   apply(): void;
+  /** The bar shows another instant, or begins or ends to play. */
+  timeChanged(time: number, playing: boolean): void;
 }
 
 export class TimeBar {
@@ -49,6 +51,8 @@ export class TimeBar {
   private timer: ReturnType<typeof setInterval> | undefined;
   private waitingSince = 0;
   private known: unknown = null;
+  /** The host knows this time, and whether it plays; null: nothing was shown yet. */
+  private told: {time: number; playing: boolean} | null = null;
 
   constructor(
     root: ParentNode,
@@ -74,6 +78,9 @@ export class TimeBar {
   get isPlaying(): boolean {
     return this.timer !== undefined;
   }
+  set isPlaying(isPlaying: boolean) {
+    if (isPlaying !== this.isPlaying) this.toggle();
+  }
 
   /** Brings the bar in line with the attributes and the mesh. */
   update(settings: Settings, mesh: ShownMesh): void {
@@ -92,7 +99,7 @@ export class TimeBar {
     this.choose((color && fields[color.field]!.instant?.series) ?? null, fields);
     const wanted = settings.time ?? this.times[0]!.time;
     this.at = nearestTo(this.times, wanted);
-    mesh.ahead = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
+    mesh.playing = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
     const {slider} = this;
     slider.max = String(this.times.length - 1);
     slider.value = String(this.at);
@@ -100,6 +107,16 @@ export class TimeBar {
     slider.setAttribute('aria-valuetext', text);
     find(this.bar, 'output').textContent = `t = ${text}`;
     this.follow();
+    this.tell();
+  }
+
+  /** The host may change the time at once. */
+  private tell(): void {
+    const {isPlaying: playing, told} = this;
+    const {time} = this.times[this.at]!;
+    if (told?.time === time && told.playing === playing) return;
+    this.told = {time, playing};
+    if (told) this.host.timeChanged(time, playing);
   }
 
   /** A mesh may have thousands of instants: they are looked up once. */
