@@ -262,9 +262,15 @@ export class ViewerPage {
     // Twice, because the last command may not have reached the worker that draws.
     for (let i = 0; i < 2; ++i) {
       await this.settle();
-      await this.waitInView(
-        ({volume, frame, moved}) => volume?.hasCells && volume.atRest && frame === 0 && !moved,
-      );
+      const isAtRest = ({volume, frame, moved}) =>
+        volume?.hasCells && volume.atRest && frame === 0 && !moved;
+      await this.waitInView(isAtRest).catch(async (error) => {
+        const state = await this.inView(({volume, frame, moved}) => {
+          const {whole, busy, interrupted, waiting, timer, wholeMs} = volume ?? {};
+          return {whole, busy, interrupted, waiting, timer: timer !== undefined, wholeMs, frame, moved};
+        });
+        throw new Error(`${error.message}; it is ${JSON.stringify(state)}`);
+      });
     }
   }
 
