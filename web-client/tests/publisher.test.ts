@@ -165,6 +165,12 @@ test('creasesComeWithAPictureOfTheirOwn', () => {
   expect(pictures.map(({surface}) => surface?.creases?.join())).toEqual([undefined, '1,1,1']);
 });
 
+test('fieldsAheadMakeNoOtherSurface', () => {
+  publisher.show({...kPlainDisplay, ahead: [1, 2]});
+  untilNext();
+  expect(pictures.at(-1)!.surface).toBeUndefined();
+});
+
 test('aComponentOfASeriesHasOneRangeForAllInstants', () => {
   const fields = ['V@0', 'V@1'].map((name, instant): FieldInfo => ({
     name,

@@ -179,6 +179,7 @@ describe('instants', () => {
       [-4, 10],
       [0, 16],
     ]);
+    expect(fields[1]!.instant!.own.ranges[1]).toEqual([2, 16]);
   });
 });
 

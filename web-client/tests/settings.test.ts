@@ -12,6 +12,10 @@ import {
 } from '../core/layers/field_values';
 import {clip, clipText, parseClip} from '../core/layers/clip';
 import {firstOpacities} from '../core/layers/volume';
+import {markSeries} from '../core/protocol/series';
+import type {Manifest} from '../core/protocol/manifest';
+import type {Snapshot} from '../core/session/worker_messages';
+import {rangeOf} from '../viewer/page/shown_mesh';
 import {labelRange, readSettings, shownRange, type Settings} from '../viewer/settings/settings';
 
 const field = (
@@ -187,6 +191,22 @@ describe('the range of the colours', () => {
     expect(range({}, [-1, 4])).toEqual({low: -1, high: 4, ...linear});
     expect(range({range: 'symmetric'}, [-1, 4])).toEqual({low: -4, high: 4, ...linear});
     expect(range({range: [2, 3]}, [-1, 4])).toEqual({low: 2, high: 3, ...linear});
+  });
+  test('isThatOfTheInstantOnRequest', () => {
+    const infos = [field('T@0', 1), field('T@1', 1), field('T@2', 1), field('p', 1)];
+    infos[1]!.range = [3, 5];
+    infos[2]!.range = [4, 4];
+    markSeries(infos);
+    const [low, high] = infos[0]!.range;
+    const ofField = (index: number): ReturnType<typeof rangeOf> => {
+      const color = {field: index, component: kMagnitude};
+      const snapshot = {color, scaleRange: infos[index]!.range, extent: [0, 1], middle: [0, 1]};
+      const settings = readSettings((name) => (name === 'range' ? 'instant' : null));
+      return rangeOf(snapshot as unknown as Snapshot, {fields: infos} as Manifest, settings);
+    };
+    expect(ofField(1)).toEqual({low: 3, high: 5, ...linear});
+    expect(ofField(2)).toEqual({low, high, ...linear});
+    expect(ofField(3)).toEqual({low: infos[3]!.range[0], high: infos[3]!.range[1], ...linear});
   });
   test('isLogarithmicOnBothSidesOfZeroAndTellsWhatItHides', () => {
     const of = (low: number, high: number): ReturnType<typeof shownRange> =>

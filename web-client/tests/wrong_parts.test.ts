@@ -25,7 +25,7 @@ const manifest: Manifest = {
 const kRight: Record<string, string[]> = {
   transport: ['auto', 'range'],
   colormap: ['turbo', 'turbo reversed', 'cool-warm+reversed'],
-  range: ['auto', 'symmetric', '-1,2'],
+  range: ['auto', 'symmetric', 'instant', '-1,2'],
   scale: ['log', 'linear'],
   edges: ['on', 'off'],
   creases: ['on', 'off'],

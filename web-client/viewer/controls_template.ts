@@ -112,6 +112,7 @@ export const kControls = `    ${section(
           <option value="auto">Automatic</option>
           <option value="full">All values</option>
           <option value="symmetric">Symmetric</option>
+          <option value="instant">This instant</option>
           <option value="fixed">Fixed</option>
         </select>
       </div>

@@ -8,7 +8,7 @@
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
 //   time         of a series: the instant nearest to it is shown; by default the first.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
-//   range        "auto" (default), "full", "symmetric" or "LOW,HIGH".
+//   range        "auto" (default), "full", "symmetric", "LOW,HIGH" or, of a series, "instant".
 //   scale        "log".
 //   edges        "off" hides them.
 //   creases      "off" hides them.

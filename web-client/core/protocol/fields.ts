@@ -11,6 +11,8 @@ export interface Instant {
   isShown: boolean;
   /** By component: the values that the series' instants can have. */
   ranges: [number, number][];
+  /** The same of this instant alone, and its FieldInfo.range. */
+  own: {range: [number, number]; ranges: [number, number][]};
 }
 
 export interface FieldInfo {

@@ -45,12 +45,14 @@ export function markSeries(fields: FieldInfo[]): void {
     const key = freeKey(infos[0]!, keys[members[0]!]!, taken);
     taken.add(key);
     const range = union(infos.map((info) => info.range));
-    const ranges = infos[0]!.minimum.map((_, c) => union(infos.map((info) => rangeOf(info, c))));
-    for (const info of infos) {
+    const own = infos.map((info) => info.minimum.map((_, c) => rangeOf(info, c)));
+    const ranges = infos[0]!.minimum.map((_, c) => union(own.map((its) => its[c]!)));
+    infos.forEach((info, i) => {
       const {time, text} = instantName(info.name)!;
-      info.instant = {series: key, time, text, isShown: false, ranges};
+      const alone = {range: info.range, ranges: own[i]!};
+      info.instant = {series: key, time, text, isShown: false, ranges, own: alone};
       info.range = range;
-    }
+    });
   }
   showTime(fields, null);
 }

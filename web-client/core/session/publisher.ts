@@ -67,8 +67,9 @@ export class Publisher {
   show(display: Display): void {
     const before = this.display;
     this.display = display;
-    // Planes alone make another cut of the same surface, unless they hide whole cells.
-    const withoutPlanes = (its: Display): string => JSON.stringify({...its, planes: []});
+    // Planes alone make another cut of the same surface, unless they hide whole cells. Fields
+    // ahead are not seen.
+    const withoutPlanes = (its: Display): string => JSON.stringify({...its, planes: [], ahead: []});
     const whole = display.mode === 'cells' || withoutPlanes(before) !== withoutPlanes(display);
     if (whole || !this.isRequested) this.meshChanged = true;
     this.isRequested = this.cutChanged = true;

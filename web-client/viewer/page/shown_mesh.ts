@@ -6,7 +6,9 @@ import {axisNormal, clip} from '../../core/layers/clip';
 import {kLayers} from '../../core/layers/layers';
 import {firstOpacities, type Amounts} from '../../core/layers/volume';
 import type {BaseFigures} from '../../core/picture/base_figures';
+import type {Scalar} from '../../core/picture/field_scale';
 import {labelsOf} from '../../core/picture/labels';
+import type {FieldInfo} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {showTime} from '../../core/protocol/series';
 import type {Snapshot} from '../../core/session/worker_messages';
@@ -125,8 +127,19 @@ export function rangeOf(
   if (!color) return null;
   const labels = settings.map === 'labels' && labelsOf(fields[color.field]!);
   if (labels) return labelRange(labels);
+  const own = settings.range === 'instant' ? ownRange(fields[color.field]!, color) : null;
+  if (own) return shownRange(settings, own);
   const [low, high] = scaleRange;
   const valueAt = (share: number): number => low + share * (high - low);
   const valuesAt = ([from, to]: [number, number]): [number, number] => [valueAt(from), valueAt(to)];
-  return shownRange(settings, valuesAt(extent), valuesAt(middle));
+  const range = settings.range === 'instant' ? 'auto' : settings.range;
+  return shownRange({...settings, range}, valuesAt(extent), valuesAt(middle));
+}
+
+/** The range of an instant alone; null for other fields, and if its values are all equal. */
+function ownRange({instant}: FieldInfo, {component}: Scalar): [number, number] | null {
+  if (!instant) return null;
+  const {range, ranges} = instant.own;
+  const [low, high] = ranges.length > 1 ? (ranges[component] ?? range) : range;
+  return low < high ? [low, high] : null;
 }

@@ -60,18 +60,24 @@ export class ColorPanel implements Panel {
     this.input('opacity').value = String(Math.round(100 * settings.opacity));
     this.find('.opacity-text').textContent = `${Math.round(100 * settings.opacity)}\u202f%`;
     this.disableHidden(settings);
-    const fixed = typeof settings.range !== 'string' || this.awaitsRange;
-    this.find<HTMLSelectElement>('select[name=range]').value = fixed
-      ? 'fixed'
-      : String(settings.range);
-    this.find('.range-fixed').hidden = !fixed;
     const fields = scene?.manifest.fields ?? [];
     const chosen = shownScalar(this.attributes.read('field'), fields, scene?.firstField ?? 0);
     const labels = chosen && labelsOf(fields[chosen.field]!);
+    this.chooseRange(settings, chosen !== null && fields[chosen.field]!.instant !== undefined);
     this.find('.swatch.labels').hidden = !labels;
     const menu = this.find<HTMLSelectElement>('select[name=field]');
     fillScalars(menu, fields, chosen);
     this.field = menu.value;
+  }
+
+  /** Only a series can have the range of an instant. */
+  private chooseRange({range}: Settings, isSeries: boolean): void {
+    const fixed = typeof range !== 'string' || this.awaitsRange;
+    const option = this.find<HTMLOptionElement>('option[value=instant]');
+    option.hidden = option.disabled = !isSeries;
+    const word = range === 'instant' && !isSeries ? 'auto' : String(range);
+    this.find<HTMLSelectElement>('select[name=range]').value = fixed ? 'fixed' : word;
+    this.find('.range-fixed').hidden = !fixed;
   }
 
   /** Shows the current range, which a fixed one starts from. */

@@ -44,7 +44,7 @@ export const kViewAttributes: readonly ViewAttribute[] = [
 export interface Settings {
   map: ColorMapName;
   reversed: boolean;
-  range: 'auto' | 'full' | 'symmetric' | [number, number];
+  range: 'auto' | 'full' | 'symmetric' | 'instant' | [number, number];
   logarithmic: boolean;
   edges: boolean;
   creases: boolean;
@@ -90,7 +90,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
 }
 
 function parseRange(text: string | null): Settings['range'] {
-  if (text === 'symmetric' || text === 'full') return text;
+  if (text === 'symmetric' || text === 'full' || text === 'instant') return text;
   const numbers = parseNumbers(text ?? '');
   return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
 }
@@ -154,7 +154,7 @@ export function shownRange(
   if (range === 'auto' && !logarithmic && tailsHide(middle, extent))
     return {low: middle[0], high: middle[1], logarithmic, hides: 'none', isMiddle: true};
   const max = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
-  const isWhole = range === 'auto' || range === 'full';
+  const isWhole = typeof range === 'string' && range !== 'symmetric';
   const [low, high] = isWhole ? extent : range === 'symmetric' ? [-max, max] : range;
   if (!logarithmic) return {low, high, logarithmic: false, hides: 'none'};
   if (low < 0 && low < high) return {low, high, logarithmic: true, hides: 'none'};

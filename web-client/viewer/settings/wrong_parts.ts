@@ -19,6 +19,8 @@ type Rule = [isRight: (text: string) => boolean, expected: string, words?: reado
 /** Parameters that other sites append to links. */
 const kOfOthers = /^utm_|clid$/;
 
+const kRanges = ['auto', 'full', 'symmetric', 'instant'];
+
 const oneOf = (...words: readonly string[]): Rule => [
   (text) => words.includes(text),
   words.join(', '),
@@ -41,9 +43,9 @@ const kRules: Partial<Record<Name, Rule>> = {
     kColorMapNames.flatMap((name) => [name, `${name} reversed`]),
   ],
   range: [
-    (text) => ['auto', 'full', 'symmetric'].includes(text) || isRange(text),
-    'auto, full, symmetric, or two numbers, the smaller first: 0.5,2',
-    ['auto', 'full', 'symmetric'],
+    (text) => kRanges.includes(text) || isRange(text),
+    'auto, full, symmetric, instant, or two numbers, the smaller first: 0.5,2',
+    kRanges,
   ],
   time: [(text) => parseNumbers(text).length === 1, 'a number, a time of the series'],
   scale: oneOf('log', 'linear'),
