@@ -267,7 +267,8 @@ export class ViewerPage {
       await this.waitInView(isAtRest).catch(async (error) => {
         const state = await this.inView(({volume, frame, moved}) => {
           const {whole, busy, interrupted, waiting, timer, wholeMs} = volume ?? {};
-          return {whole, busy, interrupted, waiting, timer: timer !== undefined, wholeMs, frame, moved};
+          const waits = timer !== undefined;
+          return {whole, busy, interrupted, waiting, waits, wholeMs, frame, moved};
         });
         throw new Error(`${error.message}; it is ${JSON.stringify(state)}`);
       });

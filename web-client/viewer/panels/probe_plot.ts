@@ -64,6 +64,7 @@ export function drawOverTime(
     say,
     mark: () => curve.time,
   });
+  readoutOf(place).textContent = '\u00a0'; // the card is placed with room for the line
   plot.over.addEventListener('click', ({offsetX}) => choose(plot.posToIdx(offsetX)));
   return {
     show: (next) => {
