@@ -144,6 +144,9 @@ if(QTET_WEB)
       COMMAND ${QTET_NODE} ${here}/browser/run.mjs --list ${list} --bin ${bin}
       --viewer ${QTET_VIEWER_DIR} --out ${CMAKE_BINARY_DIR}/browser-${list})
   endforeach()
+  # Graphics in software cast its rays with every processor. Beside another browser one picture has
+  # taken over three minutes.
+  set_tests_properties(browser.volume PROPERTIES RUN_SERIAL ON)
   if(QTET_VTK_PYTHON AND NOT QTET_SANITIZE)
     qtet_system_test(browser.notebook ROOM browser CHANCE SECONDS 1200 COMMAND ${QTET_NODE}
       ${here}/browser/notebook.mjs --python ${QTET_VTK_PYTHON} --bin ${bin}
