@@ -42,4 +42,13 @@ template <class Field>
   return out;
 }
 
+/// By field: an instant of a series, but not the first one, which a viewer shows and fetches first.
+template <class Field>
+[[nodiscard]] std::vector<bool> laterInstants(std::span<const Field> fields) {
+  std::vector<bool> out(fields.size());
+  for (const Series& series : seriesOf(fields))
+    for (const std::size_t f : std::span(series.fields).subspan(1)) out[f] = true;
+  return out;
+}
+
 }  // namespace qtet

@@ -1,6 +1,5 @@
 #include "codec/log/chunk_writer.h"
 
-#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <utility>
@@ -27,10 +26,8 @@ ChunkWriter::ChunkWriter(std::span<const FieldInfo> fields, CodecId valueCodec)
     : fields_(fields), valueCodec_(valueCodec), counts_(1 + fields.size(), true) {
   open_.values.resize(1 + fields.size());
   open_.seen.resize(1 + fields.size());
-  for (const Series& series : seriesOf(fields)) {
-    for (const std::size_t f : series.fields) counts_[1 + f] = false;
-    counts_[1 + std::ranges::min(series.fields)] = true;
-  }
+  const std::vector<bool> isLater = laterInstants(fields);
+  for (std::size_t f = 0; f < fields.size(); ++f) counts_[1 + f] = !isLater[f];
 }
 
 void ChunkWriter::endRecord() {

@@ -264,11 +264,10 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const auto files = filesOf(parsed, *output, known, *wanted);
   if (!files) return std::unexpected(files.error());
   std::vector<std::uint32_t> decoded;
-  for (const std::uint32_t f : *wanted)
-    if (std::ranges::any_of(*files, [f](const InstantFile& file) {
-          return std::ranges::find(file.fields, f, &FieldInFile::number) != file.fields.end();
-        }))
-      decoded.push_back(f);
+  for (const InstantFile& file : *files)
+    for (const FieldInFile& field : file.fields) decoded.push_back(field.number);
+  std::ranges::sort(decoded);
+  decoded.erase(std::unique(decoded.begin(), decoded.end()), decoded.end());
   Result<LatticeMesh> mesh =
       meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(decoded));
   if (!mesh) return std::unexpected(mesh.error());

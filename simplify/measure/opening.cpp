@@ -222,11 +222,9 @@ class Scene {
   Vector3 seenHigh_{kEverywhere, kEverywhere, kEverywhere};
 };
 
-/// Those that an opening can name: of a series the first instant alone, which a viewer shows first.
+/// Those that an opening can name: of a series the first instant alone.
 std::vector<std::size_t> openingFields(const LatticeMesh& mesh) {
-  std::vector<bool> isLater(mesh.fields.size());
-  for (const Series& series : seriesOf(std::span(mesh.fields)))
-    for (const std::size_t f : std::span(series.fields).subspan(1)) isLater[f] = true;
+  const std::vector<bool> isLater = laterInstants(std::span(mesh.fields));
   std::vector<std::size_t> out;
   for (std::size_t f = 0; f < mesh.fields.size() && f <= kMaxOpeningField; ++f)
     if (!isLater[f]) out.push_back(f);

@@ -1,8 +1,8 @@
 #include "simplify/pipeline/pipeline.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "codec/log/log_manifest.h"
@@ -149,28 +149,26 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
 // Share of the encoding that goes into differences in time, where a log has series.
 constexpr double kDifferencesShare = 0.5;
 
-/// The instants of series become differences, in the order in which orderSeries() put them.
-Status differInTime(FusionHistory& history, Run& run) {
-  if (Status s = run.stages.begin(Stage::kEncode); !s) return s;
+/// The instants of series become differences, in the order in which orderSeries() put them. Returns
+/// the share of the encoding that is done then.
+Result<double> differInTime(FusionHistory& history, Run& run) {
+  if (Status s = run.stages.begin(Stage::kEncode); !s) return std::unexpected(s.error());
+  if (seriesOf(std::span<const FieldInfo>(history.fields)).empty()) return 0;
   const Result<std::size_t> count =
       toTimeDifferences(history, run.options.stop, run.stages.progress(0, kDifferencesShare));
   if (!count) return std::unexpected(count.error());
   if (*count > 0)
     run.note({std::to_string(*count) + " of " + std::to_string(history.fields.size()) +
               " fields are instants that are coded as differences in time"});
-  return {};
+  return kDifferencesShare;
 }
 
-bool hasSeries(const FusionHistory& history) {
-  return std::ranges::any_of(history.fields,
-                             [](const FieldInfo& field) { return !field.prediction.isNone(); });
-}
-
-Result<Bytes> encode(const FusionHistory& history, LevelErrors errors, Run& run) {
+/// `done`: the share of the stage that is done already.
+Result<Bytes> encode(const FusionHistory& history, LevelErrors errors, double done, Run& run) {
   LogWriterOptions options;
   options.source = run.options.source;
   options.generator = "qtet " QTET_VERSION;
-  options.progress = run.stages.progress(hasSeries(history) ? kDifferencesShare : 0);
+  options.progress = run.stages.progress(done);
   options.stop = run.options.stop;
   options.errors = std::move(errors);
   options.focus = run.focus;
@@ -232,8 +230,9 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   Result<LevelErrors> errors = measure(*history, run);
   if (!errors) return std::unexpected(errors.error());
   restoreMissing(*history, quantised->missing);
-  if (Status s = differInTime(*history, run); !s) return std::unexpected(s.error());
-  Result<Bytes> log = encode(*history, std::move(*errors), run);
+  const Result<double> done = differInTime(*history, run);
+  if (!done) return std::unexpected(done.error());
+  Result<Bytes> log = encode(*history, std::move(*errors), *done, run);
   if (!log) return std::unexpected(log.error());
   run.stages.end();
   if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());

@@ -1,5 +1,5 @@
 // Series: fields that are the instants of one quantity, called NAME@TIME (codec/RECORDS.md,
-// "Series"). The rules are those of seriesOf (simplify/series/series.h).
+// "Series"). The rules are those of seriesOf (proto/series.h).
 
 import {fieldKeys, type FieldInfo, type Instant} from './fields';
 
