@@ -185,6 +185,7 @@ export class Inspect {
     const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
     for (const {field, values} of pick.fields) {
       const info = fields[field]!;
+      if (info.instant && !info.instant.isShown) continue; // there may be a thousand
       const format = (value: number): string => formatTo(value, resolutionOf(info));
       rows.push([info.name, values.map(format).join(', ')]);
       if (values.length > 1) rows.push([`${info.name}, magnitude`, format(Math.hypot(...values))]);
