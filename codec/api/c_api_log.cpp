@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "codec/api/c_api_handle.h"
-#include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
 #include "codec/refine/refiner.h"
@@ -80,7 +79,7 @@ qtet_log_info infoOf(const qtet_log& log) {
   info.versionMajor = versionPart(file.bytes(), 8);
   info.versionMinor = versionPart(file.bytes(), 10);
   info.bytes = file.bytes().size();
-  info.chunks = static_cast<std::uint32_t>(file.index().chunks.size());
+  info.chunks = static_cast<std::uint32_t>(file.chunks().size());
   info.levels = static_cast<std::uint32_t>(log.manifest.levels.size());
   info.fields = static_cast<std::uint32_t>(log.manifest.fields.size());
   info.latticeBits = static_cast<std::uint32_t>(log.manifest.latticeBits);
@@ -103,7 +102,7 @@ qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
   for (std::size_t c = 0; c < f.components; ++c) info.minimum[c] = f.minimum[c];
   info.range[0] = f.range[0];
   info.range[1] = f.range[1];
-  for (const qtet::ChunkEntry& chunk : log.file->index().chunks)
+  for (const qtet::ChunkEntry& chunk : log.file->chunks())
     info.bytes += chunk.blocks[qtet::kFirstFieldPart + field].size;
   info.name = f.name.c_str();
   info.type = f.type.c_str();

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "codec/api/c_api_handle.h"
-#include "codec/log/log_index.h"
 #include "codec/refine/refiner.h"
 
 using qtet::FieldShape;
@@ -24,11 +23,10 @@ namespace {
 
 /// Whether the refiner can go on to a level: not to a coarser one, and not when it had to stop
 /// inside a chunk.
-bool canGoOn(const Refiner& refiner, std::uint32_t level) {
+bool canGoOn(const LogFile& file, const Refiner& refiner, std::uint32_t level) {
   const std::uint32_t applied = refiner.chunksApplied();
   return refiner.level() == level ||
-         (refiner.level() < level &&
-          refiner.index().chunks[applied - 1].lastLevel == refiner.level());
+         (refiner.level() < level && file.chunks()[applied - 1].lastLevel == refiner.level());
 }
 
 Status refineTo(const LogFile& file, Refiner& refiner, std::uint32_t level) {
@@ -41,8 +39,8 @@ Status refineTo(const LogFile& file, Refiner& refiner, std::uint32_t level) {
 
 /// Numbers of a field at the mesh's level. REQUIRES: a mesh and a field of the log.
 std::size_t fieldCount(const qtet_log& log, std::uint32_t field) {
-  assert(log.refiner && field < log.file->index().fields.size());
-  const FieldShape& shape = log.file->index().fields[field];
+  assert(log.refiner && field < log.file->fields().size());
+  const FieldShape& shape = log.file->fields()[field];
   const bool cells = shape.association == qtet::Association::kCell;
   return shape.components *
          (cells ? log.refiner->tetrahedra().size() : log.refiner->points().size());
@@ -51,7 +49,7 @@ std::size_t fieldCount(const qtet_log& log, std::uint32_t field) {
 /// Decodes what the field, and those that it is predicted from, lack of the mesh's chunks.
 qtet_status catchUp(qtet_log* log, std::uint32_t field) {
   if (const qtet_status status = log->needField(field)) return status;
-  for (const std::uint32_t f : log->file->index().withParents(std::span(&field, 1)))
+  for (const std::uint32_t f : qtet::withParents(log->file->fields(), std::span(&field, 1)))
     while (log->refiner->fieldChunksApplied(f) < log->refiner->chunksApplied()) {
       const Status status =
           qtet::applyFieldBlock(*log->file, *log->refiner, log->refiner->fieldChunksApplied(f), f);
@@ -121,7 +119,7 @@ qtet_status qtet_log_refine(qtet_log* log, uint32_t level) {
     // The log gets its refiner back only with a complete level; after an error it has none.
     std::optional<Refiner> refiner = std::move(log->refiner);
     log->refiner.reset();
-    if (!refiner || !canGoOn(*refiner, level)) refiner.emplace(log->file->index());
+    if (!refiner || !canGoOn(*log->file, *refiner, level)) refiner.emplace(log->file->index());
     if (const Status status = refineTo(*log->file, *refiner, level); !status)
       return log->refuse(status.error());
     log->refiner = std::move(refiner);

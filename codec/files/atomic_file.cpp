@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "codec/files/buffered_file.h"
 #include "proto/crc32c.h"
 
 namespace qtet {
@@ -83,17 +84,6 @@ bool unlinked(int descriptor) {
   return ::fstat(descriptor, &info) == 0 && info.st_nlink == 0;
 }
 
-Status writeAll(int descriptor, ByteView bytes, const fs::path& path, FileCalls& calls) {
-  while (!bytes.empty()) {
-    // Linux writes at most 2^31 - 4096 bytes a call.
-    const ssize_t written = calls.write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return systemError("write", path, written < 0 ? errno : EIO);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return {};
-}
-
 /// Creates a temporary file for `path` and locks it, as far as the file system has locks; -1 and
 /// errno after a failure.
 int createLocked(const fs::path& path, fs::path& temporary, FileCalls& calls) {
@@ -114,7 +104,7 @@ int createLocked(const fs::path& path, fs::path& temporary, FileCalls& calls) {
 
 /// The whole of it but the folder's flush. The lock is held until the file has its final name.
 /// `mode`: of the file that it takes the place of.
-Status writeAndRename(const fs::path& path, std::optional<mode_t> mode, ByteView bytes,
+Status writeAndRename(const fs::path& path, std::optional<mode_t> mode, const ByteSource& content,
                       FileCalls& calls) {
   fs::path temporary;
   const Descriptor file(calls, createLocked(path, temporary, calls));
@@ -122,7 +112,12 @@ Status writeAndRename(const fs::path& path, std::optional<mode_t> mode, ByteView
   Status status;
   if (mode && ::fchmod(file.get(), *mode) != 0)
     status = systemError("keep the permissions of", path, errno);
-  if (status) status = writeAll(file.get(), bytes, path, calls);
+  BufferedFile out(file.get(), calls);
+  const auto isWritten = [&](bool done) {
+    return done ? Status{} : systemError("write", path, errno);
+  };
+  if (status) status = content([&](ByteView bytes) { return isWritten(out.write(bytes)); });
+  if (status) status = isWritten(out.flush());
   if (status && calls.sync(file.get()) != 0) status = systemError("write", path, errno);
   if (status && calls.rename(temporary.c_str(), path.c_str()) != 0)
     status = systemError("rename a new file to", path, errno);
@@ -164,6 +159,10 @@ Result<fs::path> fileBehindLinks(const fs::path& asked) {
 }
 
 Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& calls) {
+  return writeFileAtomically(asked, [bytes](const ByteSink& sink) { return sink(bytes); }, calls);
+}
+
+Status writeFileAtomically(const fs::path& asked, const ByteSource& content, FileCalls& calls) {
   const Result<fs::path> behind = fileBehindLinks(asked);
   if (!behind) return std::unexpected(behind.error());
   const fs::path& path = *behind;
@@ -187,7 +186,7 @@ Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& cal
   removeUnfinished(
       folder, [own = nameWithin(path)](std::string_view name) { return name == own; }, calls);
   if (Status status = writeAndRename(
-          path, replaces ? std::optional(old.st_mode & 07777) : std::nullopt, bytes, calls);
+          path, replaces ? std::optional(old.st_mode & 07777) : std::nullopt, content, calls);
       !status)
     return status;
   // Makes the rename itself durable. File systems that cannot flush a folder say EINVAL: there is

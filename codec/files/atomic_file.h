@@ -7,8 +7,7 @@
 #include <string_view>
 
 #include "codec/files/file_calls.h"
-#include "proto/bytes.h"
-#include "proto/error.h"
+#include "proto/byte_sink.h"
 
 namespace qtet {
 
@@ -22,6 +21,10 @@ namespace qtet {
 /// leads to is replaced, or made. Errors: not-found (the folder does not exist), io (no regular
 /// file is there; with the file and the operating system's reason).
 [[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes,
+                                         FileCalls& calls = systemFileCalls());
+/// The same of bytes that come in pieces. Errors: also those of `content`.
+[[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path,
+                                         const ByteSource& content,
                                          FileCalls& calls = systemFileCalls());
 
 /// The file that writing to `path` makes or replaces: behind every symbolic link, whether it is

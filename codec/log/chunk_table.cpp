@@ -1,6 +1,7 @@
 #include "codec/log/chunk_table.h"
 
 #include <cassert>
+#include <utility>
 
 #include "proto/limits.h"
 
@@ -9,14 +10,14 @@ namespace {
 
 /// The level that a row begins with: the one that the chunk before it left, or the next one if that
 /// was complete.
-std::uint32_t firstLevelOf(const LogIndex& index, std::size_t chunk) {
+std::uint32_t firstLevelOf(std::span<const ChunkEntry> chunks, std::size_t chunk) {
   if (chunk == 0) return 0;
-  const ChunkEntry& before = index.chunks[chunk - 1];
+  const ChunkEntry& before = chunks[chunk - 1];
   return before.lastLevel + (before.endSlot == kLevelEnd);
 }
 
-void readLevels(ByteReader& r, const LogIndex& index, ChunkEntry& e) {
-  const std::uint64_t first = firstLevelOf(index, index.chunks.size());
+void readLevels(ByteReader& r, std::span<const ChunkEntry> before, ChunkEntry& e) {
+  const std::uint64_t first = firstLevelOf(before, before.size());
   const std::uint64_t last = first + r.readVarint();
   if (last > kMaxLevels)
     return r.fail(ErrorCode::kLimitExceeded,
@@ -28,34 +29,37 @@ void readLevels(ByteReader& r, const LogIndex& index, ChunkEntry& e) {
 
 }  // namespace
 
-void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::uint64_t offset) {
-  assert(r.failed() || chunks * minRowBytes(index.parts()) <= r.remaining());
-  index.chunks.reserve(chunks);
-  while (index.chunks.size() < chunks && !r.failed()) {
+std::vector<ChunkEntry> readChunkRows(ByteReader& r, std::uint32_t chunks, std::uint32_t parts,
+                                      std::uint64_t offset) {
+  assert(r.failed() || chunks * minRowBytes(parts) <= r.remaining());
+  std::vector<ChunkEntry> out;
+  out.reserve(chunks);
+  while (out.size() < chunks && !r.failed()) {
     ChunkEntry e;
     e.offset = offset;
-    readLevels(r, index, e);
+    readLevels(r, out, e);
     for (std::uint32_t* value :
          {&e.records, &e.newVertices, &e.newTetrahedra, &e.newBoundaryTriangles})
       *value = r.readVarint();
     const auto codecs = r.read<std::uint8_t>();
     e.structureCodec = static_cast<CodecId>(codecs & 15u);
     e.valueCodec = static_cast<CodecId>(codecs >> 4);
-    e.blocks.resize(index.parts());
+    e.blocks.resize(parts);
     for (BlockEntry& b : e.blocks) {
       b.offset = offset;
       b.size = r.readVarint();
       offset += b.size;
     }
     for (BlockEntry& b : e.blocks) b.crc = r.read<std::uint32_t>();
-    index.chunks.push_back(std::move(e));
+    out.push_back(std::move(e));
   }
+  return out;
 }
 
-void writeChunkRows(ByteWriter& w, const LogIndex& index) {
-  for (std::size_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
-    const ChunkEntry& e = index.chunks[chunk];
-    w.writeVarint(e.lastLevel - firstLevelOf(index, chunk));
+void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks) {
+  for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
+    const ChunkEntry& e = chunks[chunk];
+    w.writeVarint(e.lastLevel - firstLevelOf(chunks, chunk));
     for (const std::uint32_t value :
          {e.endSlot + 1, e.records, e.newVertices, e.newTetrahedra, e.newBoundaryTriangles})
       w.writeVarint(value);
@@ -66,12 +70,12 @@ void writeChunkRows(ByteWriter& w, const LogIndex& index) {
   }
 }
 
-void readClosingRows(ByteReader& r, LogIndex& index, std::uint32_t count) {
-  if (r.failed()) return;
-  assert(!index.chunks.empty());
-  std::uint64_t offset = index.chunks.back().offset + index.chunks.back().size();
-  index.closing.reserve(count);
-  while (index.closing.size() < count && !r.failed()) {
+std::vector<ClosingBlock> readClosingRows(ByteReader& r, std::uint32_t count,
+                                          std::uint64_t offset) {
+  std::vector<ClosingBlock> out;
+  if (r.failed()) return out;
+  out.reserve(count);
+  while (out.size() < count && !r.failed()) {
     ClosingBlock c;
     c.kind = static_cast<ClosingKind>(r.readVarint());
     c.field = r.readVarint();
@@ -79,12 +83,13 @@ void readClosingRows(ByteReader& r, LogIndex& index, std::uint32_t count) {
     c.block.size = r.readVarint();
     c.block.crc = r.read<std::uint32_t>();
     offset += c.block.size;
-    index.closing.push_back(c);
+    out.push_back(c);
   }
+  return out;
 }
 
-void writeClosingRows(ByteWriter& w, const LogIndex& index) {
-  for (const ClosingBlock& c : index.closing) {
+void writeClosingRows(ByteWriter& w, std::span<const ClosingBlock> blocks) {
+  for (const ClosingBlock& c : blocks) {
     for (const std::uint32_t value : {static_cast<std::uint32_t>(c.kind), c.field, c.block.size})
       w.writeVarint(value);
     w.write(c.block.crc);

@@ -2,7 +2,12 @@
 // follows from the rows before is not stored.
 #pragma once
 
-#include "codec/log/log_index.h"
+#include <span>
+#include <vector>
+
+#include "codec/log/chunk_entry.h"
+#include "codec/log/closing_block.h"
+#include "proto/bytes.h"
 
 namespace qtet {
 
@@ -15,18 +20,20 @@ namespace qtet {
 /// The same of a closing block's row.
 inline constexpr std::uint64_t kMinClosingRowBytes = 7;
 
-/// Reads `chunks` rows into index.chunks; the first block lies at `offset`.
-/// REQUIRES: index.fields, and that chunks * minRowBytes fits what remains in `r`. Errors stay
-/// in `r`: truncated, bad-value, bad-codec, limit-exceeded (levels).
-void readChunkRows(ByteReader& r, LogIndex& index, std::uint32_t chunks, std::uint64_t offset);
+/// `chunks` rows of `parts` blocks; the first block lies at `offset`. REQUIRES: that chunks *
+/// minRowBytes fits what remains in `r`. Errors stay in `r`: truncated, bad-value, bad-codec,
+/// limit-exceeded (levels).
+[[nodiscard]] std::vector<ChunkEntry> readChunkRows(ByteReader& r, std::uint32_t chunks,
+                                                    std::uint32_t parts, std::uint64_t offset);
 
-void writeChunkRows(ByteWriter& w, const LogIndex& index);
+void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks);
 
-/// The rows of `count` closing blocks, which stand behind those of the chunks as their blocks do.
-/// REQUIRES: the chunks' rows in `index`, and that count * kMinClosingRowBytes fits what remained
-/// before them.
-void readClosingRows(ByteReader& r, LogIndex& index, std::uint32_t count);
+/// The rows of `count` closing blocks, which stand behind those of the chunks as their blocks do;
+/// the first block lies at `offset`. REQUIRES: that count * kMinClosingRowBytes fitted what
+/// remained before the chunks' rows.
+[[nodiscard]] std::vector<ClosingBlock> readClosingRows(ByteReader& r, std::uint32_t count,
+                                                        std::uint64_t offset);
 
-void writeClosingRows(ByteWriter& w, const LogIndex& index);
+void writeClosingRows(ByteWriter& w, std::span<const ClosingBlock> blocks);
 
 }  // namespace qtet

@@ -22,8 +22,11 @@ std::uint64_t bitsOf(std::int32_t value) {
 
 }  // namespace
 
-ChunkWriter::ChunkWriter(std::span<const FieldInfo> fields, CodecId valueCodec)
-    : fields_(fields), valueCodec_(valueCodec), counts_(1 + fields.size(), true) {
+ChunkWriter::ChunkWriter(std::span<const FieldInfo> fields, CodecId valueCodec, ByteSink body)
+    : fields_(fields),
+      valueCodec_(valueCodec),
+      body_(std::move(body)),
+      counts_(1 + fields.size(), true) {
   open_.values.resize(1 + fields.size());
   open_.seen.resize(1 + fields.size());
   const std::vector<bool> isLater = laterInstants(fields);
@@ -83,8 +86,7 @@ Status ChunkWriter::addBlock(const Bytes& block) {
     return fail(ErrorCode::kLimitExceeded,
                 "a block above 256 MiB; let the simplifier go further (`targetRatio`)");
   open_.row.blocks.push_back({0, static_cast<std::uint32_t>(block.size()), crc32c(block)});
-  body_.insert(body_.end(), block.begin(), block.end());
-  return {};
+  return body_(block);
 }
 
 }  // namespace qtet

@@ -262,20 +262,6 @@ bool LogIndex::hasSeries() const {
                              [](const FieldShape& field) { return !field.prediction.isNone(); });
 }
 
-std::vector<std::uint32_t> LogIndex::withParents(std::span<const std::uint32_t> wanted) const {
-  std::vector<bool> needed(fields.size());
-  for (const std::uint32_t f : wanted) needed[f] = true;
-  std::vector<std::uint32_t> out;
-  for (auto f = static_cast<std::uint32_t>(fields.size()); f-- > 0;) {
-    if (!needed[f]) continue;
-    out.push_back(f);
-    for (const TimePrediction::Parent& parent : fields[f].prediction.all())
-      needed[parent.field] = true;
-  }
-  std::ranges::reverse(out);
-  return out;
-}
-
 Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
   const Result<Header> header = readHeader(firstBytes);
   if (!header) return std::unexpected(header.error());
@@ -318,8 +304,11 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
                 "the chunk table is too short for the counts of chunks, fields and closing blocks; "
                 "fetch the file again",
                 28);
-  readChunkRows(r, index, header->chunks, header->headBytes());
-  readClosingRows(r, index, header->closing);
+  index.chunks = readChunkRows(r, header->chunks, index.parts(), header->headBytes());
+  if (!r.failed()) {
+    const ChunkEntry& last = index.chunks.back();
+    index.closing = readClosingRows(r, header->closing, last.offset + last.size());
+  }
   if (!r.failed() && r.remaining() > 0)
     r.fail(ErrorCode::kBadValue,
            "bytes behind the chunk table's last row; fetch or build the log again");
@@ -342,8 +331,8 @@ Bytes LogIndex::encode() const {
       table.write(static_cast<std::uint8_t>(parent.weight));
     }
   }
-  writeChunkRows(table, *this);
-  writeClosingRows(table, *this);
+  writeChunkRows(table, chunks);
+  writeClosingRows(table, closing);
 
   ByteWriter w;
   w.append(kMagic);

@@ -8,77 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "codec/log/codec_id.h"
-#include "codec/mesh/time_prediction.h"
+#include "codec/log/chunk_entry.h"
+#include "codec/log/closing_block.h"
+#include "codec/log/field_shape.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 
 namespace qtet {
-
-/// The kind of element that a field's values belong to.
-enum class Association : std::uint8_t { kPoint = 0, kCell = 1 };
-
-/// The part of a field's description that decoding needs; the manifest has the rest.
-struct FieldShape {
-  std::uint32_t components = 1;  ///< 1..kMaxFieldComponents
-  Association association = Association::kPoint;
-  bool hasMissing = false;  ///< values may be missing: Values::codeOrMissing
-  TimePrediction prediction{};
-};
-
-struct BlockEntry {
-  std::uint64_t offset = 0;  ///< in the file; derived, not stored
-  std::uint32_t size = 0;    ///< bytes
-  std::uint32_t crc = 0;
-};
-
-/// Parts of a chunk, in file order: structure, positions, then one block a field.
-inline constexpr std::uint32_t kStructurePart = 0;
-inline constexpr std::uint32_t kPositionsPart = 1;
-inline constexpr std::uint32_t kFirstFieldPart = 2;
-
-/// `ChunkEntry::endSlot` of a chunk that finishes its last level.
-inline constexpr std::uint32_t kLevelEnd = 0xFFFFFFFFu;
-
-/// One row of the chunk table. Chunk 0 is the base mesh (level 0); each other one refines the mesh
-/// that the chunks before it gave.
-struct ChunkEntry {
-  std::uint64_t offset = 0;  ///< of its first block in the file; derived, not stored
-  /// The levels that its records belong to; the first follows from the row before.
-  std::uint32_t firstLevel = 0;
-  std::uint32_t lastLevel = 0;
-  /// LastLevel is visited below this vertex slot; kLevelEnd = to its end.
-  std::uint32_t endSlot = kLevelEnd;
-  std::uint32_t records = 0;
-  std::uint32_t newVertices = 0;
-  std::uint32_t newTetrahedra = 0;
-  std::uint32_t newBoundaryTriangles = 0;
-  CodecId structureCodec = CodecId::kRange;
-  CodecId valueCodec = CodecId::kDraco;
-  std::vector<BlockEntry> blocks;  ///< 2 + fields
-
-  [[nodiscard]] std::uint64_t size() const {
-    return blocks.empty() ? 0 : blocks.back().offset + blocks.back().size - offset;
-  }
-};
-
-/// The content of a closing block (FORMAT.md, "Closing blocks").
-enum class ClosingKind : std::uint32_t {
-  kPointOrder = 1,      ///< the input's numbering of points
-  kCellOrder = 2,       ///< the input's numbering of cells and of their vertices; needs the points'
-  kExactPositions = 3,  ///< the input's own coordinates
-  kExactField = 4,      ///< the input's own values of one field
-  kOriginalCells = 5,   ///< the file's cell that each was split from; needs the cells' order
-};
-
-/// A block behind the last chunk. No level needs it: who wants the input itself and not only its
-/// mesh on the lattice fetches it.
-struct ClosingBlock {
-  /// Or one that this build does not know, to be left alone.
-  ClosingKind kind = ClosingKind::kPointOrder;
-  std::uint32_t field = 0;  ///< of kExactField; else 0
-  BlockEntry block;
-};
 
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
@@ -120,9 +56,6 @@ struct LogIndex {
   [[nodiscard]] bool hasCellField() const;
   /// Some fields are predicted in time.
   [[nodiscard]] bool hasSeries() const;
-  /// These fields and those that they are predicted from, ascending, each once. REQUIRES: fields of
-  /// the log.
-  [[nodiscard]] std::vector<std::uint32_t> withParents(std::span<const std::uint32_t> wanted) const;
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64
   /// bytes), bad-magic, bad-version, bad-checksum, limit-exceeded, bad-value.
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);

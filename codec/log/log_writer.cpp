@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "codec/log/level_runs.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/record_writer.h"
+#include "proto/crc32c.h"
 #include "proto/limits.h"
 
 namespace qtet {
@@ -45,6 +47,28 @@ Status writeStream(RecordWriter& writer, const FusionHistory& history,
                    const LogWriterOptions& options) {
   if (Status s = writeLevelRuns(writer, history.levels, options); !s) return s;
   return writer.closeChunk(history.levels, kLevelEnd);
+}
+
+/// Gives the closing blocks to `body`, and their rows.
+Result<std::vector<ClosingBlock>> writeClosing(const RecordWriter& writer,
+                                               const LogWriterOptions& options,
+                                               const ByteSink& body) {
+  std::vector<ClosingBlock> rows;
+  if (!options.closing) return rows;
+  const auto take = [&](ClosingKind kind, std::uint32_t field, ByteView block) -> Status {
+    if (block.size() > kMaxBlockBytes)
+      return fail(ErrorCode::kLimitExceeded,
+                  "a closing block above 256 MiB; leave out `lossless` or `keepOrder`");
+    rows.push_back({kind, field, {0, static_cast<std::uint32_t>(block.size()), crc32c(block)}});
+    return body(block);
+  };
+  const MirrorMesh& mirror = writer.mirror();
+  if (Status s = options.closing(
+          {mirror.mesh().points, mirror.mesh().tetrahedra, mirror.vertices(), mirror.tetrahedra()},
+          take);
+      !s)
+    return std::unexpected(s.error());
+  return rows;
 }
 
 Status checkRecords(const FusionHistory& history, const std::vector<ChunkEntry>& rows) {
@@ -118,6 +142,7 @@ LogStatistics statisticsOf(const LogIndex& index, const FusionHistory& history,
     }
     if (&row == &index.chunks.front()) s.baseBytes = s.fileBytes - s.headBytes;
   }
+  for (const ClosingBlock& row : index.closing) s.fileBytes += row.block.size;
   const std::uint64_t positionBytes = positionCost / (64 * 8);
   s.structureBytes -= positionBytes;
   s.positionBytes += positionBytes;
@@ -129,11 +154,12 @@ LogStatistics statisticsOf(const LogIndex& index, const FusionHistory& history,
 
 }  // namespace
 
-Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOptions& options) {
+Result<EncodedHead> encodeLog(const FusionHistory& history, const LogWriterOptions& options,
+                              const ByteSink& body) {
   if (Status s = checkLimits(history, options); !s) return std::unexpected(s.error());
   if (Status s = checkCellFields(history); !s) return std::unexpected(s.error());
 
-  RecordWriter writer(history, options.valueCodec, options.stop);
+  RecordWriter writer(history, options.valueCodec, body, options.stop);
   if (Status s = writer.base(); !s) return std::unexpected(s.error());
   if (Status s = writeStream(writer, history, options); !s) return std::unexpected(s.error());
   if (Status s = checkRecords(history, writer.chunks().rows()); !s)
@@ -141,14 +167,23 @@ Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOption
 
   Result<LogIndex> index = indexOf(history, options, writer);
   if (!index) return std::unexpected(index.error());
-  EncodedLog log;
+  Result<std::vector<ClosingBlock>> closing = writeClosing(writer, options, body);
+  if (!closing) return std::unexpected(closing.error());
+  index->closing = std::move(*closing);
+  EncodedHead log;
   log.statistics = statisticsOf(*index, history, writer.positionCost());
   log.statistics.steps = writer.meter().steps();
   index->fileBytes = log.statistics.fileBytes;
-  log.points = writer.mirror().vertices();
-  log.tetrahedra = writer.mirror().tetrahedra();
-  log.bytes = index->encode();
-  log.bytes.insert(log.bytes.end(), writer.chunks().body().begin(), writer.chunks().body().end());
+  log.head = index->encode();
+  return log;
+}
+
+Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOptions& options) {
+  Bytes body;
+  Result<EncodedHead> head = encodeLog(history, options, appendTo(body));
+  if (!head) return std::unexpected(head.error());
+  EncodedLog log{std::move(head->head), std::move(head->statistics)};
+  log.bytes.insert(log.bytes.end(), body.begin(), body.end());
   return log;
 }
 

@@ -5,18 +5,31 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "codec/log/closing_block.h"
 #include "codec/log/codec_id.h"
 #include "codec/record/fusion_history.h"
-#include "proto/bytes.h"
+#include "proto/byte_sink.h"
 #include "proto/error.h"
 #include "proto/level_error.h"
 #include "proto/manifest.h"
 
 namespace qtet {
+
+/// The input's mesh as the log's last level has it, while it is encoded.
+struct FinestMesh {
+  std::span<const LatticePoint> points;
+  std::span<const Tetrahedron> tetrahedra;
+  std::span<const VertexId> historyVertices;  ///< of each point, the history's vertex
+  std::span<const CellId> historyCells;       ///< of each tetrahedron, the history's cell
+};
+
+/// Takes a closing block of that kind (of kExactField, of that field).
+using ClosingSink = std::function<Status(ClosingKind kind, std::uint32_t field, ByteView block)>;
 
 struct LogWriterOptions {
   std::string source;     ///< the input's file name, for the manifest
@@ -28,8 +41,10 @@ struct LogWriterOptions {
   LevelErrors errors;
   std::optional<Focus> focus = std::nullopt;      ///< for the manifest
   std::optional<Opening> opening = std::nullopt;  ///< the same
-  std::function<void(double)> progress;           ///< fraction done, 0..1
-  std::stop_token stop{};                         ///< asked at every record
+  /// Gives the closing blocks, once the chunks are written; none without it.
+  std::function<Status(const FinestMesh&, const ClosingSink&)> closing{};
+  std::function<void(double)> progress{};  ///< fraction done, 0..1
+  std::stop_token stop{};                  ///< asked at every record
 };
 
 struct LogStatistics {
@@ -45,15 +60,24 @@ struct LogStatistics {
   std::uint32_t levels = 0;  ///< without the base mesh
 };
 
+/// The front of a log, and the figures of all of it.
+struct EncodedHead {
+  Bytes head;  ///< header, manifest, table: the file is these bytes and then all blocks
+  LogStatistics statistics;
+};
+
+/// Writes the history backwards, coarse-first. `body` takes the blocks in file order, so that they
+/// need not be in memory at once. Errors: bad-value (the history contradicts itself or holds a
+/// fusion that no label coding describes), limit-exceeded, bad-codec, cancelled, the sink's.
+[[nodiscard]] Result<EncodedHead> encodeLog(const FusionHistory& history,
+                                            const LogWriterOptions& options, const ByteSink& body);
+
 struct EncodedLog {
   Bytes bytes;
   LogStatistics statistics;
-  std::vector<VertexId> points;    ///< slot of the last level -> the history's vertex
-  std::vector<CellId> tetrahedra;  ///< and its cell
 };
 
-/// Writes the history backwards, coarse-first. Errors: bad-value (the history contradicts itself or
-/// holds a fusion that no label coding describes), limit-exceeded, bad-codec, cancelled.
+/// The same in memory.
 [[nodiscard]] Result<EncodedLog> encodeLog(const FusionHistory& history,
                                            const LogWriterOptions& options);
 

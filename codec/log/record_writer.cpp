@@ -5,15 +5,17 @@
 #include <string>
 #include <utility>
 
+#include "codec/mesh/boundary.h"
 #include "codec/record/base_coder.h"
 #include "proto/limits.h"
 
 namespace qtet {
 
-RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec, std::stop_token stop)
+RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec, ByteSink body,
+                           std::stop_token stop)
     : history_(history),
       stop_(std::move(stop)),
-      chunks_(history.fields, valueCodec),
+      chunks_(history.fields, valueCodec, std::move(body)),
       mirror_(history),
       describer_(history, mirror_),
       fields_(history, mirror_),
@@ -45,16 +47,32 @@ Status RecordWriter::base() {
                 "two cells of the base mesh disagree on the orientation of their face");
   std::vector<std::uint32_t> inOrder;
   for (const std::uint32_t i : coder.order) inOrder.push_back(ids[i]);
-  if (Status s = mirror_.start(coder.tetrahedra, inOrder, coder.vertexOrder); !s) return s;
-  for (VertexId v = 0; v < mirror_.vertices().size(); ++v) describer_.place(v);
+  CoarsePart base;
+  for (const VertexId vertex : coder.vertexOrder) base.points.push_back(history_.points[vertex]);
+  base.boundary = boundaryOf(coder.tetrahedra);
+  base.tetrahedra = std::move(coder.tetrahedra);
+  if (Status s = start(std::move(base), inOrder, coder.vertexOrder); !s) return s;
   const std::vector<LatticePoint>& points = mesh().points;
   const auto at = [&](VertexId u, std::uint32_t c) { return points[u][c]; };
   for (VertexId v = 0; v < points.size(); ++v)
     for (std::uint32_t c = 0; c < 3; ++c)
       chunks_.positions().code<true>(predictBase(coder.births[v], v, c, true, at), points[v][c]);
   fields_.base(coder.births, chunks_.fields());
-  added_[0] = mesh().next();
   meter_.spend(mesh().tetrahedra.size());
+  return {};
+}
+
+Status RecordWriter::patch(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+                           std::span<const VertexId> vertices) {
+  assert(history_.fields.empty());
+  return start(std::move(coarse), cells, vertices);
+}
+
+Status RecordWriter::start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+                           std::span<const VertexId> vertices) {
+  if (Status s = mirror_.start(std::move(coarse), cells, vertices); !s) return s;
+  for (VertexId v = 0; v < mirror_.vertices().size(); ++v) describer_.place(v);
+  added_[0] = mesh().next();
   return {};
 }
 

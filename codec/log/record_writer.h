@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -19,14 +20,19 @@ namespace qtet {
 
 class RecordWriter {
  public:
-  /// `history` must outlive it. `stop` is asked at every record.
-  RecordWriter(const FusionHistory& history, CodecId valueCodec, std::stop_token stop);
+  /// `history` must outlive it. `stop` is asked at every record. `body` takes the blocks.
+  RecordWriter(const FusionHistory& history, CodecId valueCodec, ByteSink body,
+               std::stop_token stop);
   RecordWriter(const RecordWriter&) = delete;
   RecordWriter& operator=(const RecordWriter&) = delete;
 
   /// Writes the base mesh into chunk 0, which stays open. Errors: bad-value, cancelled. REQUIRES:
-  /// called once and first.
+  /// called once and first, or patch() is.
   Status base();
+  /// Begins a patch instead, with the coarse part that its reader has: chunk 0 stays empty. `cells`
+  /// and `vertices` are the history's. Errors: bad-value. REQUIRES: a history without fields.
+  Status patch(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+               std::span<const VertexId> vertices);
   /// Writes the split flag of v in the current level (GrowingMesh::beginLevel). The fusion that its
   /// split undoes, or nullptr. REQUIRES: v may split.
   [[nodiscard]] const Fusion* flag(VertexId v);
@@ -54,6 +60,9 @@ class RecordWriter {
   }
 
  private:
+  Status start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+               std::span<const VertexId> vertices);
+
   const FusionHistory& history_;
   std::stop_token stop_;
   ChunkWriter chunks_;

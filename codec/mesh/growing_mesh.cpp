@@ -15,11 +15,12 @@ constexpr std::uint32_t kSpareCells = 2;
 
 }  // namespace
 
-void GrowingMesh::start(int positionBits) {
+void GrowingMesh::start(int positionBits, std::span<const VertexId> frozen) {
   assert(states_.empty() && positionBits > 0 && positionBits <= kMaxPositionBits);
   spreadShift_ = std::max(0, positionBits - kSpreadBits);
   states_.assign(points.size(), {});
   marked_.assign(points.size(), 0);
+  for (const VertexId v : frozen) marked_[v] = kFrozen;
   std::vector<std::uint32_t> cells(points.size(), kSpareCells);
   for (const Tetrahedron& t : tetrahedra)
     for (const VertexId v : t) ++cells[v];
@@ -185,9 +186,9 @@ bool GrowingMesh::enter(VertexId v, Link& link) {
       prefetch(&points[w]);
       prefetch(&states_[w].spread);
       prefetch(&states_[w].first);  // in every second state on another cache line
-      marked_[w] = static_cast<std::uint16_t>(level_);
+      mark(w);
     }
-  marked_[v] = static_cast<std::uint16_t>(level_);
+  mark(v);
   if (!link.close()) return false;
   for (const VertexId w : link.vertices())  // where apply() will add cells
     if (w != kGhost) prefetch(pool_.at(states_[w].first) + states_[w].size - 1);

@@ -52,9 +52,9 @@ class GrowingMesh {
     return {t[0], t[1], t[2], kGhost};
   }
 
-  /// Takes points, tetrahedra and boundary as the base mesh. REQUIRES: called once, ids in range,
-  /// coordinates below 2^positionBits.
-  void start(int positionBits);
+  /// Takes points, tetrahedra and boundary as the base mesh. The frozen vertices never split.
+  /// REQUIRES: called once, ids in range, coordinates below 2^positionBits.
+  void start(int positionBits, std::span<const VertexId> frozen = {});
   /// A hint: reserves memory for `total` slots, so that growing moves nothing. REQUIRES: there is
   /// memory for it (roomFor).
   void reserve(const Slots& total);
@@ -75,7 +75,7 @@ class GrowingMesh {
   [[nodiscard]] std::uint32_t level() const { return level_; }
   /// Vertices that the level may split: those present at its beginning.
   [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
-  [[nodiscard]] bool maysplit(VertexId v) const { return marked_[v] != level_; }
+  [[nodiscard]] bool maysplit(VertexId v) const { return marked_[v] < level_; }
   /// A hint: v is one of the next to be asked for.
   void expect(VertexId v) const {
     if (!kPrefetchIsFree || v >= states_.size()) return;
@@ -120,6 +120,8 @@ class GrowingMesh {
   void apply(VertexId v, const Link& link, const Split& split);
 
  private:
+  static constexpr std::uint16_t kFrozen = 0xFFFF;  // above every level
+
   struct State {
     Spread spread;
     std::uint32_t first = 0, units = 0, size = 0;  // of the star in the pool
@@ -128,6 +130,7 @@ class GrowingMesh {
   };
 
   void add(VertexId v, CellRef cell);
+  void mark(VertexId v) { marked_[v] = std::max(marked_[v], static_cast<std::uint16_t>(level_)); }
   void addCell(CellRef cell);
   template <bool kShifted, std::size_t kCorners>
   void measure(std::span<const VertexId, kCorners> corners);
@@ -144,7 +147,7 @@ class GrowingMesh {
   VertexId newVertex();
 
   std::vector<State> states_;
-  // by vertex: the last level in which it was in the star of a split
+  // by vertex: the last level in which it was in the star of a split, or kFrozen
   std::vector<std::uint16_t> marked_;
   StarPool pool_;
   // The current split: the star, which corner of each of its cells the fused vertex is, the

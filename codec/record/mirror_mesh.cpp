@@ -12,8 +12,8 @@ namespace qtet {
 MirrorMesh::MirrorMesh(const FusionHistory& history)
     : history_(history), slots_(history.points.size(), kGhost) {}
 
-Status MirrorMesh::start(std::span<const Tetrahedron> tetrahedra,
-                         std::span<const std::uint32_t> cells, std::span<const VertexId> vertices) {
+Status MirrorMesh::start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+                         std::span<const VertexId> vertices) {
   assert(vertices_.empty());
   const auto isGhost = [](const auto& cell) {
     return std::ranges::find(cell, kGhost) != cell.end();
@@ -28,15 +28,14 @@ Status MirrorMesh::start(std::span<const Tetrahedron> tetrahedra,
   tetrahedra_.assign(cells.begin(), cells.end());
   vertices_.assign(vertices.begin(), vertices.end());
   for (VertexId v = 0; v < vertices_.size(); ++v) slots_[vertices_[v]] = v;
-  for (const VertexId vertex : vertices_) mesh_.points.push_back(history_.points[vertex]);
-  mesh_.tetrahedra.assign(tetrahedra.begin(), tetrahedra.end());
-  const std::vector<Triangle> boundary = boundaryOf(mesh_.tetrahedra);
-  mesh_.boundary.assign(boundary.begin(), boundary.end());
-  mesh_.start(history_.lattice.bits);
+  mesh_.points.assign(coarse.points.begin(), coarse.points.end());
+  mesh_.tetrahedra.assign(coarse.tetrahedra.begin(), coarse.tetrahedra.end());
+  mesh_.boundary.assign(coarse.boundary.begin(), coarse.boundary.end());
+  mesh_.start(history_.lattice.bits, coarse.frozen);
   return matchBoundary();
 }
 
-// The decoder derives the base mesh's boundary; the history's ghost cells must be the same
+// The decoder has the boundary of the coarse part; the history's ghost cells must be the same
 // triangles.
 Status MirrorMesh::matchBoundary() {
   std::vector<std::pair<Triangle, std::uint32_t>> ghosts;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/coding/prefetch.h"
+#include "codec/mesh/coarse_part.h"
 #include "codec/mesh/growing_mesh.h"
 #include "codec/record/fusion_history.h"
 #include "proto/error.h"
@@ -19,10 +20,9 @@ class MirrorMesh {
   /// Empty. `history` must outlive it.
   explicit MirrorMesh(const FusionHistory& history);
 
-  /// Takes the base mesh: its tetrahedra by slot, and what the history calls each tetrahedron and
-  /// vertex. Errors: bad-value (the history's ghost cells are not the boundary of these).
-  /// REQUIRES: called once and first.
-  Status start(std::span<const Tetrahedron> tetrahedra, std::span<const std::uint32_t> cells,
+  /// Takes the coarse part, and what the history calls each of its tetrahedra and vertices. Errors:
+  /// bad-value (the history's ghost cells are not its boundary). REQUIRES: called once and first.
+  Status start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
                std::span<const VertexId> vertices);
   /// Applies a split of v, which undoes `fusion`: as GrowingMesh::apply. `restored` holds the
   /// history's cell of each of `split.deleted`.

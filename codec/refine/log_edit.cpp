@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <string>
 #include <utility>
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
 #include "proto/crc32c.h"
@@ -13,33 +15,30 @@
 namespace qtet {
 namespace {
 
-using Blocks = std::vector<std::vector<ByteView>>;  // chunk, part
+/// Where the blocks of the new log lie, in file order.
+class Pieces {
+ public:
+  explicit Pieces(const LogFile& log) : log_(log) {}
 
-/// The file with sizes and checksums that fit the blocks.
-Bytes together(LogIndex index, const Blocks& blocks, const std::vector<ByteView>& closing) {
-  for (std::size_t chunk = 0; chunk < blocks.size(); ++chunk) {
-    index.chunks[chunk].blocks.clear();
-    for (const ByteView block : blocks[chunk])
-      index.chunks[chunk].blocks.push_back(
-          {0, static_cast<std::uint32_t>(block.size()), crc32c(block)});
+  BlockEntry keep(const BlockEntry& block) {
+    return add(log_.bytes().subspan(static_cast<std::size_t>(block.offset), block.size), block.crc);
   }
-  for (std::size_t i = 0; i < closing.size(); ++i)
-    index.closing[i].block = {0, static_cast<std::uint32_t>(closing[i].size()), crc32c(closing[i])};
-  index.fileBytes = index.encode().size();
-  for (const auto& chunk : blocks)
-    for (const ByteView block : chunk) index.fileBytes += block.size();
-  for (const ByteView block : closing) index.fileBytes += block.size();
-  Bytes out = index.encode();
-  out.reserve(index.fileBytes);
-  for (const auto& chunk : blocks)
-    for (const ByteView block : chunk) out.insert(out.end(), block.begin(), block.end());
-  for (const ByteView block : closing) out.insert(out.end(), block.begin(), block.end());
-  return out;
-}
+  BlockEntry add(ByteView block) { return add(block, crc32c(block)); }
 
-ByteView viewOf(const LogFile& log, const ClosingBlock& closing) {
-  return log.bytes().subspan(static_cast<std::size_t>(closing.block.offset), closing.block.size);
-}
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  [[nodiscard]] std::vector<ByteView>& all() { return all_; }
+
+ private:
+  BlockEntry add(ByteView block, std::uint32_t crc) {
+    all_.push_back(block);
+    bytes_ += block.size();
+    return {0, static_cast<std::uint32_t>(block.size()), crc};
+  }
+
+  const LogFile& log_;
+  std::vector<ByteView> all_;
+  std::uint64_t bytes_ = 0;
+};
 
 void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uint32_t>& kept,
                 const std::vector<NewField>& added) {
@@ -82,8 +81,8 @@ Result<TimePrediction> keptPrediction(const Manifest& manifest, const LogIndex& 
 
 }  // namespace
 
-Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
-                         const std::vector<NewField>& added) {
+Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
+                             const std::vector<NewField>& added) {
   Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
   if (kept.size() + added.size() > kMaxFields)
@@ -118,18 +117,19 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
   if (!manifestBytes) return std::unexpected(manifestBytes.error());
   index.manifest = std::move(*manifestBytes);
 
-  Blocks blocks(index.chunks.size());
-  for (std::uint32_t chunk = 0; chunk < blocks.size(); ++chunk) {
-    blocks[chunk] = {log.block(chunk, kStructurePart), log.block(chunk, kPositionsPart)};
-    for (const std::uint32_t f : kept)
-      blocks[chunk].push_back(log.block(chunk, kFirstFieldPart + f));
-    for (const NewField& field : added) blocks[chunk].push_back(field.blocks[chunk]);
-    for (const ByteView block : blocks[chunk])
-      if (block.size() > kMaxBlockBytes)
+  Pieces pieces(log);
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
+    const std::vector<BlockEntry>& before = log.index().chunks[chunk].blocks;
+    std::vector<BlockEntry>& blocks = index.chunks[chunk].blocks;
+    blocks = {pieces.keep(before[kStructurePart]), pieces.keep(before[kPositionsPart])};
+    for (const std::uint32_t f : kept) blocks.push_back(pieces.keep(before[kFirstFieldPart + f]));
+    for (const NewField& field : added) {
+      if (field.blocks[chunk].size() > kMaxBlockBytes)
         return fail(ErrorCode::kLimitExceeded,
                     "a block above 256 MiB; take fewer components or bits");
+      blocks.push_back(pieces.add(field.blocks[chunk]));
+    }
   }
-  std::vector<ByteView> closing;
   index.closing.clear();
   for (const ClosingBlock& c : log.index().closing) {
     const auto place = std::ranges::find(kept, c.field);
@@ -137,28 +137,28 @@ Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& k
     index.closing.push_back(c);
     if (c.kind == ClosingKind::kExactField)
       index.closing.back().field = static_cast<std::uint32_t>(place - kept.begin());
-    closing.push_back(viewOf(log, c));
+    index.closing.back().block = pieces.keep(c.block);
   }
-  return together(std::move(index), blocks, closing);
+  index.fileBytes = index.encode().size() + pieces.bytes();
+  return EditedLog(log, index.encode(), std::move(pieces.all()));
 }
 
-Result<Bytes> withClosing(const LogFile& log, const std::vector<NewClosing>& added) {
-  LogIndex index = log.index();
-  Blocks blocks(index.chunks.size());
-  for (std::uint32_t chunk = 0; chunk < blocks.size(); ++chunk)
-    for (std::uint32_t part = 0; part < index.parts(); ++part)
-      blocks[chunk].push_back(log.block(chunk, part));
-  std::vector<ByteView> closing;
-  for (const ClosingBlock& c : index.closing) closing.push_back(viewOf(log, c));
-  for (const NewClosing& c : added) {
-    if (c.bytes.size() > kMaxBlockBytes)
-      return fail(ErrorCode::kLimitExceeded,
-                  "a closing block above 256 MiB; leave out `lossless` or `keepOrder`");
-    assert(index.closingBlock(c.kind, c.field) == nullptr);
-    index.closing.push_back({c.kind, c.field, {}});
-    closing.push_back(c.bytes);
+Status EditedLog::writeTo(const ByteSink& sink) const {
+  if (Status s = sink(head_); !s) return s;
+  const std::uint8_t* const first = log_.bytes().data();
+  const std::uint8_t* const end = first + log_.bytes().size();
+  for (const ByteView block : blocks_) {
+    if (Status s = sink(block); !s) return s;
+    if (std::less_equal<>()(first, block.data()) && std::less<>()(block.data(), end))
+      log_.release(static_cast<std::uint64_t>(block.data() - first), block.size());
   }
-  return together(std::move(index), blocks, closing);
+  return {};
+}
+
+Bytes EditedLog::together() const {
+  Bytes out;
+  (void)writeTo(appendTo(out));
+  return out;
 }
 
 }  // namespace qtet

@@ -1,11 +1,12 @@
 // Makes a log from another log's blocks: fields are added, left out or replaced, and the other
-// blocks stay byte for byte.
+// blocks and their checksums stay as they are.
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
-#include "codec/log/log_index.h"
+#include "proto/byte_sink.h"
 #include "proto/manifest.h"
 
 namespace qtet {
@@ -19,16 +20,25 @@ struct NewField {
   std::vector<FieldError> errors;  ///< one a level; unused where the log has none of the level
 };
 
-/// A closing block for a log.
-struct NewClosing {
-  ClosingKind kind = ClosingKind::kPointOrder;
-  std::uint32_t field = 0;  ///< of kExactField
-  Bytes bytes;
-};
+/// A log whose blocks lie in another log and in new fields. Both must outlive it.
+class EditedLog {
+ public:
+  EditedLog(const LogFile& log, Bytes head, std::vector<ByteView> blocks)
+      : log_(log), head_(std::move(head)), blocks_(std::move(blocks)) {}
 
-/// The log with `added` behind its own closing blocks. Errors: limit-exceeded (a block too large).
-/// REQUIRES: kinds that the log does not have yet.
-[[nodiscard]] Result<Bytes> withClosing(const LogFile& log, const std::vector<NewClosing>& added);
+  /// Header, manifest and table.
+  [[nodiscard]] const Bytes& head() const { return head_; }
+  /// All of its bytes, in order. A block of the other log is held in memory only until the sink has
+  /// taken it. Errors: the sink's.
+  [[nodiscard]] Status writeTo(const ByteSink& sink) const;
+  /// The same in memory.
+  [[nodiscard]] Bytes together() const;
+
+ private:
+  const LogFile& log_;
+  Bytes head_;
+  std::vector<ByteView> blocks_;
+};
 
 /// The log with the fields `kept` (numbers of its own fields, in the order wanted) and then
 /// `added`. Errors: limit-exceeded (too many fields, a block too large), bad-value (the log's
@@ -36,7 +46,8 @@ struct NewClosing {
 /// REQUIRES: fields of the log; a block of each added field for every chunk. If any level of the
 /// log has errors, each added field has some for every level. Closing blocks stay, except those of
 /// fields left out.
-[[nodiscard]] Result<Bytes> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
-                                       const std::vector<NewField>& added);
+[[nodiscard]] Result<EditedLog> withFields(const LogFile& log,
+                                           const std::vector<std::uint32_t>& kept,
+                                           const std::vector<NewField>& added);
 
 }  // namespace qtet

@@ -43,6 +43,13 @@ LogFile::~LogFile() = default;
 LogFile::LogFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 const LogIndex& LogFile::index() const { return state_->index; }
+std::span<const ChunkEntry> LogFile::chunks() const { return state_->index.chunks; }
+std::span<const FieldShape> LogFile::fields() const { return state_->index.fields; }
+std::span<const ClosingBlock> LogFile::closingBlocks() const { return state_->index.closing; }
+bool LogFile::hasClosing(ClosingKind kind, std::uint32_t field) const {
+  return state_->index.closingBlock(kind, field) != nullptr;
+}
+std::uint64_t LogFile::headBytes() const { return state_->index.headBytes(); }
 const std::string& LogFile::digest() const { return state_->digest; }
 
 Result<LogFile> LogFile::open(const std::filesystem::path& path, DigestOf digestOf) {
@@ -243,7 +250,7 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
     wanted = *fields;
   else
     for (std::uint32_t f = 0; f < manifest->fields.size(); ++f) wanted.push_back(f);
-  const std::vector<std::uint32_t> needed = log.index().withParents(wanted);
+  const std::vector<std::uint32_t> needed = withParents(log.fields(), wanted);
 
   Refiner refiner(log.index());
   refiner.stopAtLevel(level);

@@ -10,13 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "codec/log/chunk_entry.h"
+#include "codec/log/closing_block.h"
+#include "codec/log/field_shape.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 
 namespace qtet {
 
 class Refiner;
-enum class ClosingKind : std::uint32_t;
 struct LatticeMesh;
 struct LogIndex;
 struct Manifest;
@@ -43,6 +45,12 @@ class LogFile {
   [[nodiscard]] const LogIndex& index() const;
   /// SHA-256 of the whole file, lower-case hexadecimal; computed once at open.
   [[nodiscard]] const std::string& digest() const;
+  [[nodiscard]] std::span<const ChunkEntry> chunks() const;
+  [[nodiscard]] std::span<const FieldShape> fields() const;
+  [[nodiscard]] std::span<const ClosingBlock> closingBlocks() const;
+  [[nodiscard]] bool hasClosing(ClosingKind kind, std::uint32_t field = 0) const;
+  /// Bytes of header, manifest and table: where the first block starts.
+  [[nodiscard]] std::uint64_t headBytes() const;
   [[nodiscard]] ByteView block(std::uint32_t chunk, std::uint32_t part) const;
   /// The bytes of a closing block after comparing them with its CRC-32C. Errors: not-found (the log
   /// has none of the kind), bad-checksum.

@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/value_block.h"
 #include "codec/refine/log_file.h"
@@ -59,7 +58,7 @@ class SplitRecorder final : public SplitObserver {
 };
 
 Status decodeBase(const LogFile& log, LogHistory& out) {
-  const ChunkEntry& entry = log.index().chunks.front();
+  const ChunkEntry& entry = log.chunks().front();
   RangeDecoder decoder(log.block(0, kStructurePart));
   BaseCoder<RangeDecoder> coder(decoder, entry.newVertices, entry.newTetrahedra);
   if (!coder.run(nullptr, [&] { return decoder.overrun(); }))
@@ -145,20 +144,20 @@ Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double
   const Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
   LogHistory out;
-  for (const ChunkEntry& e : log.index().chunks) out.tetrahedra += e.newTetrahedra;
+  for (const ChunkEntry& e : log.chunks()) out.tetrahedra += e.newTetrahedra;
   Refiner refiner(log.index());
   SplitRecorder recorder(out);
   refiner.observe(&recorder);
   out.chunkBirths.push_back(0);
   out.chunkCells.push_back(0);
-  const auto chunks = static_cast<std::uint32_t>(log.index().chunks.size());
+  const auto chunks = static_cast<std::uint32_t>(log.chunks().size());
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
     if (Status s = applyChunk(log, refiner, chunk, {}); !s) return std::unexpected(s.error());
     if (chunk == 0)
       if (Status s = decodeBase(log, out); !s) return std::unexpected(s.error());
     out.chunkBirths.push_back(static_cast<std::uint32_t>(out.points.births().size()));
     out.chunkCells.push_back(refiner.firstSlots(chunk + 1).tetrahedra);
-    out.valueCodecs.push_back(log.index().chunks[chunk].valueCodec);
+    out.valueCodecs.push_back(log.chunks()[chunk].valueCodec);
     if (progress) progress((chunk + 1.0) / chunks);
   }
   FusionHistory& h = out.history;

@@ -7,13 +7,20 @@
 #include <string>
 #include <utility>
 
-#include "codec/log/log_index.h"
+#include "codec/refine/base_mesh.h"
 #include "codec/refine/refiner_state.h"
 #include "proto/checksum.h"
 
 namespace qtet {
 
 namespace {
+
+// A page decodes the base mesh by a module without the rest, which is half as large (web-client).
+#ifdef QTET_BASE_ONLY
+constexpr bool kBaseOnly = true;
+#else
+constexpr bool kBaseOnly = false;
+#endif
 
 // Whether so much can be had at once.
 bool hasMemory(std::uint64_t bytes) {
@@ -33,7 +40,13 @@ std::unexpected<Error> refuseChunk(ErrorCode code, std::uint32_t chunk, const st
                         (code == ErrorCode::kBadOrder ? "" : kCorrupt));
 }
 
-Refiner::Refiner(LogIndex index) : state_(std::make_unique<State>(std::move(index))) {}
+PatchKind Refiner::State::kindOf(const LogIndex& index) {
+  const bool hasPointFields = std::ranges::any_of(
+      index.fields, [](const FieldShape& f) { return f.association == Association::kPoint; });
+  return {index.positionBits, hasPointFields, index.hasCellField()};
+}
+
+Refiner::Refiner(const LogIndex& index) : state_(std::make_unique<State>(index)) {}
 Refiner::~Refiner() = default;
 Refiner::Refiner(Refiner&&) noexcept = default;
 Refiner& Refiner::operator=(Refiner&&) noexcept = default;
@@ -47,7 +60,7 @@ Status Refiner::State::mayCome(std::uint32_t chunk) const {
   if (chunk < added.size()) return refuse("it has been applied already");
   if (chunk > added.size())
     return refuse("chunk " + std::to_string(added.size()) + " has to be applied first");
-  if (phase == Phase::kStopped || (chunk > 0 && mesh.level() >= settings.stopLevel))
+  if (phase == Phase::kStopped || (chunk > 0 && mesh.level() >= requests.stopLevel))
     return refuse("the refiner was told to stop at a level before it");
   return {};
 }
@@ -59,29 +72,48 @@ Status Refiner::State::mayCome(std::uint32_t chunk) const {
 void Refiner::State::makeRoom(std::size_t bytes) {
   if (!structureBytes) return;
   *structureBytes += bytes;
-  if (settings.stopLevel < plan.index.chunks.back().lastLevel) return;
+  if (requests.stopLevel < plan.index.chunks.back().lastLevel) return;
   const Slots& total = plan.slots.back();
   if (std::max({total.vertices, total.tetrahedra, total.triangles}) >
       kMaxElementsPerByte * *structureBytes)
     return;
   structureBytes.reset();
-  if (hasMemory(mesh.records().roomForAll())) mesh.records().makeRoomForAll();
+  if (hasMemory(mesh.records().roomFor(total, plan.records)))
+    mesh.records().makeRoom(total, plan.records);
+}
+
+Result<Extent> Refiner::State::readBase(PatchBlock& block) {
+  if (Status s = mesh.records().work(block, block.entry.newTetrahedra); !s)
+    return std::unexpected(s.error());
+  Result<BaseMesh> base = decodeBaseMesh(block, plan.index.positionBits);
+  if (!base) return std::unexpected(base.error());
+  baseBirths = std::move(base->births);
+  mesh.start(std::move(base->mesh));
+  // whoever decodes the rest reads this chunk again, to its end
+  if (!kBaseOnly && !block.decoder.atEnd()) return refuseBaseMesh(block);
+  return Extent::kWhole;
+}
+
+Result<Extent> Refiner::State::readRun(PatchBlock& block) {
+  if constexpr (kBaseOnly)
+    return block.refuse(ErrorCode::kBadOrder, "this decoder reads the base mesh only");
+  return mesh.read(block);
 }
 
 Status Refiner::State::apply(std::uint32_t chunk, ByteView structure, Values& positions) {
   const ChunkEntry& entry = plan.index.chunks[chunk];
   const std::size_t firstBirth = mesh.records().records();
   mesh.records().meter().grant(structure.size());
-  ChunkInput input{chunk,
+  PatchBlock block{chunk,
                    entry,
                    RangeDecoder(structure),
                    positions,
                    plan.slots[chunk + 1],
                    firstBirth + entry.records};
-  const Result<Extent> extent = mesh.read(input);
+  const Result<Extent> extent = chunk == 0 ? readBase(block) : readRun(block);
   if (!extent) return std::unexpected(extent.error());
   if (*extent == Extent::kWhole) {
-    if (Status s = mesh.records().checkCounts(input); !s) return s;
+    if (Status s = mesh.records().checkCounts(block); !s) return s;
     if (!positions.atEnd())
       return refuseChunk(ErrorCode::kBadValue, chunk, "position values are left over");
   }
@@ -110,9 +142,9 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk,
   return state_->fields.apply(field, chunk, values);
 }
 
-void Refiner::observe(SplitObserver* observer) { state_->settings.observer = observer; }
-void Refiner::askBeforeLevels(LevelGate* gate) { state_->settings.gate = gate; }
-void Refiner::stopAtLevel(std::uint32_t level) { state_->settings.stopLevel = level; }
+void Refiner::observe(SplitObserver* observer) { state_->requests.observer = observer; }
+void Refiner::askBeforeLevels(LevelGate* gate) { state_->requests.gate = gate; }
+void Refiner::stopAtLevel(std::uint32_t level) { state_->requests.stopLevel = level; }
 
 const LogIndex& Refiner::index() const { return state_->plan.index; }
 std::uint32_t Refiner::chunksApplied() const {

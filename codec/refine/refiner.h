@@ -1,5 +1,6 @@
-// From chunks to a mesh that grows in place (FORMAT.md, "Refinement"). Engine-free and
-// exception-free; compiled natively and to WebAssembly.
+// Puts the chunks of a log together (FORMAT.md, "Refinement"). A patch decoder refines the mesh in
+// place; the fields follow it at once or later. Engine-free and exception-free; compiled natively
+// and to WebAssembly.
 #pragma once
 
 #include <array>
@@ -9,41 +10,13 @@
 #include <vector>
 
 #include "codec/mesh/mesh.h"
+#include "codec/refine/patch_requests.h"
 #include "proto/bytes.h"
 #include "proto/error.h"
 
 namespace qtet {
 
-class GrowingMesh;
-class Link;
 struct LogIndex;
-struct Split;
-
-/// Notified of every split just before it is applied. The link is labelled, and ids are those of
-/// `mesh`.
-class SplitObserver {
- public:
-  virtual void beforeSplit(VertexId v, const GrowingMesh& mesh, const Link& link,
-                           const Split& split) = 0;
-
- protected:
-  ~SplitObserver() = default;
-};
-
-/// Asked whether decoding goes on. So a check of a stranger's log can stop inside a chunk, which
-/// may be the whole log.
-class LevelGate {
- public:
-  virtual bool goOn() = 0;
-
- protected:
-  ~LevelGate() = default;
-};
-
-/// The size of the mesh when a level was complete.
-struct LevelCounts {
-  std::size_t vertices = 0, tetrahedra = 0, boundaryTriangles = 0;
-};
 
 /// Applies the chunks of one log in file order. Vertices and cells keep their slots for ever; an
 /// affected cell changes one index. A chunk's slots follow from the chunk table (firstSlots). Not
@@ -51,7 +24,7 @@ struct LevelCounts {
 /// part of a chunk's.
 class Refiner {
  public:
-  explicit Refiner(LogIndex index);
+  explicit Refiner(const LogIndex& index);
   ~Refiner();
   Refiner(Refiner&&) noexcept;
   Refiner& operator=(Refiner&&) noexcept;

@@ -2,11 +2,18 @@
 
 #include <algorithm>
 
+#include "codec/refine/chunk_plan.h"
+
 namespace qtet {
 
 RefinerFields::RefinerFields(const ChunkPlan& plan, const RecordReader& records,
+                             const std::vector<BaseBirth>& base,
                              const std::vector<AddedElements>& added)
-    : plan_(plan), records_(records), added_(added), fields_(plan.index.fields.size()) {}
+    : plan_(plan),
+      records_(records),
+      base_(base),
+      added_(added),
+      fields_(plan.index.fields.size()) {}
 
 // A cell stands in with its prediction, a vertex with its fused vertex's value.
 void RefinerFields::inherit(std::uint32_t chunk) {
@@ -113,7 +120,7 @@ void RefinerFields::codePoints(Field& f, const FieldShape& shape, std::uint32_t 
   const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return coded[v * n + c]; };
   const PointAncestry& ancestry = records_.ancestry().points;
   const AddedElements& b = added_[chunk];
-  const std::size_t baseVertices = chunk == 0 ? records_.ancestry().base.size() : 0;
+  const std::size_t baseVertices = chunk == 0 ? base_.size() : 0;
   for (VertexId v = 0; isPredicted && v < baseVertices; ++v) restore(f, shape, v);
   if (chunk == 0) inheritPoints(f, shape.components, 0);
   for (const Birth& birth : ancestry.births().subspan(b.firstBirth, b.endBirth - b.firstBirth)) {
@@ -130,11 +137,10 @@ void RefinerFields::codeBase(std::vector<std::int32_t>& coded, const FieldShape&
                              Values& residuals) const {
   const std::size_t n = shape.components;
   const auto at = [&](VertexId u, std::uint32_t c) { return coded[u * n + c]; };
-  const std::vector<BaseBirth>& births = records_.ancestry().base;
-  for (VertexId v = 0; v < births.size(); ++v)
+  for (VertexId v = 0; v < base_.size(); ++v)
     for (std::uint32_t c = 0; c < n; ++c)
       coded[v * n + c] = residuals.codeField<false>(
-          shape.hasMissing, predictBaseField(births[v], v, c, shape.hasMissing, at), 0);
+          shape.hasMissing, predictBaseField(base_[v], v, c, shape.hasMissing, at), 0);
 }
 
 void RefinerFields::codeCells(Field& f, const FieldShape& shape, std::uint32_t chunk,

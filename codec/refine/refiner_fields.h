@@ -6,10 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "codec/log/log_index.h"
-#include "codec/refine/refiner_chunks.h"
+#include "codec/log/field_shape.h"
+#include "codec/record/base_coder.h"
+#include "codec/refine/patch_decoder.h"
 
 namespace qtet {
+
+struct ChunkPlan;
 
 /// The elements that a chunk has added to the mesh.
 struct AddedElements {
@@ -20,9 +23,10 @@ struct AddedElements {
 
 class RefinerFields {
  public:
-  /// All must outlive it. `added`: of each chunk that the mesh has, which a field has later.
+  /// All must outlive it. `base`: the births of the base mesh's vertices, once it is there.
+  /// `added`: of each chunk that the mesh has, which a field has later.
   RefinerFields(const ChunkPlan& plan, const RecordReader& records,
-                const std::vector<AddedElements>& added);
+                const std::vector<BaseBirth>& base, const std::vector<AddedElements>& added);
 
   /// Implements Refiner::applyField.
   Status apply(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
@@ -57,6 +61,7 @@ class RefinerFields {
 
   const ChunkPlan& plan_;
   const RecordReader& records_;
+  const std::vector<BaseBirth>& base_;
   const std::vector<AddedElements>& added_;
   std::vector<Field> fields_;
 };

@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
-#include "codec/log/log_index.h"
+#include "codec/record/base_coder.h"
+#include "codec/refine/chunk_plan.h"
+#include "codec/refine/patch_decoder.h"
 #include "codec/refine/refiner.h"
-#include "codec/refine/refiner_chunks.h"
 #include "codec/refine/refiner_fields.h"
 
 namespace qtet {
@@ -20,16 +20,24 @@ struct Refiner::State {
     kBroken,   // a chunk failed, or is being applied
   };
 
-  explicit State(LogIndex logIndex)
-      : plan(std::move(logIndex)), mesh(plan, settings), fields(plan, mesh.records(), added) {}
+  explicit State(const LogIndex& logIndex)
+      : plan(logIndex),
+        mesh(kindOf(plan.index), requests),
+        fields(plan, mesh.records(), baseBirths, added) {}
+
+  static PatchKind kindOf(const LogIndex& index);
 
   [[nodiscard]] Status mayCome(std::uint32_t chunk) const;
   Status apply(std::uint32_t chunk, ByteView structure, Values& positions);
   void makeRoom(std::size_t bytes);
 
+  [[nodiscard]] Result<Extent> readBase(PatchBlock& block);
+  [[nodiscard]] Result<Extent> readRun(PatchBlock& block);
+
   ChunkPlan plan;
-  RefinerSettings settings;
-  MeshReader mesh;
+  PatchRequests requests;
+  PatchDecoder mesh;
+  std::vector<BaseBirth> baseBirths;
   std::vector<AddedElements> added;  // by chunk that has come
   Phase phase = Phase::kOpen;
   RefinerFields fields;

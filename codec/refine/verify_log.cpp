@@ -5,7 +5,6 @@
 #include <numeric>
 #include <string>
 
-#include "codec/log/log_index.h"
 #include "codec/refine/log_file.h"
 #include "codec/refine/refiner.h"
 #include "proto/manifest.h"
@@ -75,14 +74,14 @@ class Gate final : public LevelGate {
 
 Result<Refiner> decodeVerified(const LogFile& log, const Manifest& manifest,
                                const std::function<bool(double fraction)>& goOn) {
-  assert(manifest.fields.size() == log.index().fields.size());
+  assert(manifest.fields.size() == log.fields().size());
   if (Status checked = log.verifyChecksums(); !checked) return std::unexpected(checked.error());
   Refiner refiner(log.index());
-  Gate gate(goOn, log.index().chunks.size());
+  Gate gate(goOn, log.chunks().size());
   refiner.askBeforeLevels(&gate);
   std::vector<std::uint32_t> fields(manifest.fields.size());
   std::iota(fields.begin(), fields.end(), 0u);
-  const auto chunks = static_cast<std::uint32_t>(log.index().chunks.size());
+  const auto chunks = static_cast<std::uint32_t>(log.chunks().size());
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
     if (Status applied = applyChunk(log, refiner, chunk, fields); !applied)
       return std::unexpected(applied.error());

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <span>
 
-#include "codec/log/log_index.h"
 #include "server/http/http_resource.h"
 
 namespace qtet {
@@ -42,13 +41,14 @@ std::uint64_t endOf(const BlockEntry& block) { return block.offset + block.size;
 /// Structure and positions of a chunk, or one field's block of it.
 Reply chunkReply(const RequestView& request, const MeshPointer& mesh, std::string_view number,
                  std::optional<std::uint32_t> field) {
-  const LogIndex& index = mesh->log.index();
+  const std::span<const ChunkEntry> chunks = mesh->log.chunks();
   const std::optional<std::uint32_t> chunk = parseIndex(number);
-  if (!chunk || *chunk >= index.chunks.size())
+  if (!chunk || *chunk >= chunks.size())
     return notFound("there is no such chunk; this log has the chunks 0 to " +
-                    std::to_string(index.chunks.size() - 1));
-  const BlockEntry& first = index.block(*chunk, field ? kFirstFieldPart + *field : kStructurePart);
-  const BlockEntry& last = index.block(*chunk, field ? kFirstFieldPart + *field : kPositionsPart);
+                    std::to_string(chunks.size() - 1));
+  const std::vector<BlockEntry>& blocks = chunks[*chunk].blocks;
+  const BlockEntry& first = blocks[field ? kFirstFieldPart + *field : kStructurePart];
+  const BlockEntry& last = blocks[field ? kFirstFieldPart + *field : kPositionsPart];
   const std::string name =
       (field ? "f" + std::to_string(*field) : "c") + "-" + std::to_string(*chunk);
   return part(request, mesh, name, first.offset, endOf(last));
@@ -67,12 +67,11 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   assert(target.segments.size() >= 3);
   const MeshPointer& mesh = log.mesh;
   const Path path = Path(target.segments).subspan(3);
-  const LogIndex& index = mesh->log.index();
   const std::string what = path.empty() ? "" : path[0];
   if (path.size() == 1 && what == "log")
     return part(request, mesh, "", 0, mesh->log.bytes().size());
   if (path.size() == 1 && what == "base")
-    return part(request, mesh, "base", 0, endOf(index.block(0, kPositionsPart)));
+    return part(request, mesh, "base", 0, endOf(mesh->log.chunks().front().blocks[kPositionsPart]));
   if (path.size() == 1 && what == "manifest")
     return documentReply(request, mesh->manifestText(), mesh);
   if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);

@@ -1,6 +1,5 @@
 #include "server/store/descriptions.h"
 
-#include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "proto/json_reader.h"
 #include "server/store/served_mesh.h"
@@ -36,7 +35,7 @@ Json fields(const ServedMesh& mesh) {
   for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) {
     const ManifestField& field = mesh.manifest.fields[f];
     std::uint64_t bytes = 0;
-    for (const ChunkEntry& chunk : mesh.log.index().chunks)
+    for (const ChunkEntry& chunk : mesh.log.chunks())
       bytes += chunk.blocks[kFirstFieldPart + f].size;
     out.push_back({{"key", fieldKey(mesh.manifest, f)},
                    {"name", field.name},
@@ -66,8 +65,8 @@ std::string describeEntry(const ServedMesh& mesh) {
 
 std::string describeMesh(const ServedMesh& mesh) {
   Json out = identity(mesh);
-  out["headBytes"] = mesh.log.index().headBytes();
-  out["chunks"] = mesh.log.index().chunks.size();
+  out["headBytes"] = mesh.log.headBytes();
+  out["chunks"] = mesh.log.chunks().size();
   out["fields"] = fields(mesh);
   out["manifest"] = Json::parse(manifestToJson(mesh.manifest));
   out["levels"] = levelsJson(mesh.manifest, mesh.log.index());

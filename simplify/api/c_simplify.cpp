@@ -217,7 +217,9 @@ qtet_status qtet_simplify(qtet_simplified* made, size_t meshBytes, const qtet_in
     for (const std::string& note : output->report.notes) made->notes += note + "\n";
     for (const std::string& warning : output->report.warnings)
       made->notes += "warning: " + warning + "\n";
-    made->log = std::move(output->log);
+    Result<qtet::Bytes> log = output->log.bytes();
+    if (!log) return made->refuse(log.error());
+    made->log = std::move(*log);
     return QTET_OK;
   });
 }

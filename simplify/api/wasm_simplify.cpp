@@ -38,7 +38,9 @@ int qtet_simplify_file(const char* name) {
   };
   auto made = qtet::simplifyToLog(std::move(read->mesh), options);
   if (!made) return failed(made.error());
-  logBytes = std::move(made->log);
+  auto log = made->log.bytes();
+  if (!log) return failed(log.error());
+  logBytes = std::move(*log);
   nlohmann::ordered_json out = {{"notes", read->report.notes},
                                 {"warnings", made->report.warnings},
                                 {"tetrahedra", made->report.tetrahedraIn}};

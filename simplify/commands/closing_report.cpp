@@ -4,7 +4,6 @@
 #include <bit>
 #include <string>
 
-#include "codec/log/log_index.h"
 #include "codec/refine/log_file.h"
 #include "proto/manifest.h"
 #include "simplify/log/kept_input.h"
@@ -52,9 +51,9 @@ bool sameBits(double a, double b) {
 
 }  // namespace
 
-nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manifest) {
+nlohmann::ordered_json closingJson(std::span<const ClosingBlock> blocks, const Manifest& manifest) {
   nlohmann::ordered_json out = nlohmann::ordered_json::object();
-  for (const ClosingBlock& c : index.closing) switch (c.kind) {
+  for (const ClosingBlock& c : blocks) switch (c.kind) {
       case ClosingKind::kPointOrder: out["point order"] = c.block.size; break;
       case ClosingKind::kCellOrder: out["cell order"] = c.block.size; break;
       case ClosingKind::kOriginalCells: out["original cells"] = c.block.size; break;
@@ -72,7 +71,7 @@ Result<nlohmann::ordered_json> compareKept(const LogFile& log, const LatticeMesh
                                            const std::optional<std::vector<std::uint32_t>>& cells) {
   nlohmann::ordered_json out = {
       {"order", false}, {"positions", false}, {"fields", nlohmann::ordered_json::object()}};
-  if (log.index().closing.empty()) return out;
+  if (log.closingBlocks().empty()) return out;
   const Result<RestoredInput> restored = restoreInput(log, finest);
   if (!restored) return std::unexpected(restored.error());
   if (restored->order)

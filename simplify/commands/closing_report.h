@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "proto/error.h"
@@ -13,12 +14,13 @@
 namespace qtet {
 
 class LogFile;
-struct LogIndex;
+struct ClosingBlock;
 struct Manifest;
 
 /// {"point order": bytes, "cell order": bytes, "original cells": bytes, "exact positions": bytes,
 /// "exact NAME": bytes}, as far as they are there.
-[[nodiscard]] nlohmann::ordered_json closingJson(const LogIndex& index, const Manifest& manifest);
+[[nodiscard]] nlohmann::ordered_json closingJson(std::span<const ClosingBlock> blocks,
+                                                 const Manifest& manifest);
 
 /// Compares what the log kept with the input. `placed` is the cleaned input on the log's lattice.
 /// `input` is the same in floats, with its cells' vertices as read. `cells` is takeOriginalCells'

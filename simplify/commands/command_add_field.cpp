@@ -1,15 +1,15 @@
 #include <algorithm>
 #include <numeric>
 
-#include "codec/files/atomic_file.h"
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
-#include "proto/checksum.h"
 #include "proto/field_key.h"
 #include "proto/limits.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/progress.h"
+#include "simplify/commands/written_log.h"
 #include "simplify/log/add_fields.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/mesh/workers.h"
@@ -73,22 +73,26 @@ OrderedJson toJson(const NewField& field) {
   return out;
 }
 
-/// The report that add-field and remove-field share: {input, output, digest, bytes, bytesBefore,
-/// tetrahedra, vertices, levels, fields}. `fields` are the keys of those that the new log holds.
-/// Errors: those of LogIndex::parse and manifestOf.
-Result<OrderedJson> newLogJson(const ParsedWords& parsed, const LogFile& before,
-                               const Bytes& bytes) {
-  const Result<LogIndex> index = LogIndex::parse(bytes);
+/// Writes the new log. Returns the report that add-field and remove-field share: {input, output,
+/// digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields}. `fields` are the keys of
+/// those that the new log holds.
+/// Errors: those of LogIndex::parse, manifestOf and writeLog.
+Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const LogFile& before,
+                                const EditedLog& edited) {
+  const Result<LogIndex> index = LogIndex::parse(edited.head());
   if (!index) return std::unexpected(index.error());
   const Result<Manifest> manifest = manifestOf(*index);
   if (!manifest) return std::unexpected(manifest.error());
   OrderedJson fields = OrderedJson::array();
   for (std::size_t f = 0; f < manifest->fields.size(); ++f)
     fields.push_back(fieldKey(*manifest, f));
+  const Result<WrittenLog> written =
+      writeLog(outputOf(parsed), [&](const ByteSink& sink) { return edited.writeTo(sink); });
+  if (!written) return std::unexpected(written.error());
   return OrderedJson{{"input", parsed.get<std::string>("LOG")},
                      {"output", outputOf(parsed)},
-                     {"digest", sha256Hex(bytes)},
-                     {"bytes", bytes.size()},
+                     {"digest", written->digest},
+                     {"bytes", written->bytes},
                      {"bytesBefore", before.bytes().size()},
                      {"tetrahedra", manifest->levels.back().tetrahedra},
                      {"vertices", manifest->levels.back().vertices},
@@ -133,11 +137,10 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   options.progress = [&](double fraction) { progress.update(fraction); };
   const Result<AddedFields> added = addFields(log->file, read->mesh, options);
   if (!added) return std::unexpected(added.error());
-  const Result<Bytes> bytes = withFields(log->file, *kept, added->fields);
-  if (!bytes) return std::unexpected(bytes.error());
-  Result<OrderedJson> report = newLogJson(parsed, log->file, *bytes);
+  const Result<EditedLog> edited = withFields(log->file, *kept, added->fields);
+  if (!edited) return std::unexpected(edited.error());
+  Result<OrderedJson> report = writeNewLog(parsed, log->file, *edited);
   if (!report) return std::unexpected(report.error());
-  if (Status written = writeFileAtomically(outputOf(parsed), *bytes); !written) return written;
   progress.clear();
   for (const std::string& note : added->notes) console.note(note);
   if (!parsed.has("json")) {
@@ -167,11 +170,10 @@ Status removeField(const ParsedWords& parsed, Console& console) {
     if (meant.empty()) return std::unexpected(noSuchField(log->manifest, name));
     for (const std::uint32_t f : meant) std::erase(kept, f);
   }
-  const Result<Bytes> bytes = withFields(log->file, kept, {});
-  if (!bytes) return std::unexpected(bytes.error());
-  Result<OrderedJson> report = newLogJson(parsed, log->file, *bytes);
+  const Result<EditedLog> edited = withFields(log->file, kept, {});
+  if (!edited) return std::unexpected(edited.error());
+  Result<OrderedJson> report = writeNewLog(parsed, log->file, *edited);
   if (!report) return std::unexpected(report.error());
-  if (Status written = writeFileAtomically(outputOf(parsed), *bytes); !written) return written;
   parsed.has("json") ? printJson(*report, console) : printNew(*report, console.out);
   return {};
 }

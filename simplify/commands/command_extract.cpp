@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "codec/files/atomic_file.h"
-#include "codec/log/log_index.h"
 #include "codec/log/target_choice.h"
 #include "proto/field_key.h"
 #include "proto/level_error_json.h"
@@ -78,8 +77,7 @@ Result<Bytes> bytesOf(const TetMesh& mesh, const std::string& ending, const Mesh
 /// The fields of the log's levels; of the last level also what its closing blocks hold.
 std::vector<ManifestField> fieldsOf(const OpenedLog& log, bool restores) {
   std::vector<ManifestField> out = log.manifest.fields;
-  if (!restores || log.file.index().closingBlock(ClosingKind::kOriginalCells) == nullptr)
-    return out;
+  if (!restores || !log.file.hasClosing(ClosingKind::kOriginalCells)) return out;
   out.emplace_back().name = kOriginalCellField;
   out.back().association = "cell";
   return out;
@@ -257,7 +255,7 @@ Status extract(const ParsedWords& parsed, Console& console) {
   const Result<std::uint32_t> level = chosenLevel(parsed, log->manifest, log->file.index());
   if (!level) return std::unexpected(level.error());
   const bool restores =
-      *level + 1 == log->manifest.levels.size() && !log->file.index().closing.empty();
+      *level + 1 == log->manifest.levels.size() && !log->file.closingBlocks().empty();
   const std::vector<ManifestField> known = fieldsOf(*log, restores);
   const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, known);
   if (!wanted) return std::unexpected(wanted.error());

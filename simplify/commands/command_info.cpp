@@ -3,7 +3,6 @@
 #include <iomanip>
 #include <sstream>
 
-#include "codec/log/log_index.h"
 #include "codec/log/log_levels.h"
 #include "simplify/commands/closing_report.h"
 #include "simplify/commands/columns.h"
@@ -21,7 +20,7 @@ OrderedJson infoJson(const OpenedLog& log) {
   for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
     const ManifestField& field = manifest.fields[f];
     std::uint64_t bytes = 0;
-    for (const ChunkEntry& chunk : log.file.index().chunks)
+    for (const ChunkEntry& chunk : log.file.chunks())
       bytes += chunk.blocks[kFirstFieldPart + f].size;
     fields.push_back({{"name", field.name},
                       {"components", field.components},
@@ -38,14 +37,14 @@ OrderedJson infoJson(const OpenedLog& log) {
           {"generator", manifest.generator},
           {"source", manifest.source},
           {"bytes", log.file.bytes().size()},
-          {"headBytes", log.file.index().headBytes()},
-          {"chunks", log.file.index().chunks.size()},
+          {"headBytes", log.file.headBytes()},
+          {"chunks", log.file.chunks().size()},
           {"lattice",
            {{"bits", manifest.latticeBits},
             {"step", manifest.latticeStep},
             {"origin", manifest.latticeOrigin}}},
           {"fields", fields},
-          {"kept", closingJson(log.file.index(), manifest)},
+          {"kept", closingJson(log.file.closingBlocks(), manifest)},
           {"levels", levelsJson(log.manifest, log.file.index())}};
 }
 

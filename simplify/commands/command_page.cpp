@@ -78,13 +78,15 @@ Result<MadePage> fittingPage(const fs::path& folder, const fs::path& log, const 
   const Manifest& manifest = whole->manifest;
   std::vector<std::uint32_t> all(manifest.fields.size());
   std::iota(all.begin(), all.end(), 0u);
-  for (const auto& kept : fewerInstants(manifest, whole->file.index())) {
+  for (const auto& kept : fewerInstants(manifest, whole->file.fields())) {
     const fs::path part = folder / std::to_string(kept.size());
-    const Result<Bytes> bytes = withFields(whole->file, kept, {});
-    if (!bytes) return std::unexpected(bytes.error());
+    const Result<EditedLog> thinned = withFields(whole->file, kept, {});
+    if (!thinned) return std::unexpected(thinned.error());
     std::error_code code;
     fs::create_directory(part, code);
-    if (Status s = writeFileAtomically(part / log.filename(), *bytes); !s)
+    if (Status s = writeFileAtomically(
+            part / log.filename(), [&](const ByteSink& sink) { return thinned->writeTo(sink); });
+        !s)
       return std::unexpected(s.error());
     out = {pageOf(part, part / log.filename(), viewer, options), part / log.filename(),
            "; it holds " + grouped(instantsOf(manifest, kept)) + " of " +

@@ -3,8 +3,7 @@
 #include <map>
 #include <optional>
 
-#include "codec/files/atomic_file.h"
-#include "proto/checksum.h"
+#include "codec/files/file_spool.h"
 #include "proto/limits.h"
 #include "simplify/commands/closing_report.h"
 #include "simplify/commands/columns.h"
@@ -14,6 +13,7 @@
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/error_table.h"
 #include "simplify/commands/progress.h"
+#include "simplify/commands/written_log.h"
 #include "simplify/pipeline/pipeline.h"
 #include "simplify/read/read_mesh.h"
 
@@ -116,9 +116,9 @@ OrderedJson toJson(const CleanReport& report) {
 }
 
 /// Bytes and bits a tetrahedron of each stream.
-void addSizes(const PipelineOutput& made, OrderedJson& report) {
-  const LogStatistics& statistics = made.report.statistics;
-  const Manifest& manifest = made.report.manifest;
+void addSizes(const PipelineReport& made, std::uint64_t logBytes, OrderedJson& report) {
+  const LogStatistics& statistics = made.statistics;
+  const Manifest& manifest = made.manifest;
   const std::uint64_t tetrahedra = manifest.levels.back().tetrahedra;
   const auto bits = [&](std::uint64_t bytes) {
     return 8.0 * static_cast<double>(bytes) / static_cast<double>(tetrahedra);
@@ -128,7 +128,7 @@ void addSizes(const PipelineOutput& made, OrderedJson& report) {
     fieldBytes[fieldKey(manifest, f)] = statistics.fieldBytes[f];
     fieldBits[fieldKey(manifest, f)] = bits(statistics.fieldBytes[f]);
   }
-  report["bytes"] = made.log.size();
+  report["bytes"] = logBytes;
   report["bytesOf"] = {{"head", statistics.headBytes},
                        {"connectivity", statistics.structureBytes},
                        {"positions", statistics.positionBytes},
@@ -136,7 +136,7 @@ void addSizes(const PipelineOutput& made, OrderedJson& report) {
   report["bitsPerTetrahedron"] = {{"connectivity", bits(statistics.structureBytes)},
                                   {"positions", bits(statistics.positionBytes)},
                                   {"fields", fieldBits},
-                                  {"total", bits(made.log.size())}};
+                                  {"total", bits(logBytes)}};
 }
 
 OrderedJson toJson(const PaperFigures& figures) {
@@ -168,9 +168,8 @@ auto shownBy(Progress& progress) {
 }
 
 /// The counts are those of the bytes written, not of what was meant to be written.
-OrderedJson reportOf(const Request& request, const ReadReport& read, const PipelineOutput& made,
-                     const Stopwatch& watch) {
-  const PipelineReport& from = made.report;
+OrderedJson reportOf(const Request& request, const ReadReport& read, const PipelineReport& from,
+                     const WrittenLog& written, const Stopwatch& watch) {
   const Manifest& manifest = from.manifest;
   const std::uint64_t full = manifest.levels.back().tetrahedra,
                       base = manifest.levels.front().tetrahedra;
@@ -179,7 +178,7 @@ OrderedJson reportOf(const Request& request, const ReadReport& read, const Pipel
       {"input", request.input},
       {"output", request.output},
       {"algorithm", isPaper ? "paper" : "qtet"},
-      {"digest", sha256Hex(made.log)},
+      {"digest", written.digest},
       {"tetrahedra", {{"input", from.tetrahedraIn}, {"full", full}, {"base", base}}},
       {"vertices", manifest.levels.back().vertices},
       {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
@@ -187,8 +186,8 @@ OrderedJson reportOf(const Request& request, const ReadReport& read, const Pipel
       {"chunks", from.index.chunks.size()}};
   report["records"] = from.statistics.records;
   if (from.boundaryWeight) report["boundaryWeight"] = *from.boundaryWeight;
-  addSizes(made, report);
-  if (!from.index.closing.empty()) report["kept"] = closingJson(from.index, manifest);
+  addSizes(from, written.bytes, report);
+  if (!from.index.closing.empty()) report["kept"] = closingJson(from.index.closing, manifest);
   report["error"] = measureReport(request.pipeline.measure, manifest.levels.front().error);
   report["lattice"] = {{"bits", manifest.latticeBits},
                        {"requestedBits", from.quantise.requestedBits},
@@ -216,13 +215,15 @@ Result<OrderedJson> run(const Request& request, Progress& progress) {
   watch.lap("read");
   PipelineOptions options = request.pipeline;
   options.progress = shownBy(progress);
+  options.spool = [&] { return fileSpoolBeside(request.output); };
   const Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
   if (!made) return std::unexpected(made.error());
   watch.lap(made->report);
-  if (Status written = writeFileAtomically(request.output, made->log); !written)
-    return std::unexpected(written.error());
+  const Result<WrittenLog> written =
+      writeLog(request.output, [&](const ByteSink& sink) { return made->log.writeTo(sink); });
+  if (!written) return std::unexpected(written.error());
   watch.lap("write");
-  return reportOf(request, read->report, *made, watch);
+  return reportOf(request, read->report, made->report, *written, watch);
 }
 
 /// A row a field: its bits a tetrahedron, and the base mesh's error where it was measured.

@@ -2,7 +2,6 @@
 #include <numeric>
 #include <sstream>
 
-#include "codec/log/log_index.h"
 #include "codec/refine/verify_log.h"
 #include "proto/checksum.h"
 #include "simplify/clean/clean_mesh.h"
@@ -36,7 +35,7 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Inpu
     names.push_back(field.association + ":" + field.name);
   ReadOptions options = input.options;
   options.fields = names;
-  options.originalIds = log.file.index().closingBlock(ClosingKind::kOriginalCells) != nullptr;
+  options.originalIds = log.file.hasClosing(ClosingKind::kOriginalCells);
   Result<ReadMesh> read = readMesh(input.path, options);
   if (!read) return std::unexpected(read.error());
   const std::vector<Tetrahedron> asStored = read->mesh.tetrahedra;
@@ -79,7 +78,7 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
                         {"digest", log->file.digest()},
                         {"meshDigest", toHex(refiner->digest())},
                         {"bytes", log->file.bytes().size()},
-                        {"chunks", log->file.index().chunks.size()},
+                        {"chunks", log->file.chunks().size()},
                         {"levels", log->manifest.levels.size()},
                         {"tetrahedra", finest.tetrahedra},
                         {"vertices", finest.vertices},

@@ -23,6 +23,8 @@ class FusionState {
   FusionState(const FusionState&) = delete;
   FusionState& operator=(const FusionState&) = delete;
 
+  /// Takes these out of all fusions to come (FusionMesh::keep).
+  void keep(std::span<const VertexId> vertices) { mesh_.keep(vertices); }
   [[nodiscard]] const FusionMesh& mesh() const { return mesh_; }
   [[nodiscard]] const FusionCost& cost() const { return cost_; }
   [[nodiscard]] const ChangeTimes& changes() const { return changes_; }

@@ -47,6 +47,7 @@ class Simplifier {
         target_(baseCellsOf(options, cells_)),
         workers_(options.threads, options.stop),
         state_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost, workers_) {
+    state_.keep(options.kept);
     limitBy(kShapeFloor, kNormalCosine);
   }
 
@@ -178,6 +179,9 @@ Status check(const LatticeMesh& mesh, const FusionOptions& options) {
     return fail(ErrorCode::kBadInput, "the target ratio must lie in 0..1");
   if (!(options.envelopeTolerance.value_or(0) >= 0))
     return fail(ErrorCode::kBadInput, "the envelope tolerance must not be negative");
+  const auto isNone = [&](VertexId v) { return v >= mesh.points.size(); };
+  if (std::ranges::any_of(options.kept, isNone))
+    return fail(ErrorCode::kBadInput, "a vertex that is to be kept is none of the mesh");
   if (Status weights = checkWeights(mesh, options); !weights) return weights;
   return checkRegions(mesh, options);
 }

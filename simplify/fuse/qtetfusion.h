@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "codec/mesh/mesh.h"
 #include "codec/record/fusion_history.h"
@@ -37,6 +38,8 @@ struct FusionOptions {
   /// The weight of badly shaped new cells in the cost, >= 0 (ALGORITHM.md, "Shape").
   double shapeWeight = 0.5;
   PlacementRule placement = PlacementRule::kAuto;
+  /// Vertices that no fusion takes, such as those that the patches of a mesh share.
+  std::vector<VertexId> kept{};
   int threads = 1;                                ///< the result never depends on it
   std::function<void(double fraction)> progress;  ///< 0..1, called at most once a level
   std::stop_token stop{};                         ///< asked many times a second
@@ -47,8 +50,8 @@ struct FusionOptions {
 
 /// REQUIRES: `mesh` cleaned and quantised (clean_mesh.h, quantise.h). Vertices that no cell uses
 /// stay out of the history. Errors: bad-input (no tetrahedra, a ratio outside 0..1, or beside a
-/// number of cells; weights that are negative or not one a field), limit-exceeded (too many
-/// levels), cancelled.
+/// number of cells; weights that are negative or not one a field; a kept vertex that is none),
+/// limit-exceeded (too many levels), cancelled.
 [[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
 /// The same for a mesh that is not needed any more: its memory is given back before the first
 /// fusion.

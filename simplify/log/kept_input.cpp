@@ -1,37 +1,30 @@
 #include "simplify/log/kept_input.h"
 
 #include <algorithm>
-#include <iterator>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "codec/log/exact_values.h"
-#include "codec/log/log_index.h"
-#include "codec/log/log_writer.h"
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/original_cells.h"
-#include "codec/refine/log_edit.h"
 #include "codec/refine/log_file.h"
 #include "simplify/split/split_cells.h"
 
 namespace qtet {
 namespace {
 
-Approximation positionsOf(const LatticeMesh& mesh, std::span<const std::int32_t> integers,
+Approximation positionsOf(const Lattice& lattice, std::span<const std::int32_t> integers,
                           std::string type) {
-  return {integers,
-          3,
-          {mesh.lattice.origin.begin(), mesh.lattice.origin.end()},
-          mesh.lattice.step,
-          std::move(type)};
+  return {
+      integers, 3, {lattice.origin.begin(), lattice.origin.end()}, lattice.step, std::move(type)};
 }
 
-Approximation fieldOf(const LatticeMesh& mesh, std::size_t f) {
-  const FieldInfo& info = mesh.fields[f];
-  return {mesh.values[f], info.components, info.minimum, info.step, info.type};
+Approximation fieldOf(const FieldInfo& info, std::span<const std::int32_t> integers) {
+  return {integers, info.components, info.minimum, info.step, info.type};
 }
 
-std::vector<std::int32_t> flat(const std::vector<LatticePoint>& points) {
+std::vector<std::int32_t> flat(std::span<const LatticePoint> points) {
   std::vector<std::int32_t> out;
   out.reserve(points.size() * 3);
   for (const LatticePoint& p : points) out.insert(out.end(), p.begin(), p.end());
@@ -41,7 +34,7 @@ std::vector<std::int32_t> flat(const std::vector<LatticePoint>& points) {
 /// An integer field that its own integers restore: step 1, values below 2^28.
 bool losesNothing(const FieldInfo& field) { return !isFloatType(field.type) && field.step == 1; }
 
-std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t>& permutation) {
+std::vector<std::uint32_t> inverse(std::span<const std::uint32_t> permutation) {
   std::vector<std::uint32_t> out(permutation.size());
   for (std::uint32_t i = 0; i < permutation.size(); ++i) out[permutation[i]] = i;
   return out;
@@ -50,7 +43,7 @@ std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t>& permutation
 /// Tuple i of the result is tuple `from[i]`.
 template <class T>
 std::vector<T> gathered(const std::vector<T>& values, std::size_t components,
-                        const std::vector<std::uint32_t>& from) {
+                        std::span<const std::uint32_t> from) {
   std::vector<T> out;
   out.reserve(values.size());
   for (const std::uint32_t i : from)
@@ -58,33 +51,74 @@ std::vector<T> gathered(const std::vector<T>& values, std::size_t components,
   return out;
 }
 
-Result<std::vector<NewClosing>> exactBlocks(const LatticeMesh& finest, const EncodedLog& log,
-                                            const TetMesh& input, const std::stop_token& stop) {
-  std::vector<NewClosing> out;
+/// The values of the last level's elements, which a decoder has, field by field.
+class FinestValues {
+ public:
+  FinestValues(const FusionHistory& history, const FinestMesh& finest)
+      : history_(history), finest_(finest) {}
+
+  /// The next field's.
+  const std::vector<std::int32_t>& next() {
+    const std::size_t f = values_.size();
+    const FieldInfo& info = history_.fields[f];
+    std::vector<std::int32_t> values =
+        gathered(history_.values[f], info.components, historyElements(info));
+    for (std::size_t i = 0; !info.prediction.isNone() && i < values.size(); ++i)
+      if (values[i] != kMissing)
+        values[i] += static_cast<std::int32_t>(info.prediction.predict(
+            [&](std::uint16_t parent) { return values_[parent][i]; }, kMissing));
+    return values_.emplace_back(std::move(values));
+  }
+  [[nodiscard]] std::span<const std::uint32_t> historyElements(const FieldInfo& info) const {
+    return isCellField(info) ? finest_.historyCells : finest_.historyVertices;
+  }
+
+ private:
+  const FusionHistory& history_;
+  const FinestMesh& finest_;
+  std::vector<std::vector<std::int32_t>> values_;
+};
+
+Status giveOrder(const FinestMesh& finest, const KeptInput& input, const ClosingSink& give) {
+  const DecodedMesh decoded{finest.points, finest.tetrahedra};
+  const InputOrder order{inverse(finest.historyVertices), inverse(finest.historyCells),
+                         input.mesh.tetrahedra};
+  if (Status s = give(ClosingKind::kPointOrder, 0, encodePointOrder(decoded, order.points)); !s)
+    return s;
+  if (Status s = give(ClosingKind::kCellOrder, 0, encodeCellOrder(decoded, order)); !s) return s;
+  if (!input.originalCells) return {};
+  return give(ClosingKind::kOriginalCells, 0, encodeOriginalCells(*input.originalCells));
+}
+
+Status giveExact(const FusionHistory& history, const FinestMesh& finest, const TetMesh& input,
+                 const std::stop_token& stop, const ClosingSink& give) {
   std::vector<double> positions;
-  for (const VertexId v : log.points)
+  for (const VertexId v : finest.historyVertices)
     positions.insert(positions.end(), input.points[v].begin(), input.points[v].end());
   const std::vector<std::int32_t> integers = flat(finest.points);
   const bool wide = input.pointType != "float32";
   Bytes block{static_cast<std::uint8_t>(wide)};
   const Bytes stream =
-      encodeExact(positionsOf(finest, integers, wide ? "float64" : "float32"), positions);
+      encodeExact(positionsOf(history.lattice, integers, wide ? "float64" : "float32"), positions);
   block.insert(block.end(), stream.begin(), stream.end());
-  out.push_back({ClosingKind::kExactPositions, 0, std::move(block)});
-  for (std::uint32_t f = 0; f < finest.fields.size(); ++f) {
+  if (Status s = give(ClosingKind::kExactPositions, 0, block); !s) return s;
+  FinestValues values(history, finest);
+  for (std::uint32_t f = 0; f < history.fields.size(); ++f) {
     if (stop.stop_requested()) return cancelled();
-    if (losesNothing(finest.fields[f])) continue;
+    const FieldInfo& info = history.fields[f];
+    const std::vector<std::int32_t>& known = values.next();
+    if (losesNothing(info)) continue;
     const std::vector<double> exact =
-        gathered(input.fields[f].values, input.fields[f].components,
-                 isCellField(input.fields[f]) ? log.tetrahedra : log.points);
-    out.push_back({ClosingKind::kExactField, f, encodeExact(fieldOf(finest, f), exact)});
+        gathered(input.fields[f].values, info.components, values.historyElements(info));
+    if (Status s = give(ClosingKind::kExactField, f, encodeExact(fieldOf(info, known), exact)); !s)
+      return s;
   }
-  return out;
+  return {};
 }
 
 /// Without the input's order it means nothing.
 Status restoreOriginalCells(const LogFile& log, RestoredInput& out) {
-  if (!out.order || log.index().closingBlock(ClosingKind::kOriginalCells) == nullptr) return {};
+  if (!out.order || !log.hasClosing(ClosingKind::kOriginalCells)) return {};
   const Result<ByteView> bytes = log.closing(ClosingKind::kOriginalCells);
   if (!bytes) return std::unexpected(bytes.error());
   Result<std::vector<std::uint32_t>> ids = decodeOriginalCells(*bytes, out.cells.size());
@@ -123,29 +157,12 @@ TetMesh asRead(const TetMesh& cleaned, const std::vector<Tetrahedron>& before,
   return out;
 }
 
-Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input,
-                        const std::stop_token& stop) {
-  Result<LogFile> file = LogFile::fromBytes(log.bytes);
-  if (!file) return std::unexpected(file.error());
-  const Result<LatticeMesh> finest =
-      meshAtLevel(*file, file->index().chunks.back().lastLevel, std::nullopt, stop);
+Status giveInput(const FusionHistory& history, const FinestMesh& finest, const KeptInput& input,
+                 const std::stop_token& stop, const ClosingSink& give) {
   if (stop.stop_requested()) return cancelled();
-  if (!finest) return std::unexpected(finest.error());
-  std::vector<NewClosing> blocks;
-  if (input.options.keepsOrder()) {
-    const DecodedMesh decoded{finest->points, finest->tetrahedra};
-    const InputOrder order{inverse(log.points), inverse(log.tetrahedra), input.mesh.tetrahedra};
-    blocks.push_back({ClosingKind::kPointOrder, 0, encodePointOrder(decoded, order.points)});
-    blocks.push_back({ClosingKind::kCellOrder, 0, encodeCellOrder(decoded, order)});
-    if (input.originalCells)
-      blocks.push_back({ClosingKind::kOriginalCells, 0, encodeOriginalCells(*input.originalCells)});
-  }
-  if (input.options.exact) {
-    Result<std::vector<NewClosing>> exact = exactBlocks(*finest, log, input.mesh, stop);
-    if (!exact) return std::unexpected(exact.error());
-    std::ranges::move(*exact, std::back_inserter(blocks));
-  }
-  return withClosing(*file, blocks);
+  if (input.options.keepsOrder())
+    if (Status s = giveOrder(finest, input, give); !s) return s;
+  return input.options.exact ? giveExact(history, finest, input.mesh, stop, give) : Status{};
 }
 
 Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest) {
@@ -155,8 +172,7 @@ Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest
   out.cells.resize(finest.tetrahedra.size());
   std::iota(out.cells.begin(), out.cells.end(), 0u);
   const DecodedMesh decoded{finest.points, finest.tetrahedra};
-  if (log.index().closingBlock(ClosingKind::kPointOrder) != nullptr &&
-      log.index().closingBlock(ClosingKind::kCellOrder) != nullptr) {
+  if (log.hasClosing(ClosingKind::kPointOrder) && log.hasClosing(ClosingKind::kCellOrder)) {
     const Result<ByteView> pointBytes = log.closing(ClosingKind::kPointOrder),
                            cellBytes = log.closing(ClosingKind::kCellOrder);
     if (!pointBytes) return std::unexpected(pointBytes.error());
@@ -179,7 +195,7 @@ Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest
   out.mesh.tetrahedra = out.lattice.tetrahedra;
 
   std::vector<double> positions;
-  if (log.index().closingBlock(ClosingKind::kExactPositions) != nullptr) {
+  if (log.hasClosing(ClosingKind::kExactPositions)) {
     const Result<ByteView> bytes = log.closing(ClosingKind::kExactPositions);
     if (!bytes) return std::unexpected(bytes.error());
     if (bytes->empty() || (*bytes)[0] > 1)
@@ -187,7 +203,7 @@ Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest
     out.mesh.pointType = (*bytes)[0] == 1 ? "float64" : "float32";
     const std::vector<std::int32_t> integers = flat(finest.points);
     Result<std::vector<double>> exact =
-        decodeExact(positionsOf(finest, integers, out.mesh.pointType), bytes->subspan(1));
+        decodeExact(positionsOf(finest.lattice, integers, out.mesh.pointType), bytes->subspan(1));
     if (!exact) return std::unexpected(exact.error());
     positions = std::move(*exact);
     out.exactPositions = true;
@@ -204,10 +220,10 @@ Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest
     const std::vector<std::uint32_t>& from = isCellField(info) ? out.cells : out.points;
     std::vector<double> values;
     out.exactFields.push_back(losesNothing(info));
-    if (log.index().closingBlock(ClosingKind::kExactField, f) != nullptr) {
+    if (log.hasClosing(ClosingKind::kExactField, f)) {
       const Result<ByteView> bytes = log.closing(ClosingKind::kExactField, f);
       if (!bytes) return std::unexpected(bytes.error());
-      Result<std::vector<double>> exact = decodeExact(fieldOf(finest, f), *bytes);
+      Result<std::vector<double>> exact = decodeExact(fieldOf(info, finest.values[f]), *bytes);
       if (!exact) return std::unexpected(exact.error());
       values = std::move(*exact);
       out.exactFields.back() = true;

@@ -7,8 +7,8 @@
 #include <stop_token>
 #include <vector>
 
+#include "codec/log/log_writer.h"
 #include "codec/mesh/input_order.h"
-#include "proto/bytes.h"
 #include "proto/error.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/mesh/tet_mesh.h"
@@ -16,7 +16,6 @@
 namespace qtet {
 
 class LogFile;
-struct EncodedLog;
 
 struct KeepOptions {
   bool order = false;
@@ -45,10 +44,10 @@ struct KeptInput {
 [[nodiscard]] TetMesh asRead(const TetMesh& cleaned, const std::vector<Tetrahedron>& before,
                              const CleanReport& report);
 
-/// The closing blocks of what is kept, for a log just encoded; bytes with them. Errors:
-/// limit-exceeded, cancelled, and all that decoding gives.
-[[nodiscard]] Result<Bytes> withInput(const EncodedLog& log, const KeptInput& input,
-                                      const std::stop_token& stop = {});
+/// Gives what is kept as closing blocks (LogWriterOptions::closing). `history` is the one that is
+/// encoded. Errors: cancelled, the sink's.
+Status giveInput(const FusionHistory& history, const FinestMesh& finest, const KeptInput& input,
+                 const std::stop_token& stop, const ClosingSink& give);
 
 /// The data that a log has of its input, in the input's numbering where it has that, else in slot
 /// order.

@@ -114,6 +114,11 @@ void FusionMesh::findSingular(Workers* workers) {
   hasSingular_ = std::ranges::find(singular_, 1) != singular_.end();
 }
 
+void FusionMesh::keep(std::span<const VertexId> vertices) {
+  for (const VertexId v : vertices) singular_[v] = 1;
+  hasSingular_ |= !vertices.empty();
+}
+
 void FusionMesh::findInterfaces() {
   onInterface_.assign(history_.points.size(), 0);
   std::vector<std::int64_t> first(history_.points.size(), kOutside);

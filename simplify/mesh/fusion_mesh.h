@@ -64,7 +64,10 @@ class FusionMesh {
   [[nodiscard]] std::size_t vertexSlots() const { return history_.points.size(); }
   [[nodiscard]] bool alive(VertexId v) const { return aliveVertex_[v]; }
   [[nodiscard]] bool onBoundary(VertexId v) const { return onBoundary_[v]; }
-  /// The link of v is no sphere: the mesh is not a manifold there, and v is never prey.
+  /// Takes these out of all fusions to come, as singular vertices are. REQUIRES: vertices of the
+  /// mesh.
+  void keep(std::span<const VertexId> vertices);
+  /// The link of v is no sphere: the mesh is not a manifold there, or v is kept. V is never prey.
   [[nodiscard]] bool singular(VertexId v) const { return hasSingular_ && singular_[v]; }
   [[nodiscard]] const LatticePoint& point(VertexId v) const { return history_.points[v]; }
   [[nodiscard]] Vector3 position(VertexId v) const { return toVector(history_.points[v]); }

@@ -164,7 +164,10 @@ Result<double> differInTime(FusionHistory& history, Run& run) {
 }
 
 /// `done`: the share of the stage that is done already.
-Result<Bytes> encode(const FusionHistory& history, LevelErrors errors, double done, Run& run) {
+Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, double done, Run& run) {
+  Result<std::unique_ptr<ByteSpool>> spool =
+      run.options.spool ? run.options.spool() : std::make_unique<MemorySpool>();
+  if (!spool) return std::unexpected(spool.error());
   LogWriterOptions options;
   options.source = run.options.source;
   options.generator = "qtet " QTET_VERSION;
@@ -174,17 +177,21 @@ Result<Bytes> encode(const FusionHistory& history, LevelErrors errors, double do
   options.focus = run.focus;
   options.opening = run.opening;
   options.valueCodec = run.options.valueCodec;
-  Result<EncodedLog> log = encodeLog(history, options);
-  if (!log) return std::unexpected(log.error());
-  run.report.statistics = log->statistics;
-  if (!run.options.keep.any()) return std::move(log->bytes);
-  if (Status s = run.stages.begin(Stage::kKeep); !s) return std::unexpected(s.error());
-  return withInput(*log, run.kept, run.options.stop);
+  if (run.options.keep.any())
+    options.closing = [&](const FinestMesh& finest, const ClosingSink& give) -> Status {
+      if (Status s = run.stages.begin(Stage::kKeep); !s) return s;
+      return giveInput(history, finest, run.kept, run.options.stop, give);
+    };
+  Result<EncodedHead> encoded =
+      encodeLog(history, options, [&](ByteView block) { return (*spool)->append(block); });
+  if (!encoded) return std::unexpected(encoded.error());
+  run.report.statistics = std::move(encoded->statistics);
+  return MadeLog{std::move(encoded->head), std::move(*spool)};
 }
 
 /// Reads the figures of the report from the log itself.
-Status readBack(const Bytes& log, PipelineReport& report) {
-  Result<LogIndex> index = LogIndex::parse(log);
+Status readBack(const MadeLog& log, PipelineReport& report) {
+  Result<LogIndex> index = LogIndex::parse(log.head);
   if (!index) return std::unexpected(index.error());
   report.index = std::move(*index);
   Result<Manifest> manifest = manifestOf(report.index);
@@ -232,7 +239,7 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   restoreMissing(*history, quantised->missing);
   const Result<double> done = differInTime(*history, run);
   if (!done) return std::unexpected(done.error());
-  Result<Bytes> log = encode(*history, std::move(*errors), *done, run);
+  Result<MadeLog> log = encode(*history, std::move(*errors), *done, run);
   if (!log) return std::unexpected(log.error());
   run.stages.end();
   if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());

@@ -19,6 +19,7 @@
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/log/kept_input.h"
 #include "simplify/measure/measure_error.h"
+#include "simplify/pipeline/made_log.h"
 
 namespace qtet {
 
@@ -45,6 +46,8 @@ struct PipelineOptions {
   std::optional<MeasureOptions> measure{std::in_place};
   CodecId valueCodec = CodecId::kDraco;
   KeepOptions keep{};
+  /// Makes the place where the log's blocks wait for its head; in memory without it.
+  std::function<Result<std::unique_ptr<ByteSpool>>()> spool{};
 
   /// Called in the caller's thread, with 0 when a stage begins; the fraction is in 0..1.
   std::function<void(Stage stage, double fraction)> progress{};
@@ -60,7 +63,7 @@ struct PipelineReport {
   std::optional<double> boundaryWeight;
   std::optional<PaperFigures> paper;  ///< with Algorithm::kPaper
   LogStatistics statistics;
-  /// Read from the bytes of the log, not from what was meant to be written.
+  /// Read from the head of the log, not from what was meant to be written.
   LogIndex index;
   Manifest manifest;
   /// Changes made and unusual findings, one sentence each, in the order of doing.
@@ -71,7 +74,7 @@ struct PipelineReport {
 };
 
 struct PipelineOutput {
-  Bytes log;
+  MadeLog log;
   PipelineReport report;
 };
 
@@ -85,8 +88,9 @@ struct PipelineOutput {
 
 /// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and
 /// options give the same bytes, whatever the number of threads. Errors: checkOptions's,
-/// cleanMesh's, quantise's, simplify's, measureLevels's and encodeLog's; not-found (a weight or
-/// regions name no field); cancelled. REQUIRES: a mesh that checkArrays or readMesh has passed.
+/// cleanMesh's, quantise's, simplify's, measureLevels's, the spool's and encodeLog's; not-found (a
+/// weight or regions name no field); cancelled. REQUIRES: a mesh that checkArrays or readMesh has
+/// passed.
 [[nodiscard]] Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options);
 
 }  // namespace qtet

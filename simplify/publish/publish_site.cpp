@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "codec/log/log_index.h"
 #include "codec/picture/poster.h"
 #include "codec/picture/poster_page.h"
 #include "proto/field_key.h"
@@ -128,7 +127,7 @@ Result<Bytes> posterOf(const OpenedLog& log) {
 std::uint64_t firstBytes(const OpenedLog& log) {
   std::uint32_t last = kPositionsPart;
   for (const std::uint32_t field : posterFields(log.manifest)) last = kFirstFieldPart + field;
-  const BlockEntry& block = log.file.index().block(0, last);
+  const BlockEntry& block = log.file.chunks().front().blocks[last];
   return block.offset + block.size;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "codec/log/log_index.h"
 #include "codec/picture/poster_page.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"
@@ -138,9 +137,9 @@ struct Pieces {
 };
 
 /// How many leading chunks end within so many bytes of the log.
-std::uint32_t chunksWithin(const LogIndex& index, std::uint64_t bytes) {
+std::uint32_t chunksWithin(std::span<const ChunkEntry> all, std::uint64_t bytes) {
   std::uint32_t count = 0;
-  for (const ChunkEntry& chunk : index.chunks) {
+  for (const ChunkEntry& chunk : all) {
     if (chunk.offset + chunk.size() > bytes) break;
     ++count;
   }
@@ -155,15 +154,15 @@ Result<std::uint32_t> cutLog(Bytes& content, const fs::path& path, std::uint64_t
   if (content.size() <= room) return 0;
   const Result<OpenedLog> log = openLog(path);
   if (!log) return std::unexpected(log.error());
-  const LogIndex& index = log->file.index();
-  const std::uint32_t chunks = chunksWithin(index, room);
+  const std::span<const ChunkEntry> all = log->file.chunks();
+  const std::uint32_t chunks = chunksWithin(all, room);
   if (chunks == 0) {
-    const std::uint64_t base = index.chunks.front().offset + index.chunks.front().size();
+    const std::uint64_t base = all.front().offset + all.front().size();
     return fail(ErrorCode::kLimitExceeded,
                 "the smallest page of this log, with the base mesh, has " +
                     std::to_string(other + (base + 3) / 3 * 4) + " bytes; allow so many");
   }
-  const ChunkEntry& last = index.chunks[chunks - 1];
+  const ChunkEntry& last = all[chunks - 1];
   content.resize(last.offset + last.size());
   list["meshes"][0]["chunks"] = chunks;
   return chunks;

@@ -23,7 +23,7 @@ std::vector<std::size_t> halvings(std::size_t instants) {
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> fewerInstants(const Manifest& manifest,
-                                                      const LogIndex& index) {
+                                                      std::span<const FieldShape> fields) {
   std::vector<std::size_t> halvingsOf(manifest.fields.size());
   for (const Series& series : seriesOf(std::span(manifest.fields))) {
     const std::vector<std::size_t> ofInstants = halvings(series.fields.size());
@@ -36,7 +36,7 @@ std::vector<std::vector<std::uint32_t>> fewerInstants(const Manifest& manifest,
     std::vector<std::uint32_t> kept;
     for (std::uint32_t f = 0; f < halvingsOf.size(); ++f)
       if (halvingsOf[f] <= most) kept.push_back(f);
-    kept = index.withParents(kept);
+    kept = withParents(fields, kept);
     if (kept.size() < before) out.push_back(kept);
     before = kept.size();
   }

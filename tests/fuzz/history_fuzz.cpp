@@ -21,7 +21,7 @@
 namespace {
 
 using namespace qtet;
-using fuzz::ByteSource;
+using Input = fuzz::ByteSource;
 
 void require(bool holds, const std::string& what) {
   if (holds) return;
@@ -30,7 +30,7 @@ void require(bool holds, const std::string& what) {
 }
 
 /// A grid with any of its cubes left out, or a random solid.
-LatticeMesh meshFrom(ByteSource& in) {
+LatticeMesh meshFrom(Input& in) {
   const std::uint8_t kind = in.next();
   const std::uint16_t seed = in.next16();
   if (kind % 4 == 0) return testing::randomSolid(seed).mesh;
@@ -45,7 +45,7 @@ LatticeMesh meshFrom(ByteSource& in) {
 }
 
 /// Some values are chosen one by one, within what the fields' bits hold.
-void changeValues(LatticeMesh& mesh, ByteSource& in) {
+void changeValues(LatticeMesh& mesh, Input& in) {
   for (std::size_t f = 0; f < mesh.values.size(); ++f) {
     std::vector<std::int32_t>& values = mesh.values[f];
     for (std::uint8_t left = in.next() % 8; left > 0 && !values.empty(); --left) {
@@ -55,7 +55,7 @@ void changeValues(LatticeMesh& mesh, ByteSource& in) {
   }
 }
 
-Result<FusionHistory> historyFrom(const LatticeMesh& mesh, ByteSource& in) {
+Result<FusionHistory> historyFrom(const LatticeMesh& mesh, Input& in) {
   FusionOptions options;
   const std::uint8_t flags = in.next();
   options.targetRatio = in.next() / 255.0;
@@ -86,7 +86,7 @@ struct Log {
   }
 };
 
-Log logOf(const FusionHistory& history, ByteSource& in) {
+Log logOf(const FusionHistory& history, Input& in) {
   LogWriterOptions options;
   options.generator = "history_fuzz";
   options.chunkBytes = 16u + in.next16() % 4096u;
@@ -145,7 +145,7 @@ void compareLevel(const FusionHistory& history, const Log& log, std::uint32_t le
 
 /// Each pair of bytes damages a place of one chunk's structure or residuals; every chunk is decoded
 /// as far as it goes.
-void decodeDamaged(Log& log, ByteSource& in) {
+void decodeDamaged(Log& log, Input& in) {
   const std::uint32_t bad = in.next() % static_cast<std::uint32_t>(log.index.chunks.size());
   Bytes structure = log.structure(bad);
   for (int left = 16; left > 0 && !in.empty(); --left) {
@@ -172,7 +172,7 @@ void decodeDamaged(Log& log, ByteSource& in) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  ByteSource in{{data, size}};
+  Input in{{data, size}};
   LatticeMesh mesh = meshFrom(in);
   // small ones meet the same code in less time
   if (mesh.tetrahedra.empty() || mesh.tetrahedra.size() > 300) return 0;

@@ -86,11 +86,15 @@ TetMesh besideTheLattice(const LatticeMesh& mesh) {
   return input;
 }
 
-EncodedLog encodedLog(const LatticeMesh& mesh) {
+Bytes logWithInput(const LatticeMesh& mesh, const KeptInput& kept) {
+  const FusionHistory history = simplify(mesh, {}).value();
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
-  return encodeLog(simplify(mesh, {}).value(), options).value();
+  options.closing = [&](const FinestMesh& finest, const ClosingSink& give) {
+    return giveInput(history, finest, kept, {}, give);
+  };
+  return encodeLog(history, options).value().bytes;
 }
 
 /// A log of hexahedra that were each cut into six cells. The file numbers them in steps of three.
@@ -100,15 +104,14 @@ Bytes logWithOriginalCells() {
   kept.originalCells.emplace();
   for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t)
     kept.originalCells->push_back(3 * (t / 6));
-  return withInput(encodedLog(mesh), kept).value();
+  return logWithInput(mesh, kept);
 }
 
 /// With the closing blocks of version 2.0, and one of a kind that is not known yet.
 Bytes keptLog() {
   const LatticeMesh mesh = testing::gridMesh(2, 7);
-  const EncodedLog log = encodedLog(mesh);
   testing::TakenApart parts =
-      testing::takeApart(withInput(log, {{true, true}, besideTheLattice(mesh)}).value());
+      testing::takeApart(logWithInput(mesh, {{true, true}, besideTheLattice(mesh)}));
   parts.index.closing.push_back({static_cast<ClosingKind>(70000), 300, {}});
   parts.closing.push_back(Bytes(200, 0x5A));
   return parts.together();

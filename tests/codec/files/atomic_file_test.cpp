@@ -32,7 +32,7 @@ TEST(AtomicFile, replacesTheOldFileAndLeavesNothingBeside) {
 
 TEST(AtomicFile, writesAnEmptyFile) {
   const fs::path path = testing::freshFolder("atomic-empty") / "a";
-  ASSERT_TRUE(writeFileAtomically(path, {}));
+  ASSERT_TRUE(writeFileAtomically(path, Bytes{}));
   EXPECT_EQ(fs::file_size(path), 0u);
 }
 

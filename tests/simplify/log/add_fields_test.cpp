@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
 #include "codec/refine/log_file.h"
@@ -83,9 +84,9 @@ std::vector<std::uint32_t> allFields(const LogFile& log) {
 Bytes withAdded(const LogFile& log, const TetMesh& mesh) {
   const auto added = addFields(log, mesh);
   EXPECT_TRUE(added) << added.error().text();
-  const auto bytes = withFields(log, allFields(log), added->fields);
-  EXPECT_TRUE(bytes) << bytes.error().text();
-  return *bytes;
+  const auto edited = withFields(log, allFields(log), added->fields);
+  EXPECT_TRUE(edited) << edited.error().text();
+  return edited->together();
 }
 
 TEST(LogHistory, holdsEveryLevelOfTheLog) {
@@ -194,12 +195,22 @@ TEST(AddFields, leavingFieldsOutGivesTheLogWithoutThem) {
   const LogFile log = sample.log();
   const auto some = withFields(log, {3, 0}, {});
   ASSERT_TRUE(some) << some.error().text();
-  const LogFile left = LogFile::fromBytes(*some).value();
+  const LogFile left = LogFile::fromBytes(some->together()).value();
   const LatticeMesh mesh = meshAtLevel(left, 2).value(), whole = meshAtLevel(log, 2).value();
   ASSERT_EQ(mesh.fields.size(), 2u);
   EXPECT_EQ(mesh.values[0], whole.values[3]);
   EXPECT_EQ(mesh.values[1], whole.values[0]);
-  EXPECT_EQ(withFields(log, allFields(log), {}).value(), sample.bytes);
+  EXPECT_EQ(withFields(log, allFields(log), {}).value().together(), sample.bytes);
+}
+
+TEST(AddFields, aDamagedBlockStaysFound) {
+  Sample sample(5, 4, true);
+  const BlockEntry block = sample.log().index().block(1, kFirstFieldPart);
+  sample.bytes[static_cast<std::size_t>(block.offset)] ^= 1;
+  const LogFile log = sample.log();
+  const LogFile edited = LogFile::fromBytes(withFields(log, {0}, {}).value().together()).value();
+  ASSERT_FALSE(edited.verifyChecksums());
+  EXPECT_EQ(edited.verifyChecksums().error().code, ErrorCode::kBadChecksum);
 }
 
 TEST(AddFields, aMeshThatIsNotTheLogsIsRefusedByName) {

@@ -118,9 +118,12 @@ TEST(Pipeline, everyStageAsksWhetherToStop) {
     LogWriterOptions encode;
     encode.stop = stop;
     EXPECT_TRUE(isCancelled(encodeLog(*history, encode)));
-    const Result<EncodedLog> log = encodeLog(*history, {});
-    ASSERT_TRUE(log);
-    EXPECT_TRUE(isCancelled(withInput(*log, {{true, true}, mesh}, stop)));
+    const KeptInput kept{{true, true}, mesh};
+    LogWriterOptions keep;
+    keep.closing = [&](const FinestMesh& finest, const ClosingSink& give) {
+      return giveInput(*history, finest, kept, stop, give);
+    };
+    EXPECT_TRUE(isCancelled(encodeLog(*history, keep)));
     measure.stop = stop;
     EXPECT_TRUE(isCancelled(measureLevels(*history, measure)));
   }

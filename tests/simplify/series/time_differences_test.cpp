@@ -102,7 +102,7 @@ TEST_F(TimeDifferences, anInstantIsReadWithoutTheOthersBytes) {
   const auto last = static_cast<std::uint32_t>(file.index().fields.size() - 1);
   const Result<LatticeMesh> whole = meshAtLevel(file, history_.levels);
   for (std::uint32_t f = 0; f <= last; ++f) {
-    const std::vector<std::uint32_t> needed = file.index().withParents(std::span(&f, 1));
+    const std::vector<std::uint32_t> needed = withParents(file.fields(), std::span(&f, 1));
     EXPECT_LE(needed.size(), 9u) << "seeking must stay cheap";
     const Result<LatticeMesh> one =
         meshAtLevel(file, history_.levels, std::vector<std::uint32_t>{f});
@@ -119,7 +119,7 @@ TEST_F(TimeDifferences, aFieldWaitsForThoseThatItIsPredictedFrom) {
   Refiner refiner(file.index());
   ASSERT_TRUE(applyChunk(file, refiner, 0, {}));
   EXPECT_EQ(applyFieldBlock(file, refiner, 0, child).error().code, ErrorCode::kBadOrder);
-  for (const std::uint32_t f : file.index().withParents(std::span(&parent, 1)))
+  for (const std::uint32_t f : withParents(file.fields(), std::span(&parent, 1)))
     ASSERT_TRUE(applyFieldBlock(file, refiner, 0, f));
   EXPECT_EQ(applyFieldBlock(file, refiner, 0, child).has_value(),
             file.index().fields[child].prediction.count == 1);
@@ -159,12 +159,12 @@ TEST_F(TimeDifferences, fieldsGoOnlyBehindThoseThatRestOnThem) {
   const auto fields = static_cast<std::uint32_t>(file.index().fields.size());
   std::vector<std::uint32_t> kept(fields - 1);
   std::iota(kept.begin(), kept.end(), 0u);
-  const Result<Bytes> shorter = withFields(file, kept, {});
+  const Result<EditedLog> shorter = withFields(file, kept, {});
   ASSERT_TRUE(shorter) << shorter.error().text();
-  const LogFile left = LogFile::fromBytes(*shorter).value();
+  const LogFile left = LogFile::fromBytes(shorter->together()).value();
   EXPECT_EQ(meshAtLevel(left, 3)->values[5], meshAtLevel(file, 3)->values[5]);
   std::iota(kept.begin(), kept.end(), 1u);
-  const Result<Bytes> without = withFields(file, kept, {});
+  const Result<EditedLog> without = withFields(file, kept, {});
   ASSERT_FALSE(without);
   EXPECT_NE(without.error().message.find("T@0"), std::string::npos) << without.error().message;
 }

@@ -1,8 +1,7 @@
-#include "codec/refine/refiner_chunks.h"
+#include "codec/refine/patch_decoder.h"
 
 #include <algorithm>
-
-#include "codec/log/log_index.h"
+#include <utility>
 
 namespace qtet {
 namespace {
@@ -10,18 +9,11 @@ namespace {
 // Stars are prefetched so many vertices ahead. One vertex in twelve splits. 4 to 16 measured alike.
 constexpr std::uint32_t kVerticesAhead = 8;
 
-// A page decodes the base mesh by a module without the rest, which is half as large (web-client).
-#ifdef QTET_BASE_ONLY
-constexpr bool kBaseOnly = true;
-#else
-constexpr bool kBaseOnly = false;
-#endif
-
 constexpr const char* kEmptyLevel = "a level without a record";
 
 }  // namespace
 
-Result<Extent> MeshReader::run(ChunkInput& chunk) {
+Result<Extent> PatchDecoder::run(PatchBlock& chunk) {
   const ChunkEntry& entry = chunk.entry;
   if (entry.firstLevel != level() + 1)
     return chunk.refuse(ErrorCode::kBadValue, "it does not continue the level before it");
@@ -30,7 +22,7 @@ Result<Extent> MeshReader::run(ChunkInput& chunk) {
   for (std::uint32_t level = entry.firstLevel;; ++level) {
     if (Status s = records_.work(chunk, 1); !s) return std::unexpected(s.error());
     if (!open_) {
-      if (Status s = settings_.mayGoOn(); !s) return std::unexpected(s.error());
+      if (Status s = requests_.mayGoOn(); !s) return std::unexpected(s.error());
       open_ = OpenLevel{0, records_.records()};
       mesh.beginLevel(level);
     }
@@ -44,14 +36,14 @@ Result<Extent> MeshReader::run(ChunkInput& chunk) {
     open_.reset();
     completeLevel();
     if (isLast) break;
-    if (level == settings_.stopLevel) return Extent::kPartial;
+    if (level == requests_.stopLevel) return Extent::kPartial;
   }
   return Extent::kWhole;
 }
 
 // Visits the level's vertices below `endSlot` that have not been visited yet.
-Status MeshReader::visit(ChunkInput& chunk, RecordCoder<RangeDecoder>& coder,
-                         std::uint32_t endSlot) {
+Status PatchDecoder::visit(PatchBlock& chunk, RecordCoder<RangeDecoder>& coder,
+                           std::uint32_t endSlot) {
   const GrowingMesh& mesh = records_.mesh();
   for (VertexId v = open_->nextSlot; v < endSlot; ++v) {
     mesh.expect(v + kVerticesAhead);
@@ -62,32 +54,22 @@ Status MeshReader::visit(ChunkInput& chunk, RecordCoder<RangeDecoder>& coder,
   return {};
 }
 
-void MeshReader::completeLevel() {
+void PatchDecoder::completeLevel() {
   const Slots mesh = records_.mesh().next();
   levels_.push_back({mesh.vertices, mesh.tetrahedra, mesh.triangles});
 }
 
-Status MeshReader::base(ChunkInput& chunk) {
-  if (Status s = records_.base(chunk); !s) return s;
+void PatchDecoder::start(CoarsePart&& coarse) {
+  records_.start(std::move(coarse));
   completeLevel();
-  return {};
 }
 
-Result<Extent> MeshReader::read(ChunkInput& chunk) {
-  const bool isBase = chunk.number == 0;
-  if constexpr (kBaseOnly) {
-    if (!isBase) return chunk.refuse(ErrorCode::kBadOrder, "this decoder reads the base mesh only");
-    if (Status s = base(chunk); !s) return std::unexpected(s.error());
-    return Extent::kWhole;  // whoever decodes the rest reads this chunk again, to its end
-  }
-  if (isBase) {
-    if (Status s = base(chunk); !s) return std::unexpected(s.error());
-  } else {
-    const Result<Extent> extent = run(chunk);
-    if (!extent || *extent == Extent::kPartial) return extent;
-  }
-  if (!chunk.decoder.atEnd()) return isBase ? chunk.refuseBase() : chunk.refuseLength();
-  return Extent::kWhole;
+Result<Extent> PatchDecoder::read(PatchBlock& chunk) {
+  const Result<Extent> extent = run(chunk);
+  if (!extent || *extent == Extent::kPartial) return extent;
+  if (chunk.decoder.atEnd()) return Extent::kWhole;
+  return chunk.refuse(ErrorCode::kBadValue,
+                      "the structure block is longer or shorter than its records");
 }
 
 }  // namespace qtet

@@ -1,0 +1,34 @@
+// Bytes that are written once, wait, and are read once or more: the blocks of a log whose head is
+// not known yet.
+#pragma once
+
+#include <cstdint>
+
+#include "proto/byte_sink.h"
+
+namespace qtet {
+
+class ByteSpool {
+ public:
+  virtual ~ByteSpool() = default;
+  /// Errors: io. After one the spool is of no use.
+  virtual Status append(ByteView bytes) = 0;
+  [[nodiscard]] virtual std::uint64_t size() const = 0;
+  /// All bytes, in order, in pieces. Errors: io, the sink's.
+  [[nodiscard]] virtual Status writeTo(const ByteSink& sink) const = 0;
+};
+
+class MemorySpool final : public ByteSpool {
+ public:
+  Status append(ByteView bytes) override {
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    return {};
+  }
+  [[nodiscard]] std::uint64_t size() const override { return bytes_.size(); }
+  [[nodiscard]] Status writeTo(const ByteSink& sink) const override { return sink(bytes_); }
+
+ private:
+  Bytes bytes_;
+};
+
+}  // namespace qtet

@@ -1,0 +1,23 @@
+#include "simplify/commands/written_log.h"
+
+#include "codec/files/atomic_file.h"
+#include "proto/checksum.h"
+
+namespace qtet {
+
+Result<WrittenLog> writeLog(const std::filesystem::path& path, const ByteSource& log) {
+  WrittenLog out;
+  Sha256 sha;
+  const Status written = writeFileAtomically(path, [&](const ByteSink& file) {
+    return log([&](ByteView piece) {
+      sha.update(piece);
+      out.bytes += piece.size();
+      return file(piece);
+    });
+  });
+  if (!written) return std::unexpected(written.error());
+  out.digest = toHex(sha.finish());
+  return out;
+}
+
+}  // namespace qtet
