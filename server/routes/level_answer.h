@@ -1,4 +1,4 @@
-// What the addresses of levels, pictures and series share: refusals, numbers, and the head of an
+// Shared by the addresses of levels, pictures and series: refusals, numbers, and the head of an
 // answer that is made first.
 #pragma once
 

@@ -6,8 +6,8 @@
 
 namespace qtet {
 
-/// The rms error, a fraction of a field's range, within which a level is good enough where the
-/// request names none: below what a plot shows, and mostly a small part of the log.
+/// The rms error, a fraction of a field's range, where the request names none. A plot hardly shows
+/// it, and the level is mostly a small part of the log.
 inline constexpr double kDefaultSeriesError = 0.01;
 
 /// The answer to `/v1/logs/{sha256}/series`: values to be made, or 304, 400, 404 or 412.

@@ -10,8 +10,8 @@
 namespace qtet {
 
 /// Lattice steps. A point that is at most so far from a cell counts as its own. The input's points
-/// moved by up to half a step on each axis to reach the lattice: 0.87 steps, so those of its
-/// surface may lie outside.
+/// moved to the lattice by up to half a step on each axis, 0.87 together. So those of its surface
+/// may lie outside.
 inline constexpr double kNearSteps = 1;
 
 struct PointInCell {

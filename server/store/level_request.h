@@ -12,8 +12,8 @@
 
 namespace qtet {
 
-/// The kinds of file of codec/files/mesh_file.h, the preview, the poster, and the values of a series
-/// at a point.
+/// The kinds of file of codec/files/mesh_file.h, the preview, the poster, and the values of a
+/// series at a point.
 enum class LevelForm : std::uint8_t {
   kVtu,
   kVtk,
@@ -35,7 +35,7 @@ struct LevelRequest {
   std::vector<std::uint32_t> fields{};  ///< indices into the manifest's, ascending, each once
   ContentCoding coding = ContentCoding::kIdentity;
   std::vector<std::string> names{};  ///< the fields' in the file; empty: the manifest's
-  /// Of kJson and kCsv alone: where the values are, in the mesh's own coordinates.
+  /// Where the values are, in the mesh's own coordinates; of kJson and kCsv alone.
   std::optional<std::array<double, 3>> point{};
 
   /// The same for the same bytes, with one version of this program: hexadecimal, of the log's
