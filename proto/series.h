@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -10,6 +11,13 @@
 #include "proto/field_key.h"
 
 namespace qtet {
+
+/// A time that differs by less than this of the larger is the same one: decimal digits are lost.
+inline constexpr double kNearTime = 1e-9;
+
+[[nodiscard]] inline bool isSameTime(double a, double b) {
+  return std::abs(a - b) <= kNearTime * std::max(std::abs(a), std::abs(b));
+}
 
 struct Series {
   std::string name;

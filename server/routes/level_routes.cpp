@@ -1,57 +1,28 @@
 #include "server/routes/level_routes.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <expected>
 #include <numeric>
 
 #include "codec/log/target_choice.h"
 #include "codec/picture/poster.h"
-#include "server/http/content_disposition.h"
-#include "server/http/http_resource.h"
+#include "proto/field_key.h"
+#include "server/routes/level_answer.h"
+#include "server/routes/level_time.h"
 #include "server/store/preview.h"
 
 namespace qtet {
 namespace {
 
-template <class T>
-using OrRefusal = std::expected<T, Reply>;
-
-std::unexpected<Reply> badRequest(std::string_view detail) {
-  return std::unexpected(problem(400, "bad-request", detail));
-}
-std::unexpected<Reply> notFound(std::string_view detail) {
-  return std::unexpected(problem(404, "not-found", detail));
-}
-
-/// A whole text as a number; no sign, no leading zero for whole ones.
-template <class T>
-std::optional<T> parseNumber(std::string_view text) {
-  T out{};
-  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (ec != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return out;
-}
-
-std::string_view mediaType(LevelForm form) {
+/// Whether it has an address of its own.
+bool isMeshFile(LevelForm form) {
   switch (form) {
-    case LevelForm::kVtu: return "application/vnd.vtk.vtu+xml";
-    case LevelForm::kGlb: return "model/gltf-binary";
-    case LevelForm::kObj: return "model/obj";
-    case LevelForm::kUsda: return "model/vnd.usda";
-    case LevelForm::kPng: return "image/png";
-    case LevelForm::kWebp: return "image/webp";
-    default: return "application/octet-stream";
+    case LevelForm::kPng:
+    case LevelForm::kWebp:
+    case LevelForm::kJson:
+    case LevelForm::kCsv: return false;
+    default: return true;
   }
 }
-
-/// Whether it is looked at, not saved.
-bool isPicture(LevelForm form) { return form == LevelForm::kPng || form == LevelForm::kWebp; }
-
-/// Whether the form is compressed already and is sent as it is.
-bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == LevelForm::kDrc; }
 
 Result<std::uint32_t> levelOf(const ServedMesh& mesh, const Target& target) {
   return levelFor(target, mesh.manifest, mesh.log.index());
@@ -63,8 +34,8 @@ OrRefusal<std::uint32_t> levelOfError(const ServedMesh& mesh, const std::string&
   const std::size_t colon = text.rfind(':');
   const auto bound = colon == std::string::npos
                          ? std::nullopt
-                         : parseNumber<double>(std::string_view(text).substr(colon + 1));
-  if (!bound || !(*bound >= 0) || !std::isfinite(*bound))
+                         : parseFinite(std::string_view(text).substr(colon + 1));
+  if (!bound || *bound < 0)
     return badRequest(
         "error is NAME:E, a field or 'boundary' and a fraction of its range or of the diagonal, "
         "like error=boundary:0.01");
@@ -94,9 +65,15 @@ OrRefusal<std::uint32_t> levelOfName(std::string_view name, const RequestTarget&
   const auto level = parseNumber<std::uint32_t>(name);
   const bool canonical = name == "0" || !name.starts_with('0');
   if (!level || !canonical || *level >= mesh.manifest.levels.size())
-    return notFound("there is no such level; this mesh has the levels 0 to " +
-                    std::to_string(mesh.manifest.levels.size() - 1) + ", and fit.vtu?tets=N");
+    return notFound("there is no such level; this mesh has " + levelsText(mesh) +
+                    ", and fit.vtu?tets=N");
   return *level;
+}
+
+/// The one field of that name, else every instant of the series.
+std::vector<std::uint32_t> fieldsNamed(const Manifest& manifest, std::string_view name) {
+  const auto one = fieldOfKey(manifest, name);
+  return one ? std::vector{*one} : fieldsOfKey(manifest.fields, name);
 }
 
 /// `fields=A,B` as indices; absent means all, empty none.
@@ -112,9 +89,9 @@ OrRefusal<std::vector<std::uint32_t>> wantedFields(const RequestTarget& target,
   for (std::string_view rest = *text; !rest.empty();) {
     const std::string_view name = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(name.size() + 1, rest.size()));
-    const auto field = fieldOfKey(mesh.manifest, name);
-    if (!field) return notFound("this mesh has no field '" + std::string(name) + "'");
-    out.push_back(*field);
+    const std::vector<std::uint32_t> meant = fieldsNamed(mesh.manifest, name);
+    if (meant.empty()) return notFound("this mesh has no field '" + std::string(name) + "'");
+    out.insert(out.end(), meant.begin(), meant.end());
   }
   std::ranges::sort(out);
   const auto twice = std::ranges::unique(out);
@@ -127,28 +104,6 @@ std::string canonicalPath(const LevelRequest& level) {
          std::string(formName(level.form));
 }
 
-/// The digest's own bytes decide, so the answer may be kept for ever; the version of this program
-/// is part of the tag.
-Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
-  Resource out{{'"' + wanted.key() + '"', wanted.mesh->modified},
-               std::string(mediaType(wanted.form)),
-               kForEver};
-  out.headers.add(
-      "Content-Disposition",
-      contentDisposition(isPicture(wanted.form) ? Disposition::kInline : Disposition::kAttachment,
-                         name + "." + std::string(formName(wanted.form))));
-  becomeEmbeddable(out);
-  return out;
-}
-
-Answer toBeMade(const RequestView& request, const Resource& resource, LevelRequest wanted) {
-  if (std::optional<Reply> early = conditionalReply(request, resource)) return std::move(*early);
-  Reply out = beginReply(200, resource);
-  out.headers.add("Accept-Ranges", "bytes");
-  out.body = std::monostate();
-  return {std::move(out), std::move(wanted)};
-}
-
 }  // namespace
 
 Answer routeLevel(const RequestView& request, const RequestTarget& target, const NamedLog& log,
@@ -156,7 +111,7 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   const MeshPointer& mesh = log.mesh;
   const std::size_t dot = std::min(name.find('.'), name.size());
   const auto form = formOfName(name.substr(std::min(dot + 1, name.size())));
-  if (!form || isPicture(*form))
+  if (!form || !isMeshFile(*form))
     return problem(404, "not-found",
                    "a level is to be had as {k}.vtu, .vtk, .msh, .usda, and its boundary as "
                    "{k}.glb, .drc, .obj");
@@ -165,13 +120,15 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   const OrRefusal<std::vector<std::uint32_t>> fields = wantedFields(target, *mesh);
   if (!fields) return fields.error();
   LevelRequest wanted{mesh, *level, *form, *fields};
+  if (const std::optional<std::string> time = target.parameter("time")) {
+    OrRefusal<LevelRequest> instant = atTime(std::move(wanted), *time);
+    if (!instant) return instant.error();
+    wanted = std::move(*instant);
+  }
 
   Resource resource = resourceOf(wanted, log.name + "-level-" + std::to_string(*level));
   if (name.starts_with("fit.")) resource.headers.add("Content-Location", canonicalPath(wanted));
-  if (!isCompressed(*form)) {
-    wanted.coding = chooseCoding(request.acceptEncoding.value_or(""), true, true);
-    becomeVariant(resource, wanted.coding);
-  }
+  chooseCodingOf(wanted, resource, request);
   return toBeMade(request, resource, std::move(wanted));
 }
 

@@ -1,5 +1,5 @@
-// Addresses of levels: `levels/{k}.{form}`, `levels/fit.{form}?tets= | bytes= | error=`, `fields=`
-// (PROTOCOL.md, "Levels of detail").
+// Addresses of levels: `levels/{k}.{form}`, `levels/fit.{form}?tets= | bytes= | error=`, `fields=`,
+// `time=` (PROTOCOL.md, "Levels of detail").
 #pragma once
 
 #include "server/routes/answer.h"

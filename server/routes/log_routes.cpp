@@ -5,6 +5,7 @@
 #include <span>
 
 #include "server/http/http_resource.h"
+#include "server/routes/series_routes.h"
 
 namespace qtet {
 namespace {
@@ -76,12 +77,13 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
     return documentReply(request, mesh->manifestText(), mesh);
   if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
   if (path.size() == 1 && what == "poster.webp") return routePoster(request, log);
+  if (path.size() == 1 && what == "series") return routeSeries(request, target, log);
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
   if (path.size() == 2 && what == "levels") return routeLevel(request, target, log, path[1]);
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
   return notFound(
       "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "
-      "other forms, preview.png, and poster.webp");
+      "other forms, series, preview.png, and poster.webp");
 }
 
 }  // namespace qtet

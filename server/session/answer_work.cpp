@@ -40,6 +40,7 @@ Reply refusedLevel(LevelRefusal refusal) {
 }
 
 Reply failedLevel(const Error& error) {
+  if (error.code == ErrorCode::kNotFound) return problem(404, "not-found", error.message);
   const std::string why = error.code == ErrorCode::kIo
                               ? "the level cannot be made: "
                               : "this log cannot be decoded, though its checksums hold; qtet "
@@ -58,8 +59,9 @@ asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const Re
                                                 : refusedLevel(*refusal);
     Result<LevelFile>& made = std::get<Result<LevelFile>>(answered);
     if (!made) {
-      spdlog::error("{}: level {} cannot be made: {}", level.mesh->id, level.level,
-                    made.error().text());
+      if (made.error().code != ErrorCode::kNotFound)
+        spdlog::error("{}: level {} cannot be made: {}", level.mesh->id, level.level,
+                      made.error().text());
       co_return failedLevel(made.error());
     }
     file = std::move(*made);

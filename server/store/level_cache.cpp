@@ -73,7 +73,8 @@ bool isKey(std::string_view text) {
 Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
                                                      std::uintmax_t maxBytes,
                                                      std::uintmax_t reserve,
-                                                     FreeDiskBytes freeBytes) {
+                                                     FreeDiskBytes freeBytes,
+                                                     std::size_t maxLevels) {
   std::error_code ec;
   fs::create_directories(folder, ec);
   std::vector<std::tuple<fs::file_time_type, std::string, std::uintmax_t>> found;
@@ -93,7 +94,8 @@ Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
     return name.ends_with(kSuffix) && isKey(name.substr(0, name.size() - kSuffix.size()));
   });
   std::ranges::sort(found);
-  std::unique_ptr<LevelCache> out(new LevelCache(folder, maxBytes, reserve, std::move(freeBytes)));
+  std::unique_ptr<LevelCache> out(
+      new LevelCache(folder, maxBytes, reserve, std::move(freeBytes), maxLevels));
   for (const auto& [time, key, bytes] : found) out->add(key, bytes);
   return out;
 }
@@ -107,7 +109,7 @@ void LevelCache::add(const std::string& key, std::uintmax_t bytes) {
   entries_.push_front({key, bytes});
   byKey_[key] = entries_.begin();
   bytes_ += bytes;
-  while (bytes_ > maxBytes_) {
+  while (bytes_ > maxBytes_ || entries_.size() > maxLevels_) {
     const std::string oldest = entries_.back().key;
     std::error_code ec;
     fs::remove(pathOf(oldest), ec);  // whoever is sending it has it mapped

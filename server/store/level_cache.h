@@ -1,5 +1,5 @@
 // Finished levels on disk, found again by their keys; the least recently used go when there are too
-// many bytes.
+// many bytes or too many levels.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include "proto/error.h"
 #include "server/store/free_disk.h"
 #include "server/store/level_file.h"
+#include "server/store/store_limits.h"
 
 namespace qtet {
 
@@ -23,7 +24,8 @@ class LevelCache {
   /// unfinished files of one that was killed. Errors: io.
   [[nodiscard]] static Result<std::unique_ptr<LevelCache>> open(
       const std::filesystem::path& folder, std::uintmax_t maxBytes,
-      std::uintmax_t reserve = limits::kDiskReserve, FreeDiskBytes freeBytes = freeDiskBytes);
+      std::uintmax_t reserve = limits::kDiskReserve, FreeDiskBytes freeBytes = freeDiskBytes,
+      std::size_t maxLevels = limits::kMaxCachedLevels);
 
   /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C
   /// differs), which then goes. Reads the whole level. `key` is hexadecimal.
@@ -39,10 +41,11 @@ class LevelCache {
     std::uintmax_t bytes;
   };
   LevelCache(std::filesystem::path folder, std::uintmax_t maxBytes, std::uintmax_t reserve,
-             FreeDiskBytes freeBytes)
+             FreeDiskBytes freeBytes, std::size_t maxLevels)
       : folder_(std::move(folder)),
         maxBytes_(maxBytes),
         reserve_(reserve),
+        maxLevels_(maxLevels),
         freeBytes_(std::move(freeBytes)) {}
   [[nodiscard]] std::filesystem::path pathOf(const std::string& key) const;
   void add(const std::string& key, std::uintmax_t bytes);
@@ -50,6 +53,7 @@ class LevelCache {
 
   const std::filesystem::path folder_;
   const std::uintmax_t maxBytes_, reserve_;
+  const std::size_t maxLevels_;
   const FreeDiskBytes freeBytes_;
   mutable std::mutex mutex_;
   std::uintmax_t bytes_ = 0;

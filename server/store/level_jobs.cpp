@@ -110,7 +110,9 @@ void LevelJobs::State::finish(const JobPointer& job, Result<Bytes> bytes) {
     const std::scoped_lock lock(mutex);
     std::erase(running, job);
     if (const auto it = jobs.find(job->key); it != jobs.end() && it->second == job) jobs.erase(it);
-    if (!job->stop.stop_requested()) ++(file ? counts.made : counts.failed);
+    // a point outside the mesh is the client's mistake, and no failure
+    const bool isAnswer = file || file.error().code == ErrorCode::kNotFound;
+    if (!job->stop.stop_requested()) ++(isAnswer ? counts.made : counts.failed);
     if (!ending) subscribers = std::exchange(job->subscribers, {});
   }
   for (auto& [number, subscription] : subscribers) subscription.done(file);

@@ -7,11 +7,13 @@
 #include "codec/files/mesh_file.h"
 #include "codec/picture/poster.h"
 #include "server/store/preview.h"
+#include "server/store/series_maker.h"
 
 namespace qtet {
 namespace {
 
-Result<Bytes> written(const LatticeMesh& mesh, const LevelRequest& request) {
+Result<Bytes> written(LatticeMesh& mesh, const LevelRequest& request) {
+  for (std::size_t f = 0; f < request.names.size(); ++f) mesh.fields[f].name = request.names[f];
   switch (request.form) {
     case LevelForm::kPng: return previewPng(mesh);
     case LevelForm::kWebp: return posterWebp(mesh, request.mesh->manifest);
@@ -19,14 +21,18 @@ Result<Bytes> written(const LatticeMesh& mesh, const LevelRequest& request) {
   }
 }
 
+Result<Bytes> fileOf(const LevelRequest& request, const std::stop_token& stop) {
+  if (request.point) return makeSeries(request, stop);
+  Result<LatticeMesh> mesh = meshAtLevel(request.mesh->log, request.level, request.fields, stop);
+  if (!mesh) return std::unexpected(mesh.error());
+  return written(*mesh, request);
+}
+
 }  // namespace
 
 Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop) {
   try {
-    const Result<LatticeMesh> mesh =
-        meshAtLevel(request.mesh->log, request.level, request.fields, stop);
-    if (!mesh) return std::unexpected(mesh.error());
-    Result<Bytes> file = written(*mesh, request);
+    Result<Bytes> file = fileOf(request, stop);
     if (!file || stop.stop_requested()) return file;
     return encoded(std::move(*file), request.coding);
   } catch (const std::bad_alloc&) {

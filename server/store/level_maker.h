@@ -9,8 +9,9 @@
 
 namespace qtet {
 
-/// The whole file. Looks at `stop` after every chunk; if it was requested, the result is useless.
-/// Errors: those of applyChunk and of the writers; io when there is not enough memory.
+/// The whole file, or the values of a series where the request has a point. Looks at `stop` after
+/// every chunk; if it was requested, the result is useless. Errors: those of applyChunk, of the
+/// writers and of makeSeries; io when there is not enough memory.
 [[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop);
 
 }  // namespace qtet

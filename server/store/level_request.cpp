@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 #include "server/wire/digest.h"
@@ -9,7 +10,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<std::pair<LevelForm, std::string_view>, 9> kForms = {{
+constexpr std::array<std::pair<LevelForm, std::string_view>, 11> kForms = {{
     {LevelForm::kVtu, "vtu"},
     {LevelForm::kVtk, "vtk"},
     {LevelForm::kMsh, "msh"},
@@ -19,6 +20,8 @@ constexpr std::array<std::pair<LevelForm, std::string_view>, 9> kForms = {{
     {LevelForm::kUsda, "usda"},
     {LevelForm::kPng, "png"},
     {LevelForm::kWebp, "webp"},
+    {LevelForm::kJson, "json"},
+    {LevelForm::kCsv, "csv"},
 }};
 
 }  // namespace
@@ -28,6 +31,9 @@ std::string LevelRequest::key() const {
                      std::to_string(level) + ' ' + std::string(formName(form)) + ' ' +
                      std::string(codingName(coding));
   for (const std::uint32_t field : fields) text += ' ' + std::to_string(field);
+  for (const std::string& name : names) text += ' ' + std::to_string(name.size()) + ':' + name;
+  if (point)
+    for (const double x : *point) text += " @" + std::to_string(std::bit_cast<std::uint64_t>(x));
   return hexDigestOf(text);
 }
 

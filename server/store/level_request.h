@@ -1,6 +1,7 @@
 // A level that somebody has to make before it can be sent, and what names the result.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,8 +12,21 @@
 
 namespace qtet {
 
-/// The kinds of file of codec/files/mesh_file.h, the preview and the poster.
-enum class LevelForm : std::uint8_t { kVtu, kVtk, kMsh, kObj, kGlb, kDrc, kUsda, kPng, kWebp };
+/// The kinds of file of codec/files/mesh_file.h, the preview, the poster, and the values of a
+/// series at a point.
+enum class LevelForm : std::uint8_t {
+  kVtu,
+  kVtk,
+  kMsh,
+  kObj,
+  kGlb,
+  kDrc,
+  kUsda,
+  kPng,
+  kWebp,
+  kJson,
+  kCsv,
+};
 
 struct LevelRequest {
   MeshPointer mesh{};
@@ -20,6 +34,9 @@ struct LevelRequest {
   LevelForm form = LevelForm::kVtu;
   std::vector<std::uint32_t> fields{};  ///< indices into the manifest's, ascending, each once
   ContentCoding coding = ContentCoding::kIdentity;
+  std::vector<std::string> names{};  ///< the fields' in the file; empty: the manifest's
+  /// Where the values are, in the mesh's own coordinates; of kJson and kCsv alone.
+  std::optional<std::array<double, 3>> point{};
 
   /// The same for the same bytes, with one version of this program: hexadecimal, of the log's
   /// digest and everything else here.

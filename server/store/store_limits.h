@@ -52,5 +52,8 @@ inline constexpr std::size_t kMaxLevelJobsPerAddress = 6;
 inline constexpr std::size_t kLevelThreads = 1;
 /// Bytes of finished levels kept on disk: some hundred of a mesh of a million cells.
 inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{2} << 30;
+/// Files of finished levels. Values of a series at a point are small files. This many take 20 MB of
+/// memory for their names, and 256 MiB of a disk that gives each 4 KiB.
+inline constexpr std::size_t kMaxCachedLevels = 65'536;
 
 }  // namespace qtet::limits

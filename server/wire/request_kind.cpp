@@ -16,6 +16,7 @@ RouteLabel routeOfApi(const RequestTarget& target) {
   if (path[1] == "meshes") return path.size() == 2 ? RouteLabel::kMeshes : RouteLabel::kMesh;
   if (path[1] != "logs") return RouteLabel::kOther;
   if (path.size() > 3 && path[3] == "levels") return RouteLabel::kLevel;
+  if (path.size() > 3 && path[3] == "series") return RouteLabel::kSeries;
   const bool isPicture = path.size() > 3 && (path[3] == "preview.png" || path[3] == "poster.webp");
   return isPicture ? RouteLabel::kPreview : RouteLabel::kLog;
 }

@@ -24,6 +24,8 @@ const description = parse(readFileSync(join(source, 'proto/openapi.yaml'), 'utf8
 const kUnasked = new Set([
   'readLevel 500',
   'readLevel 503',
+  'readSeries 500',
+  'readSeries 503',
   'readPreview 500',
   'readPreview 503',
   'readPoster 500',
@@ -191,7 +193,9 @@ async function checkAll(port) {
   ];
   const pictures = [`${log}/preview.png`, `${log}/poster.webp`];
   const levels = kForms.map((form) => `${log}/levels/1.${form}`).concat(pictures);
-  for (const path of [...documents, ...binaries, ...levels]) {
+  const place = `${log}/series?x=0.5&y=0.5&z=0.5&field=Velocity`;
+  const series = [place, `${place}&format=csv`];
+  for (const path of [...documents, ...binaries, ...levels, ...series]) {
     const whole = await get(200, path);
     await expect(200, 'HEAD', path);
     await expect(204, 'OPTIONS', path);
@@ -244,11 +248,24 @@ async function checkAll(port) {
     `${log}/levels/999.vtu`,
     `${log}/levels/fit.vtu?error=none:1`,
     `${log}/preview.png?field=none`,
+    `${log}/levels/1.vtu?time=0`,
+    place.replace('Velocity', 'none'),
+    place.replace('x=0.5', 'x=1e9'),
+    `${place}&level=9999`,
     '/nothing',
     '/v2',
   ])
     await get(404, path);
-  for (const path of ['/v1/meshes?limit=0', `${log}/levels/fit.vtu`, '/%', '/v1/stream/%zz'])
+  for (const path of [
+    '/v1/meshes?limit=0',
+    `${log}/levels/fit.vtu`,
+    `${log}/levels/1.vtu?time=all`,
+    `${log}/series`,
+    `${place}&level=1&error=0.1`,
+    place.replace('x=0.5', 'x=nan'),
+    '/%',
+    '/v1/stream/%zz',
+  ])
     await get(400, path);
   await get(307, '/v1/meshes/fin/log');
   await get(426, '/v1/stream');

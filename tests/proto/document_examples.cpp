@@ -58,6 +58,9 @@ std::string judgeList(const std::string& text) {
 std::string judgeMesh(const std::string& text) {
   return schemas().complaint("Mesh", Json::parse(text), {"links", "manifest"});
 }
+std::string judgeSeries(const std::string& text) {
+  return schemas().complaint("Series", Json::parse(text));
+}
 std::string judgeManifest(const std::string& text) {
   return schemas().complaint("Manifest", Json::parse(text));
 }
@@ -72,9 +75,9 @@ std::string judgeTurn(const std::string& text) {
 }
 
 const std::map<std::string, std::function<std::string(const std::string&)>> kJudges{
-    {"json client", judgeClient},     {"json server", judgeServer},  {"json have", judgeHave},
-    {"json target", judgeTarget},     {"json list", judgeList},      {"json mesh", judgeMesh},
-    {"json manifest", judgeManifest}, {"text transcript", judgeTurn}};
+    {"json client", judgeClient},     {"json server", judgeServer}, {"json have", judgeHave},
+    {"json target", judgeTarget},     {"json list", judgeList},     {"json mesh", judgeMesh},
+    {"json manifest", judgeManifest}, {"json series", judgeSeries}, {"text transcript", judgeTurn}};
 
 /// A value or a turn, and the line that it begins in.
 struct Example {

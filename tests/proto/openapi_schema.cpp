@@ -11,7 +11,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-bool isOfType(const std::string& type, const Json& value) {
+/// `type` is a name, or an array of them, one of which is enough.
+bool isOfType(const Json& type, const Json& value) {
+  if (type.is_array())
+    return std::ranges::any_of(type, [&](const Json& one) { return isOfType(one, value); });
+  if (type == "null") return value.is_null();
   if (type == "object") return value.is_object();
   if (type == "array") return value.is_array();
   if (type == "string") return value.is_string();
@@ -29,7 +33,7 @@ class Check {
     if (schema.contains("enum") && std::ranges::find(schema["enum"], value) == schema["enum"].end())
       return blame(at, "is none of " + schema["enum"].dump());
     if (schema.contains("type") && !isOfType(schema["type"], value))
-      return blame(at, "is no " + schema["type"].get<std::string>());
+      return blame(at, "is no " + schema["type"].dump());
     if (value.is_number()) number(schema, value, at);
     if (value.is_string()) string(schema, value, at);
     if (value.is_array()) array(schema, value, at);

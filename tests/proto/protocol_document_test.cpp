@@ -50,7 +50,7 @@ TEST(ProtocolDocument, aBlockOfNoKindIsAFault) {
 
 TEST(ProtocolDocument, aKindWithoutAnExampleIsAFault) {
   for (const char* kind : {"json client", "json server", "json have", "json target", "json list",
-                           "json mesh", "json manifest", "text transcript"})
+                           "json mesh", "json manifest", "json series", "text transcript"})
     EXPECT_THAT(faultsOfExamples(changed("```" + std::string(kind), "```elsewhere")),
                 Contains(HasSubstr("no example is '" + std::string(kind) + "'")));
 }
@@ -63,6 +63,7 @@ TEST(ProtocolDocument, anExampleThatItsParserRefusesIsAFault) {
         std::pair{R"({"level": 3})", R"({"level": "3"})"}, std::pair{R"("vertices": 37825,)", ""},
         std::pair{R"("headBytes": 2037)", R"("headBytes": 3)"},
         std::pair{R"("source": "comb.vtu",)", ""},
+        std::pair{R"("tetrahedron": 4711)", R"("tetrahedron": -1)"},
         std::pair{"< frame 1 0 head 2669", "< frame 1 0 head"},
         std::pair{R"("credit":60000})", R"("credit":-1})"}})
     EXPECT_THAT(faultsOfExamples(changed(from, to)), Not(IsEmpty())) << to;

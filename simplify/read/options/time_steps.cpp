@@ -8,6 +8,8 @@
 #include <optional>
 #include <string_view>
 
+#include "proto/series.h"
+
 namespace qtet {
 namespace {
 
@@ -38,19 +40,13 @@ std::optional<StepRange> stepRange(std::string_view text) {
   return out;
 }
 
-/// A time that differs by less than this of the larger is the same one: decimal digits are lost.
-bool isSame(double a, double b) {
-  constexpr double kNear = 1e-9;
-  return std::abs(a - b) <= kNear * std::max(std::abs(a), std::abs(b));
-}
-
 /// The steps from one time to another, every so many of them.
 std::vector<std::size_t> stepsOf(const StepRange& range, const std::vector<double>& times) {
   std::vector<std::size_t> out;
   std::size_t within = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if ((times[i] < range.from && !isSame(times[i], range.from)) ||
-        (times[i] > range.to && !isSame(times[i], range.to)))
+    if ((times[i] < range.from && !isSameTime(times[i], range.from)) ||
+        (times[i] > range.to && !isSameTime(times[i], range.to)))
       continue;
     if (within++ % range.every == 0) out.push_back(i);
   }
@@ -90,7 +86,7 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
   double wanted = 0;
   if (!asked.empty() && readPart(std::string_view(asked), wanted)) {
     for (const std::size_t i : all) {
-      if (isSame(times[i], wanted)) return std::vector<std::size_t>{i};
+      if (isSameTime(times[i], wanted)) return std::vector<std::size_t>{i};
     }
   }
   if (times.empty())

@@ -234,6 +234,19 @@ TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
   }
 }
 
+TEST(LevelCache, keepsNoMoreLevelsThanItMay) {
+  for (const std::size_t most : {2u, 3u, 4u}) {
+    const test::TempFolder folder;
+    const auto keyOf = [](char c) { return std::string(64, c); };
+    const auto cache =
+        LevelCache::open(folder.path(), 1000, 0, [](const auto&) { return 1u << 30; }, most);
+    for (const char c : std::string("abc")) (void)(*cache)->put(keyOf(c), Bytes(10, 1));
+    EXPECT_EQ((*cache)->find(keyOf('a')).has_value(), most >= 3) << most;
+    EXPECT_TRUE((*cache)->find(keyOf('b'))) << most;
+    EXPECT_EQ((*cache)->bytes(), 10 * std::min<std::size_t>(most, 3));
+  }
+}
+
 TEST(LevelCache, afterARestartTheLeastRecentlyUsedStillGoesFirst) {
   const test::TempFolder folder;
   const std::string byAge = "2b7a05";  // the oldest first, in no order of names

@@ -1,0 +1,29 @@
+// The cell of a mesh that holds a point, and what its corners count there.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "codec/mesh/mesh.h"
+
+namespace qtet {
+
+/// Lattice steps. A point that is at most so far from a cell counts as its own. The input's points
+/// moved to the lattice by up to half a step on each axis, 0.87 together. So those of its surface
+/// may lie outside.
+inline constexpr double kNearSteps = 1;
+
+struct PointInCell {
+  CellId cell = 0;
+  std::array<double, 4> weights{};  ///< barycentric: none negative, together 1
+};
+
+/// The first cell that holds `point` (lattice coordinates, not rounded). If none does, the cell
+/// whose point with the negative weights left out is nearest, within kNearSteps. Else nullopt.
+/// Cells without volume hold nothing. Looks at every cell. REQUIRES: indices within range.
+[[nodiscard]] std::optional<PointInCell> cellAtPoint(std::span<const LatticePoint> points,
+                                                     std::span<const Tetrahedron> cells,
+                                                     const std::array<double, 3>& point);
+
+}  // namespace qtet

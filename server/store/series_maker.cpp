@@ -1,0 +1,186 @@
+#include "server/store/series_maker.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "codec/log/log_index.h"
+#include "codec/mesh/mesh.h"
+#include "codec/refine/refiner.h"
+#include "proto/field_key.h"
+#include "server/store/cell_at_point.h"
+
+namespace qtet {
+namespace {
+
+/// The values of one field at the point, one a component; NaN where one is missing.
+struct Instant {
+  std::optional<double> time;
+  std::vector<double> values;
+};
+
+/// The shortest text that gives the number back.
+template <class Number>
+std::string shortest(Number number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
+/// Text of a value of a field of this type; `missing` where it is none.
+std::string valueText(double value, const std::string& type, const char* missing) {
+  if (!std::isfinite(value)) return missing;
+  const auto rounded = static_cast<float>(value);
+  return type == "float32" && std::isfinite(rounded) ? shortest(rounded) : shortest(value);
+}
+
+Status stopped() {
+  return fail(ErrorCode::kIo, "stopped, because nobody waits for the values any more");
+}
+
+Status refineTo(const LevelRequest& request, Refiner& refiner, const std::stop_token& stop) {
+  const LogFile& log = request.mesh->log;
+  refiner.stopAtLevel(request.level);
+  for (std::uint32_t chunk = 0;
+       chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < request.level);
+       ++chunk) {
+    if (stop.stop_requested()) return stopped();
+    if (Status s = applyChunk(log, refiner, chunk, {}); !s) return s;
+  }
+  return {};
+}
+
+/// The fields and their parents, which have smaller numbers, so that each finds its own whole.
+Status applyFields(const LevelRequest& request, Refiner& refiner, const std::stop_token& stop) {
+  const LogFile& log = request.mesh->log;
+  for (const std::uint32_t field : log.index().withParents(request.fields))
+    for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk) {
+      if (stop.stop_requested()) return stopped();
+      if (Status s = applyFieldBlock(log, refiner, chunk, field); !s) return s;
+    }
+  return {};
+}
+
+std::unexpected<Error> isOutside(const LevelRequest& request, std::span<const LatticePoint> points,
+                                 const Lattice& lattice) {
+  LatticePoint low = points.empty() ? LatticePoint() : points.front(), high = low;
+  for (const LatticePoint& p : points)
+    for (std::size_t a = 0; a < 3; ++a)
+      low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  const auto text = [](const std::array<double, 3>& p) {
+    return "(" + shortest(p[0]) + ", " + shortest(p[1]) + ", " + shortest(p[2]) + ")";
+  };
+  return fail(ErrorCode::kNotFound,
+              "the point " + text(*request.point) + " lies in no cell of level " +
+                  std::to_string(request.level) + ", whose box is from " +
+                  text(lattice.position(low)) + " to " + text(lattice.position(high)) +
+                  "; give a point inside the mesh, or a finer level");
+}
+
+/// A field's values in the cell: a point field's are interpolated, and missing where one of a
+/// corner that counts is.
+std::vector<double> valuesAt(const ManifestField& field, std::span<const std::int32_t> integers,
+                             const PointInCell& place, const Tetrahedron& corners) {
+  const FieldInfo info{.name = {}, .step = field.step, .minimum = field.minimum};
+  std::vector<double> out(field.components);
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    const auto at = [&](std::size_t element) {
+      return info.value(c, integers[element * field.components + c]);
+    };
+    if (field.association == "cell") {
+      out[c] = at(place.cell);
+      continue;
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      if (place.weights[i] > 0) out[c] += place.weights[i] * at(corners[i]);
+  }
+  return out;
+}
+
+std::string jsonText(const LevelRequest& request, const std::string& name, CellId cell,
+                     const std::vector<Instant>& instants) {
+  const ManifestField& field = request.mesh->manifest.fields[request.fields.front()];
+  const std::array<double, 3>& p = *request.point;
+  std::string out = "{\"field\":" + nlohmann::json(name).dump() + ",\"association\":\"" +
+                    field.association + "\",\"components\":" + std::to_string(field.components) +
+                    ",\"point\":[" + shortest(p[0]) + "," + shortest(p[1]) + "," + shortest(p[2]) +
+                    "],\"level\":" + std::to_string(request.level) +
+                    ",\"tetrahedron\":" + std::to_string(cell) + ",\"times\":";
+  if (instants.front().time) {
+    out += '[';
+    for (const Instant& instant : instants)
+      out += (&instant == instants.data() ? "" : ",") + shortest(*instant.time);
+    out += ']';
+  } else {
+    out += "null";
+  }
+  out += ",\"values\":[";
+  for (const Instant& instant : instants) {
+    out += &instant == instants.data() ? "[" : ",[";
+    for (std::size_t c = 0; c < instant.values.size(); ++c)
+      out += (c == 0 ? "" : ",") + valueText(instant.values[c], field.type, "null");
+    out += ']';
+  }
+  return out + "]}";
+}
+
+/// As RFC 4180 has it: in quotes where a character of it means something else.
+std::string csvCell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string csvText(const LevelRequest& request, const std::string& name,
+                    const std::vector<Instant>& instants) {
+  const ManifestField& field = request.mesh->manifest.fields[request.fields.front()];
+  std::string out = "time";
+  for (std::uint32_t c = 0; c < field.components; ++c)
+    out += "," + csvCell(field.components == 1 ? name : name + "_" + std::to_string(c));
+  out += "\r\n";
+  for (const Instant& instant : instants) {
+    if (instant.time) out += shortest(*instant.time);
+    for (const double value : instant.values) out += "," + valueText(value, field.type, "");
+    out += "\r\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<Bytes> makeSeries(const LevelRequest& request, const std::stop_token& stop) {
+  const Manifest& manifest = request.mesh->manifest;
+  const Lattice lattice{manifest.latticeBits, manifest.latticeStep, manifest.latticeOrigin};
+  Refiner refiner(request.mesh->log.index());
+  if (Status s = refineTo(request, refiner, stop); !s) return std::unexpected(s.error());
+  std::array<double, 3> point{};
+  for (std::size_t a = 0; a < 3; ++a)
+    point[a] = ((*request.point)[a] - lattice.origin[a]) / lattice.step;
+  const std::optional<PointInCell> place =
+      cellAtPoint(refiner.points(), refiner.tetrahedra(), point);
+  if (!place) return isOutside(request, refiner.points(), lattice);
+  if (Status s = applyFields(request, refiner, stop); !s) return std::unexpected(s.error());
+
+  std::string name;
+  std::vector<Instant> instants;
+  for (const std::uint32_t f : request.fields) {
+    const ManifestField& field = manifest.fields[f];
+    const std::optional<InstantName> instant = instantName(field.name);
+    name = instant ? instant->series : field.name;
+    instants.push_back(
+        {instant ? std::optional(instant->time) : std::nullopt,
+         valuesAt(field, refiner.fieldValues(f), *place, refiner.tetrahedra()[place->cell])});
+  }
+  std::ranges::sort(instants, {}, &Instant::time);
+  const std::string text = request.form == LevelForm::kCsv
+                               ? csvText(request, name, instants)
+                               : jsonText(request, name, place->cell, instants);
+  return Bytes(text.begin(), text.end());
+}
+
+}  // namespace qtet
