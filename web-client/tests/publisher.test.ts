@@ -1,6 +1,6 @@
-import {afterEach, beforeEach, expect, test, vi} from 'vitest';
+import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import type {Assembler} from '../core/decode/assembler';
-import {kPlainDisplay} from '../core/picture/display';
+import {kPlainDisplay, type Display} from '../core/picture/display';
 import type {FieldInfo} from '../core/protocol/fields';
 import {markSeries} from '../core/protocol/series';
 import {Publisher} from '../core/session/publisher';
@@ -165,10 +165,133 @@ test('creasesComeWithAPictureOfTheirOwn', () => {
   expect(pictures.map(({surface}) => surface?.creases?.join())).toEqual([undefined, '1,1,1']);
 });
 
-test('fieldsAheadMakeNoOtherSurface', () => {
+test('fieldsAheadMakeNoOtherPicture', () => {
   publisher.show({...kPlainDisplay, ahead: [1, 2]});
-  untilNext();
-  expect(pictures.at(-1)!.surface).toBeUndefined();
+  expect(untilNext()).toBe(Infinity);
+});
+
+test('aWishComesWithoutPauseWhereNothingIsLeftToDecode', () => {
+  publisher.pace.untilLast = () => 0;
+  publisher.show({...kPlainDisplay, planes: [{normal: [1, 0, 0], offset: 3}]});
+  expect(untilNext()).toBeLessThanOrEqual(1);
+});
+
+describe('a series', () => {
+  let codec: FakeCodec;
+  let received: number;
+  const display = (field: number): Display => ({
+    ...kPlainDisplay,
+    color: {field, component: -1},
+  });
+
+  /** Two instants and a lone field. The first instant is decoded and shown. */
+  beforeEach(() => {
+    const names = ['T@0', 'T@1', 'p'];
+    const fields = names.map((name): FieldInfo => ({
+      ...{name, components: 1, association: 'point', step: 1, minimum: [0], range: [0, 8]},
+    }));
+    markSeries(fields);
+    codec = new FakeCodec({fields: names, chunks: 1});
+    codec.open();
+    codec.chunksApplied = 1;
+    codec.applyField(0, 0);
+    received = 1;
+    const assembler = {
+      ...{codec, manifest: {fields}, statistics: () => kNoStatistics},
+      receivedOfField: () => received,
+    };
+    publisher = new Publisher(
+      assembler as unknown as Assembler,
+      (snapshot) => void pictures.push(snapshot),
+    );
+    publisher.show(display(0));
+    untilNext();
+    publisher.shown();
+  });
+
+  const shown = (): (number | undefined)[] => pictures.slice(1).map(({color}) => color?.field);
+
+  test('anInstantWithoutValuesLeavesTheLastOneOnTheScreen', () => {
+    publisher.show(display(1));
+    expect(untilNext()).toBe(Infinity);
+    codec.applyField(1, 0);
+    publisher.changed(true);
+    expect(untilNext()).toBeLessThanOrEqual(1);
+    expect(shown()).toEqual([0, 1]);
+  });
+
+  test('theFieldsThatAnInstantIsPredictedFromMakeNoPicture', () => {
+    publisher.show(display(1));
+    codec.applyField(2, 0);
+    publisher.changed();
+    expect(untilNext()).toBe(Infinity);
+    publisher.repeat();
+    expect(untilNext()).toBeLessThanOrEqual(1);
+    expect(shown()).toEqual([0, 0]);
+  });
+
+  test('aFinerMeshIsShownWhileAnInstantHasNoValues', () => {
+    publisher.show(display(1));
+    codec.chunksApplied = 2;
+    publisher.changed(true);
+    expect(untilNext()).toBeLessThanOrEqual(1);
+  });
+
+  test('aPartOfAnInstantIsShownOnceNoMoreOfItIsHere', () => {
+    codec.chunksApplied = 2;
+    publisher.changed(true);
+    untilNext();
+    publisher.shown();
+    publisher.show(display(1));
+    codec.applyField(1, 0);
+    received = 2;
+    publisher.changed(true);
+    expect(untilNext()).toBe(Infinity);
+    received = 1;
+    publisher.changed(true);
+    expect(untilNext()).toBeLessThanOrEqual(1);
+    expect(shown()).toEqual([0, 0, 1]);
+  });
+
+  test('backFromAnInstantThatHasComeTheFirstIsDrawnAnew', () => {
+    publisher.show(display(1));
+    codec.applyField(1, 0);
+    publisher.changed(true);
+    untilNext();
+    publisher.shown();
+    publisher.show(display(0));
+    untilNext();
+    expect(shown()).toEqual([0, 1, 0]);
+  });
+
+  test('aCutThroughAnInstantWithoutValuesShowsTheLastOne', () => {
+    publisher.show({...display(1), planes: [{normal: [1, 0, 0], offset: 3}]});
+    untilNext();
+    expect(shown()).toEqual([0, 0]);
+    expect(pictures.at(-1)!.planes).toHaveLength(1);
+  });
+
+  test('aFieldOfNoSeriesIsNoStandIn', () => {
+    publisher.show(display(2));
+    untilNext();
+    expect(shown()).toEqual([0, undefined]);
+  });
+
+  test('instantsShareTheCreasesOfTheirSurface', () => {
+    let calls = 0;
+    publisher.useCreases(() => {
+      ++calls;
+      return Uint8Array.of(1, 1, 1);
+    });
+    untilNext();
+    publisher.shown();
+    codec.applyField(1, 0);
+    publisher.show(display(1));
+    untilNext();
+    const creases = pictures.slice(-2).map(({surface}) => surface!.creases!);
+    expect([calls, creases.map(String)]).toEqual([1, ['1,1,1', '1,1,1']]);
+    expect(creases[0]).not.toBe(creases[1]);
+  });
 });
 
 test('aComponentOfASeriesHasOneRangeForAllInstants', () => {

@@ -2,6 +2,7 @@ import {afterEach, beforeEach, expect, test, vi} from 'vitest';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Manifest} from '../core/protocol/manifest';
 import {markSeries} from '../core/protocol/series';
+import type {Snapshot} from '../core/session/worker_messages';
 import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
 import {fieldsAhead, TimeBar} from '../viewer/panels/time_bar';
 
@@ -9,6 +10,7 @@ import {fieldsAhead, TimeBar} from '../viewer/panels/time_bar';
 class Part {
   hidden = false;
   value = '';
+  textContent = '';
   readonly style = {};
   readonly classList = {toggle: () => undefined};
   private readonly parts = new Map<string, Part>();
@@ -123,6 +125,73 @@ test('instantsAreLookedUpOnceForASeries', () => {
   const once = reads;
   write('field', 'S');
   expect(reads - once).toBeGreaterThan(once);
+});
+
+/** A picture of the asked instant comes. */
+function drawn(): void {
+  const shown = mesh.manifest!.fields.findIndex(({instant}) => instant?.isShown);
+  mesh.snapshot = {color: {field: shown, component: -1}} as Snapshot;
+  bar.follow();
+}
+
+/** Ten instants, those of `here` decoded, the first one in the picture. */
+function showSeries(here: readonly number[]): void {
+  const fields = Array.from({length: 10}, (_, i) => field(`T@${i}`));
+  markSeries(fields);
+  mesh.manifest = {fields} as Manifest;
+  mesh.here = here;
+  write('range', '0,1');
+  drawn();
+}
+const kAll = Array.from({length: 10}, (_, i) => i);
+
+test('tenInstantsASecondPassAtTheFirstSpeed', () => {
+  showSeries(kAll);
+  bar.toggle();
+  for (let ms = 0; ms < 500; ms += 25) {
+    vi.advanceTimersByTime(25);
+    drawn();
+  }
+  expect(attributes.get('time')).toBe('5');
+});
+
+test('instantsWhoseTimePassesWhileOneIsDrawnAreLeftOut', () => {
+  showSeries(kAll);
+  bar.toggle();
+  vi.advanceTimersByTime(100);
+  expect(attributes.get('time')).toBe('1');
+  vi.advanceTimersByTime(320);
+  expect(attributes.get('time')).toBe('1');
+  drawn();
+  expect(attributes.get('time')).toBe('4');
+});
+
+test('onlyInstantsThatAreHereAreGoneTo', () => {
+  showSeries([0, 1, 3]);
+  bar.toggle();
+  vi.advanceTimersByTime(100);
+  vi.advanceTimersByTime(320);
+  drawn();
+  expect(attributes.get('time')).toBe('3');
+});
+
+test('theClockStandsWhileAnInstantIsNotHere', () => {
+  showSeries([0]);
+  bar.toggle();
+  vi.advanceTimersByTime(700);
+  expect(attributes.get('time')).toBe('1');
+  mesh.here = kAll;
+  drawn();
+  expect(attributes.get('time')).toBe('2');
+});
+
+test('anInstantThatIsLateForASecondIsPassedOver', () => {
+  showSeries([0, 4]);
+  bar.toggle();
+  vi.advanceTimersByTime(1050);
+  expect(attributes.get('time')).toBe('1');
+  vi.advanceTimersByTime(100);
+  expect(attributes.get('time')).toBe('4');
 });
 
 test('fieldsAheadGoRoundTheEndAndLeaveGapsOut', () => {

@@ -26,6 +26,8 @@ import type {Pictures} from './picture/pictures';
 
 export interface LaterHost extends ActionsHost, PanelsHost, TimeHost {
   readonly range: ShownRange | null;
+  /** A series plays. */
+  readonly isPlaying: boolean;
   readonly stream: {
     readonly state: StreamState;
     choose(mesh: string): void;

@@ -45,6 +45,8 @@ export class Viewing implements LaterHost {
   /** The controls; null before they are loaded. */
   later: Later | null = null;
   private readonly timer: ReturnType<typeof setTimeout>;
+  /** The settings in the panels, as text. */
+  private shownSettings = '';
   /** The `complete` event has been dispatched. */
   private completeTold = false;
 
@@ -120,15 +122,30 @@ export class Viewing implements LaterHost {
     const before = this.settings;
     this.settings = settingsFor(mesh, (name) => page.read(name));
     this.later?.tellWrongParts();
-    this.later?.panels.update(this.settings, mesh);
+    this.updatePanels();
     this.later?.time.update(this.settings, mesh);
     this.startPlaying();
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
+    view?.setPlaying(this.isPlaying);
     const {limit} = this.settings;
     if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
     this.showDisplay();
     this.showRange();
+  }
+
+  /** While a series plays, panels that do not show the time would be written anew for nothing. */
+  private updatePanels(): void {
+    const {later, mesh, settings} = this;
+    if (!later) return;
+    const shown = JSON.stringify([{...settings, time: null}, mesh.bounds, mesh.snapshot === null]);
+    if (!this.isPlaying || shown !== this.shownSettings) later.panels.update(settings, mesh);
+    else later.panels.inspect.update();
+    this.shownSettings = shown;
+  }
+
+  get isPlaying(): boolean {
+    return this.later?.time.isPlaying === true;
   }
 
   private startPlaying(): void {

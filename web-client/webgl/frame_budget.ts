@@ -5,6 +5,8 @@
 export const kMovingMs = 60;
 /** The least share of the canvas's pixels, each way: with fewer, nothing is recognisable. */
 const kMinShare = 0.2;
+/** The shares that a row of pictures may have. */
+const kSteps = [1, 0.7, 0.5, 0.35];
 /** Polling takes time from the workers. It is rarer the longer a picture takes. */
 const kPollMs = 4;
 const kPollShare = 0.125;
@@ -55,6 +57,12 @@ export class FrameBudget {
       kMinShare,
       Math.min(1, Math.sqrt(Math.max(0, kMovingMs - this.fixed) / this.perPicture)),
     );
+  }
+
+  /** share() in few steps, so that pictures that follow each other seldom differ in size. */
+  steadyShare(): number {
+    const share = this.share();
+    return kSteps.find((step) => step <= share) ?? kSteps.at(-1)!;
   }
 
   /**

@@ -1,7 +1,7 @@
 // A camera with perspective, which may see only a part of its picture.
 
 import {cross, dot, type Vector} from '../core/protocol/geometry';
-import {difference, lengthOf, sum, unit, type Matrix} from './matrix';
+import {difference, inverse, lengthOf, sum, unit, type Matrix} from './matrix';
 
 /** From where a scene is seen. */
 export interface Eye {
@@ -23,6 +23,9 @@ export interface Part {
 
 /** Unit vectors to the right, up, and to the eye. */
 export type Axes = [Vector, Vector, Vector];
+
+/** An eye so near to a box, as a share of its diagonal, may see into it: near parts are cut off. */
+const kNearBox = 0.01;
 
 const kUp: Vector = [0, 0, 1];
 /** An eye straight above or below looks so far aside, so that it knows where up is. */
@@ -102,4 +105,13 @@ export class Lens implements Eye {
 /** The tangent of half of an angle. */
 export function tangentOf(degrees: number): number {
   return Math.tan((degrees * Math.PI) / 360);
+}
+
+/** Whether the eye is outside a box of the scene, and not near it. No bounds: false. */
+export function isOutside(bounds: readonly number[], toEye: Matrix): boolean {
+  if (bounds.length === 0) return false;
+  const place = inverse(toEye).slice(12, 15);
+  const [low, high] = [bounds.slice(0, 3), bounds.slice(3, 6)];
+  const margin = kNearBox * Math.hypot(...high.map((end, axis) => end - low[axis]!));
+  return place.some((at, axis) => at < low[axis]! - margin || at > high[axis]! + margin);
 }

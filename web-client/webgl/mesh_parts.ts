@@ -9,7 +9,7 @@ import {kFieldFragmentShader, kFieldVertexShader} from './field_shaders';
 import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
 import {Texture} from './gl/texture';
-import type {Eye} from './lens';
+import {isOutside, type Eye} from './lens';
 import type {Matrix} from './matrix';
 import type {Size} from './pose';
 import {kSoupAttributes, Soup} from './soup';
@@ -44,6 +44,10 @@ export class MeshParts {
   private edgeStrength = 0;
   private creaseStrength = 0;
   private creaseFade = 1;
+  /** The surface's, in lattice coordinates. */
+  private bounds: readonly number[] = [];
+  /** No plane cuts the surface. */
+  private isClosed = true;
   /** The uniforms of all. */
   private readonly look: Record<string, Uniform>;
 
@@ -78,6 +82,8 @@ export class MeshParts {
     for (const [name, soup] of Object.entries(changed)) this.layer(name).show(soup);
     for (const soup of this.layers.values()) soup.setClip(snapshot.planes);
     this.surface.setClip(snapshot.planes);
+    this.bounds = snapshot.bounds;
+    this.isClosed = snapshot.planes.length === 0;
     this.cuts.forEach((soup, i) => {
       soup.show(capped ? (snapshot.cuts[i] ?? null) : null);
       soup.setClip(snapshot.planes.filter((_, k) => k !== i));
@@ -134,13 +140,19 @@ export class MeshParts {
 
   /** Draws all onto an empty target, or canvas. */
   draw({toEye, toCube}: Eye): void {
+    // The inside of a closed surface is hidden. Graphics without a GPU would draw it for long.
+    const hidesInside = this.isClosed && isOutside(this.bounds, toEye);
     const isClear = ({look}: Soup): boolean => Number(look.opacity) < 1;
     const visible = this.all.filter((soup) => soup.visible);
     const seen = {...this.look, modelViewMatrix: toEye, projectionMatrix: toCube};
     // Soups that can be seen through come last, and hide nothing.
     for (const soup of [...visible.filter((one) => !isClear(one)), ...visible.filter(isClear)]) {
       const clear = isClear(soup);
-      this.graphics.use({depths: clear ? 'tested' : 'written', mix: clear ? 'over' : null});
+      this.graphics.use({
+        depths: clear ? 'tested' : 'written',
+        culls: hidesInside && !clear && soup === this.surface,
+        mix: clear ? 'over' : null,
+      });
       this.program.use({
         ...seen,
         ...soup.look,

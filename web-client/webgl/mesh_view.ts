@@ -7,7 +7,7 @@ import type {Snapshot} from '../core/session/worker_messages';
 import type {Picture} from './cell_drawer';
 import type {CameraState, OrbitCamera} from './camera';
 import type {Direction} from './directions';
-import {whenDrawn} from './frame_budget';
+import {FrameBudget, whenDrawn} from './frame_budget';
 import {Graphics} from './gl/graphics';
 import type {Target} from './gl/target';
 import type {Lens} from './lens';
@@ -39,6 +39,9 @@ export class MeshView implements View {
   private frame = 0;
   private frameMs = 0;
   private pixelRatio = 1;
+  private isPlaying = false;
+  /** The pictures without a volume learn and use it. */
+  private readonly budget = new FrameBudget();
   private afterFrame: ((ms: number) => void)[] = [];
   /** Settled when the picture in tiles is drawn; null: there is none. */
   private inTiles: Promise<void> | null = null;
@@ -139,6 +142,12 @@ export class MeshView implements View {
     this.camera.moveTo(state);
   }
 
+  setPlaying(playing: boolean): void {
+    if (playing === this.isPlaying) return;
+    this.isPlaying = playing;
+    if (!playing && !this.hasVolume) this.invalidate();
+  }
+
   /** Turns the camera round its target, in radians. */
   turn(horizontal: number, vertical: number): void {
     this.orbit.orbit(horizontal, vertical);
@@ -181,7 +190,7 @@ export class MeshView implements View {
     if (this.drawsVolume) await this.volume!.drawWhole(this.pictureOf());
     // Drawing and copying share a task: a canvas that has been shown is empty.
     if (this.hasVolume) this.volume!.present();
-    else this.draw();
+    else this.draw(1);
     const copy = new OffscreenCanvas(this.surfaceCanvas.width, this.surfaceCanvas.height);
     const context = copy.getContext('2d')!;
     context.fillStyle = background;
@@ -230,18 +239,25 @@ export class MeshView implements View {
   private resize(): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
-    const ratio = Math.min(pixelRatioOf(this.canvas), kMaxPixelRatio);
-    Object.assign(this.surfaceCanvas, {
-      width: Math.floor(width * ratio),
-      height: Math.floor(height * ratio),
-    });
-    this.pixelRatio = ratio;
-    this.parts.setPixelRatio(ratio);
+    this.usePixels(1);
     this.camera.resize(width, height);
     // Draws at once: a resized canvas is empty until it is drawn.
     if (!this.hasVolume) return this.draw();
     this.volume!.present();
     this.invalidate();
+  }
+
+  /** Gives the surface this share of the canvas's pixels, each way. */
+  private usePixels(share: number): void {
+    const {canvas, surfaceCanvas} = this;
+    const ratio = Math.min(pixelRatioOf(canvas), kMaxPixelRatio) * share;
+    const width = Math.floor(Math.max(canvas.clientWidth, 1) * ratio) || 1;
+    const height = Math.floor(Math.max(canvas.clientHeight, 1) * ratio) || 1;
+    this.pixelRatio = ratio;
+    this.parts.setPixelRatio(ratio);
+    // Setting a size clears the canvas, even if it is the same.
+    if (surfaceCanvas.width !== width || surfaceCanvas.height !== height)
+      Object.assign(surfaceCanvas, {width, height});
   }
 
   /** `moved`: the user did it and should see something at once. */
@@ -309,16 +325,25 @@ export class MeshView implements View {
     return true;
   }
 
-  private draw(): void {
+  /** The share of the canvas's pixels that a picture of now gets, each way. */
+  private get share(): number {
+    return this.isPlaying && !this.hasVolume ? this.budget.steadyShare() : 1;
+  }
+
+  private draw(share = this.share): void {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
     if (this.volume?.busy) return void (this.volume.waiting = true);
+    this.usePixels(share);
     const start = performance.now();
     const done = this.afterFrame;
     this.afterFrame = [];
     // Graphics without a GPU draw long after the call. Failures are reported, too, or a caller
     // would wait for ever.
-    const tell = (ms: number): void => done.forEach((drawn) => drawn(ms));
+    const tell = (ms: number): void => {
+      if (!this.hasVolume) this.budget.learn(share, ms);
+      done.forEach((drawn) => drawn(ms));
+    };
     try {
       this.orbit.setDepths();
       this.parts.fadeLines(this.camera.sightOf(this.orbit.lens).toCanvas, this.canvas);

@@ -18,6 +18,7 @@ export type Command =
   | 'centre'
   | 'look'
   | 'setParallel'
+  | 'setPlaying'
   | 'turn'
   | 'zoom';
 

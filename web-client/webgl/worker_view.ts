@@ -173,6 +173,9 @@ class WorkerView implements View {
   setParallel(parallel: boolean): void {
     this.command('setParallel', parallel);
   }
+  setPlaying(playing: boolean): void {
+    this.command('setPlaying', playing);
+  }
   turn(horizontal: number, vertical: number): void {
     this.command('turn', horizontal, vertical);
   }

@@ -85,9 +85,9 @@ export class PicturePace {
     this.onScreen = true;
   }
 
-  /** When a picture with another cut is due. */
+  /** When a picture with another cut is due. With nothing to decode it is due at once. */
   cutAt(now: number): number {
-    return Math.min(this.nextAt, now + kCutPauseMs);
+    return Math.min(this.nextAt, this.untilLast() === 0 ? now : now + kCutPauseMs);
   }
 
   /** When a picture of a mesh of this many bytes is due. */

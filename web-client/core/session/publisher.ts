@@ -28,6 +28,14 @@ export class Publisher {
   onFirst: () => void = () => undefined;
   /** Null: pictures have no creases yet. */
   private creasesOf: CreasesOf | null = null;
+  /** Those of the last surface, and which one that was. */
+  private creases: {of: string; creases: Uint8Array} | null = null;
+  /** The colour of the last picture; null: it had none. */
+  private drawnColor: Scalar | null = null;
+  /** The chunks of the last picture's mesh. */
+  private drawnChunks = 0;
+  /** The display of the last picture or wish, as it could be drawn then. */
+  private seen = '';
   private meshChanged = false;
   private cutChanged = false;
   /** Nothing finer will follow by itself. */
@@ -52,6 +60,13 @@ export class Publisher {
    * decoding.
    */
   changed(isLast = false): void {
+    // Until an instant has values, only a finer mesh changes the picture of the last one.
+    const isSame = this.assembler.codec.chunksApplied === this.drawnChunks;
+    if (isSame && this.isWaiting) return;
+    this.renew(isLast);
+  }
+
+  private renew(isLast: boolean): void {
     if (!this.meshChanged) this.pace.meshChanged();
     this.meshChanged = true;
     this.isLast = isLast;
@@ -61,19 +76,47 @@ export class Publisher {
   /** Draws creases from the next picture on. */
   useCreases(creasesOf: CreasesOf): void {
     this.creasesOf = creasesOf;
-    this.changed(this.isLast);
+    this.creases = null;
+    this.renew(this.isLast);
   }
 
   show(display: Display): void {
-    const before = this.display;
+    const before = this.seen;
     this.display = display;
-    // Planes alone make another cut of the same surface, unless they hide whole cells. Fields
-    // ahead are not seen.
-    const withoutPlanes = (its: Display): string => JSON.stringify({...its, planes: [], ahead: []});
-    const whole = display.mode === 'cells' || withoutPlanes(before) !== withoutPlanes(display);
-    if (whole || !this.isRequested) this.meshChanged = true;
+    this.seen = textOf(this.drawn(display));
+    if (this.isRequested && this.seen === before) return; // it differs in what is not seen
+    // Planes alone make another cut of the same surface, unless they hide whole cells.
+    const withoutPlanes = (its: string): string =>
+      JSON.stringify({...(JSON.parse(its) as Display), planes: []});
+    const isOther = !this.isRequested || withoutPlanes(before) !== withoutPlanes(this.seen);
+    if (isOther || display.mode === 'cells') this.meshChanged = true;
     this.isRequested = this.cutChanged = true;
     this.schedule();
+  }
+
+  /** As it can be drawn now: an instant leaves the last one on the screen until it has values. */
+  private drawn(display: Display): Display {
+    return this.isWaiting ? {...display, color: this.drawnColor} : display;
+  }
+
+  /**
+   * The last picture shows another instant of the same series, and the wanted one has no values, or
+   * more of them are decoded soon.
+   */
+  private get isWaiting(): boolean {
+    const {color} = this.display;
+    const before = this.drawnColor;
+    const {codec, manifest} = this.assembler;
+    if (!color || !before || isSameScalar(color, before) || !manifest) return false;
+    const seriesOf = ({field}: Scalar): string | undefined =>
+      manifest.fields[field]?.instant?.series;
+    const series = seriesOf(color);
+    if (series === undefined || series !== seriesOf(before)) return false;
+    if (color.component !== before.component || codec.fieldChunksApplied(before.field) === 0)
+      return false;
+    const applied = codec.fieldChunksApplied(color.field);
+    const mayGrow = applied < codec.chunksApplied;
+    return applied === 0 || (mayGrow && this.assembler.receivedOfField(color.field) > applied);
   }
 
   /** The page has drawn the last picture in `drawingMs`; 0 if unknown. */
@@ -85,7 +128,7 @@ export class Publisher {
   /** Sends the picture again, without waiting for the last one. */
   repeat(): void {
     this.pace.release();
-    this.changed(true);
+    this.renew(true);
   }
 
   /** A picture is due or on its way to the screen. */
@@ -100,6 +143,7 @@ export class Publisher {
     this.bounds = [];
     this.middles.clear();
     this.amounts.clear();
+    this.creases = this.drawnColor = null;
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -134,22 +178,25 @@ export class Publisher {
     const mesh = meshArrays(this.assembler);
     if (!mesh) return;
     const start = performance.now();
-    const {display} = this;
+    const display = this.drawn(this.display);
     const kept = keptCells(mesh, display);
     // A finer mesh has another cut. Both travel together, so that they always match.
     const snapshot: Snapshot = {
-      ...this.frame(mesh),
+      ...this.frame(mesh, display),
       cuts: cutsOf(mesh, display, kept),
       planes: cuttingPlanes(display),
     };
     if (this.meshChanged) {
       snapshot.surface =
         display.body && display.mode !== 'slice'
-          ? surfaceOf(mesh, display, kept, this.creasesOf)
+          ? surfaceOf(mesh, display, kept, this.creasesOf && this.keptCreases)
           : noSoup();
       Object.assign(snapshot, layerSoups(mesh, display, kept));
-      snapshot.volume = this.volumeOf(mesh, kept);
+      snapshot.volume = this.volumeOf(mesh, display, kept);
     }
+    this.drawnColor = snapshot.color;
+    this.drawnChunks = this.assembler.codec.chunksApplied;
+    this.seen = textOf(display);
     this.meshChanged = this.cutChanged = this.isLast = false;
     const isFirst = !this.hasPublished;
     snapshot.costMs = this.pace.sends(start, snapshot.statistics.bytes, isFirst);
@@ -159,8 +206,20 @@ export class Publisher {
     this.onFirst();
   }
 
-  private volumeOf(mesh: MeshArrays, kept: Uint8Array | null): VolumeCells | null {
-    const {color, volume} = this.display;
+  /** Instants of a series share a surface, and its creases take longer than its values. */
+  private readonly keptCreases: CreasesOf = (points, triangles) => {
+    const {assembler, creases} = this;
+    const of = [assembler.codec.chunksApplied, triangles.length, triangles[0]].join();
+    const its = creases?.of === of ? creases.creases : this.creasesOf!(points, triangles);
+    this.creases = {of, creases: its};
+    return its.slice(); // it is transferred
+  };
+
+  private volumeOf(
+    mesh: MeshArrays,
+    {color, volume}: Display,
+    kept: Uint8Array | null,
+  ): VolumeCells | null {
     const scale = volume && color && mesh.scale(color);
     return scale ? volumeCells(mesh, scale, kept) : null;
   }
@@ -169,8 +228,7 @@ export class Publisher {
     return keptOf(this.middles, color, () => middleOf(scale, tetrahedra));
   }
 
-  private frame(mesh: MeshArrays): Omit<Snapshot, 'cuts' | 'planes'> {
-    const {color, volume} = this.display;
+  private frame(mesh: MeshArrays, {color, volume}: Display): Omit<Snapshot, 'cuts' | 'planes'> {
     const scale = color && mesh.scale(color);
     const info = color && this.assembler.manifest!.fields[color.field];
     const isComponent = info && info.components > 1 && color.component >= 0;
@@ -201,6 +259,15 @@ function seriesExtent(info: FieldInfo, component: number): [number, number] | nu
     high > low ? Math.min(1, Math.max(0, (value - low) / (high - low))) : 0;
   const [from, to] = info.instant.ranges[component]!;
   return [shareOf(from), shareOf(to)];
+}
+
+/** Fields ahead are not seen. */
+function textOf(display: Display): string {
+  return JSON.stringify({...display, ahead: []});
+}
+
+function isSameScalar(a: Scalar | null, b: Scalar | null): boolean {
+  return a?.field === b?.field && a?.component === b?.component;
 }
 
 /** The value of a colour: as it was when it was first asked for. */

@@ -146,6 +146,13 @@ export class RequestedPart {
     return this.isComplete || (this.isReached && this.isHere);
   }
 
+  /** All that is wanted is decoded: no other picture follows by itself. */
+  get isDecoded(): boolean {
+    const {codec} = this.assembler;
+    if (this.isComplete || !this.isReached || !this.isHere) return this.isComplete;
+    return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunksApplied);
+  }
+
   /** The fields ahead are here for the decoded mesh. */
   get isAheadReceived(): boolean {
     const {assembler} = this;

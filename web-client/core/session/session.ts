@@ -313,7 +313,7 @@ export class Session implements TransportHandlers {
       const pictureFirst = this.source.pictureFirst === true && !this.publisher.hasPublished;
       const hasChanged = this.decoding.advance(pictureFirst);
       this.tellOfBase();
-      if (hasChanged) this.publisher.changed(this.requested.isComplete);
+      if (hasChanged) this.publisher.changed(this.requested.isDecoded);
       this.progress.changed();
       if (this.state.name === 'failed') return;
       if (this.requested.isComplete) this.complete();
@@ -339,6 +339,7 @@ export class Session implements TransportHandlers {
 
   /** In ms. Infinity until everything is received. */
   private untilDecoded(): number {
+    if (this.requested.isDecoded) return 0;
     if (this.requested.limit.kind !== 'full' || !this.requested.isReceived()) return Infinity;
     const {bytes, bytesNeeded} = this.requested.statistics;
     return this.decoding.msFor(bytesNeeded - bytes);

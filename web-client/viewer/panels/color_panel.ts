@@ -3,6 +3,7 @@
 import {parseNumbers} from '../../core/layers/field_values';
 import {colorGradient, labelGradient, type ColorMapName} from '../../core/picture/color_maps';
 import {labelsOf} from '../../core/picture/labels';
+import {setText} from '../page/find';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
 import {shownScalar, type Settings} from '../settings/settings';
@@ -58,7 +59,7 @@ export class ColorPanel implements Panel {
     this.input('log').checked = settings.logarithmic;
     for (const name of kSwitches) this.input(name).checked = settings[name];
     this.input('opacity').value = String(Math.round(100 * settings.opacity));
-    this.find('.opacity-text').textContent = `${Math.round(100 * settings.opacity)}\u202f%`;
+    setText(this.find('.opacity-text'), `${Math.round(100 * settings.opacity)}\u202f%`);
     this.disableHidden(settings);
     const fields = scene?.manifest.fields ?? [];
     const chosen = shownScalar(this.attributes.read('field'), fields, scene?.firstField ?? 0);
@@ -87,8 +88,9 @@ export class ColorPanel implements Panel {
       ['range-low', low],
       ['range-high', high],
     ] as const) {
-      if (this.input(name) !== active)
-        this.input(name).value = String(roundTo(value, kRangeShare * (high - low)));
+      const text = String(roundTo(value, kRangeShare * (high - low)));
+      const input = this.input(name);
+      if (input !== active && input.value !== text) input.value = text;
     }
     if (!this.awaitsRange) return;
     this.awaitsRange = false;

@@ -4,6 +4,7 @@ import type {LevelBytes} from '../../core/decode/plan';
 import type {Statistics} from '../../core/decode/statistics';
 import {errorOfLevel} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
+import {find, setAttribute, setText} from '../page/find';
 import {formatBytes, formatError} from '../page/format';
 
 /** The curve spans errors from the first one down to at most this fraction of it. */
@@ -51,17 +52,16 @@ export class ErrorCurve {
       ['ahead', line],
       ['reached', reached],
     ] as const) {
-      figure
-        .querySelector(`.${name}`)!
-        .setAttribute('d', drawn.length > 0 ? `M${drawn.map(place).join('L')}` : '');
+      const path = drawn.length > 0 ? `M${drawn.map(place).join('L')}` : '';
+      setAttribute(find(figure, `.${name}`), 'd', path);
     }
-    figure.querySelector('.here')!.setAttribute('d', `M${place(here)}h0`);
+    setAttribute(find(figure, '.here'), 'd', `M${place(here)}h0`);
     const ends = [
       line[0]!,
       ...(bytes > firstBytes && bytes < lastBytes ? [here] : []),
       line.at(-1)!,
     ];
     const texts = ends.map(([at, error]) => `${formatError(error)} at ${formatBytes(at)}`);
-    figure.querySelector('figcaption')!.textContent = `Error against bytes: ${texts.join(', ')}`;
+    setText(find(figure, 'figcaption'), `Error against bytes: ${texts.join(', ')}`);
   }
 }

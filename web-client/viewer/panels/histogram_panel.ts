@@ -44,6 +44,7 @@ export interface HistogramHost {
   readonly mesh: ShownMesh;
   readonly settings: Settings;
   readonly range: ShownRange | null;
+  readonly isPlaying: boolean;
 }
 
 export class HistogramPanel {
@@ -74,7 +75,7 @@ export class HistogramPanel {
     this.plot.addEventListener('pointerdown', (event) => this.drag(event));
     this.plot.addEventListener('dblclick', () => this.toMiddle());
     onClick(this.root, '.to-middle', () => this.toMiddle());
-    for (const type of ['refine', 'load', 'view-change'])
+    for (const type of ['refine', 'load', 'view-change', 'time-change'])
       page.element.addEventListener(type, () => this.changed(), {signal});
     // A folded section or sheet counts nothing; it does when it is unfolded.
     const watch = new IntersectionObserver(() => this.changed());
@@ -86,8 +87,9 @@ export class HistogramPanel {
     this.changed();
   }
 
-  /** Follows the range at once, and counts a while later. */
+  /** Follows the range at once, and counts a while later; an instant that passes is not counted. */
   private changed(): void {
+    if (this.host.isPlaying) return;
     this.show();
     this.timer ??= setTimeout(() => {
       this.timer = undefined;

@@ -5,6 +5,7 @@ import type {Scalar} from '../../core/picture/field_scale';
 import {linearPart, placeOn} from '../../core/picture/log_scale';
 import {labelTicks, logTicks, niceTicks, type Ticks} from '../../core/picture/ticks';
 import type {FieldInfo} from '../../core/protocol/fields';
+import {setAttribute, setText} from '../page/find';
 import {formatValue} from '../page/format';
 import type {Settings, ShownRange} from '../settings/settings';
 import {scalarTitle} from './panel';
@@ -34,12 +35,13 @@ export class Legend {
   ): void {
     this.figure.hidden = false;
     const title = scalarTitle(scalar, fields);
-    const requested = JSON.stringify([scalar, range, map, reversed, marked, title]);
+    const name = this.part('.legend-name');
+    setText(name, title);
+    setAttribute(name, 'title', title);
+    const requested = JSON.stringify([range, map, reversed, marked]);
     if (requested === this.shown) return; // every picture asks, but few change it
     this.shown = requested;
     const {ticks, factor} = ticksOf(range);
-    const name = this.part('.legend-name');
-    name.textContent = name.title = title;
     this.part('.legend-missing').hidden = !range.hasMissing;
     this.part('.legend-factor').textContent = range.logarithmic ? 'logarithmic' : factor;
     const note = noteOf(range);

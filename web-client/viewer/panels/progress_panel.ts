@@ -6,7 +6,7 @@ import type {Statistics} from '../../core/decode/statistics';
 import {errorOfLevel, type Limit} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {StreamState} from '../../core/session/worker_messages';
-import {find, onClick} from '../page/find';
+import {find, onClick, setText} from '../page/find';
 import {formatBytes, formatCount, formatDuration, formatError, percentOf} from '../page/format';
 import type {ErrorCurve} from './error_curve';
 
@@ -131,17 +131,15 @@ export class ProgressPanel {
     bar.setAttribute('aria-valuenow', String(percent));
     (bar.firstElementChild as HTMLElement).style.transform =
       `scaleX(${bytesNeeded > 0 ? bytes / bytesNeeded : 0})`;
-    this.part('.percent').textContent = `${percent}\u202f%`;
-    this.part('.bytes').replaceChildren(...ofTotal(formatBytes(bytes), formatBytes(bytesNeeded)));
-    this.part('.cells').replaceChildren(
-      ...ofTotal(formatCount(tetrahedra), formatCount(total.tetrahedra)),
-    );
+    setText(this.part('.percent'), `${percent}\u202f%`);
+    showOfTotal(this.part('.bytes'), formatBytes(bytes), formatBytes(bytesNeeded));
+    showOfTotal(this.part('.cells'), formatCount(tetrahedra), formatCount(total.tetrahedra));
     const error = this.errorLeft();
     this.part('.error-row').hidden = error === null;
-    if (error !== null) this.part('.error-left').textContent = formatError(error);
+    if (error !== null) setText(this.part('.error-left'), formatError(error));
     const seconds = this.secondsLeft();
     this.part('.eta-row').hidden = seconds === null;
-    if (seconds !== null) this.part('.eta').textContent = formatDuration(seconds);
+    if (seconds !== null) setText(this.part('.eta'), formatDuration(seconds));
     this.drawCurve();
     const step = Math.floor(percent / kAnnouncedPercent);
     if (step > this.announced && this.state === 'streaming') this.announce(`${percent} per cent`);
@@ -180,9 +178,10 @@ export class ProgressPanel {
   }
 }
 
-function ofTotal(now: string, total: string): (Node | string)[] {
-  if (now === total) return [now];
+function showOfTotal(element: HTMLElement, now: string, total: string): void {
+  const text = now === total ? '' : ` of ${total}`;
+  if (element.textContent === `${now}${text}`) return;
   const rest = document.createElement('small');
-  rest.textContent = ` of ${total}`;
-  return [now, rest];
+  rest.textContent = text;
+  element.replaceChildren(now, ...(text ? [rest] : []));
 }

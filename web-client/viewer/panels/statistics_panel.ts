@@ -1,12 +1,18 @@
 // The figures about the pictures: their cost, and the rate of new cells.
 
 import type {Statistics} from '../../core/decode/statistics';
-import {find} from '../page/find';
+import {find, setText} from '../page/find';
 import {formatCount} from '../page/format';
+
+/** Nobody reads times that change faster, and each change makes the browser redraw the page. */
+const kTimesMs = 500;
 
 export class StatisticsPanel {
   /** The previous picture; there was none if `at` is 0. */
   private last = {at: 0, cells: 0};
+
+  private times = {frameMs: 0, costMs: 0};
+  private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly root: ParentNode) {}
 
@@ -23,14 +29,20 @@ export class StatisticsPanel {
       this.write('.cell-rate', `${formatCount(Math.round(rate))} cells/s`);
     }
     this.last = {at: now, cells: statistics.tetrahedra};
-    this.write('.frame-ms', `${frameMs.toFixed(1)} ms`);
-    this.write('.cost-ms', `${costMs.toFixed(1)} ms`);
+    this.times = {frameMs, costMs};
+    this.timer ??= setTimeout(() => this.showTimes(), kTimesMs);
     this.write('.level', `${statistics.level} of ${statistics.lastLevel}`);
     this.write('.vertices', formatCount(statistics.vertices));
     this.write('.triangles', formatCount(statistics.boundaryTriangles));
   }
 
+  private showTimes(): void {
+    this.timer = undefined;
+    this.write('.frame-ms', `${this.times.frameMs.toFixed(1)} ms`);
+    this.write('.cost-ms', `${this.times.costMs.toFixed(1)} ms`);
+  }
+
   private write(selector: string, text: string): void {
-    find(this.root, selector).textContent = text;
+    setText(find(this.root, selector), text);
   }
 }

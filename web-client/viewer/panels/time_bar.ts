@@ -2,14 +2,16 @@
 
 import type {FieldInfo} from '../../core/protocol/fields';
 import {shownInstant, timesOf} from '../../core/protocol/series';
-import {find, onClick} from '../page/find';
+import {find, onClick, setText} from '../page/find';
 import type {Attributes} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import {setMarkup} from '../page/trusted';
 import {shownScalar, type Settings} from '../settings/settings';
 
 /** Between two instants at speed 1. */
-const kStepMs = 125;
+const kStepMs = 100;
+/** The clock is read so often, and with each picture. */
+const kTickMs = 25;
 /** An instant that is not here after this time is passed over for one that is. */
 const kPatienceMs = 1000;
 /** Instants that are fetched ahead of the one that is shown; the list changes at every half. */
@@ -50,6 +52,10 @@ export class TimeBar {
   private at = 0;
   private timer: ReturnType<typeof setInterval> | undefined;
   private waitingSince = 0;
+  /** When the next instant is due. */
+  private dueAt = 0;
+  /** The shown instant was not here when it was asked for. */
+  private isLate = false;
   private known: unknown = null;
   /** The host knows this time, and whether it plays; null: nothing was shown yet. */
   private told: {time: number; playing: boolean} | null = null;
@@ -105,7 +111,7 @@ export class TimeBar {
     slider.value = String(this.at);
     const {text} = this.times[this.at]!;
     slider.setAttribute('aria-valuetext', text);
-    find(this.bar, 'output').textContent = `t = ${text}`;
+    setText(find(this.bar, 'output'), `t = ${text}`);
     this.follow();
     this.tell();
   }
@@ -144,7 +150,8 @@ export class TimeBar {
     });
     find(this.bar, '.here').style.backgroundImage =
       shares.length > 0 ? `linear-gradient(to right, ${shares.join(', ')})` : 'none';
-    this.bar.classList.toggle('waits', !this.isOnScreen);
+    this.bar.classList.toggle('waits', !this.isOnScreen && !this.isHere(this.at));
+    if (this.isPlaying) this.tick();
   }
 
   toggle(): void {
@@ -161,7 +168,8 @@ export class TimeBar {
   private play(): void {
     clearInterval(this.timer);
     this.waitingSince = 0;
-    this.timer = setInterval(() => this.tick(), kStepMs / Number(this.speed.value));
+    this.dueAt = performance.now() + this.stepMs;
+    this.timer = setInterval(() => this.tick(), kTickMs);
     this.host.apply();
     this.showPlaying();
   }
@@ -177,22 +185,44 @@ export class TimeBar {
     this.showPlaying();
   }
 
-  /** The next instant, once this one is on the screen. */
+  /**
+   * The next instant, once this one is in the picture. Instants whose time passes while a picture
+   * is drawn are left out. The clock stands while an instant is not here.
+   */
   private tick(): void {
     const now = performance.now();
     if (this.isOnScreen) {
       this.waitingSince = 0;
-      return this.show(this.at + 1);
+      if (this.isLate) this.dueAt = Math.max(this.dueAt, now);
+      this.isLate = false;
+      if (now < this.dueAt) return;
+      const due = 1 + Math.floor((now - this.dueAt) / this.stepMs);
+      const by = this.stepsTo(due);
+      this.dueAt = by === due ? this.dueAt + by * this.stepMs : now + this.stepMs;
+      return this.show(this.at + by);
     }
     if (this.waitingSince === 0) this.waitingSince = now;
     if (now - this.waitingSince < kPatienceMs) return;
-    const {here} = this.host.mesh;
-    const count = this.times.length;
-    for (let by = 1; by < count; ++by) {
-      if (!here.includes(this.fields[(this.at + by) % count]!)) continue;
+    for (let by = 1; by < this.times.length; ++by) {
+      if (!this.isHere(this.at + by)) continue;
       this.waitingSince = 0;
       return this.show(this.at + by);
     }
+  }
+
+  /** The most steps up to `due` to an instant that is here; 1 if none is. */
+  private stepsTo(due: number): number {
+    let by = Math.min(due, this.times.length - 1);
+    while (by > 1 && !this.isHere(this.at + by)) --by;
+    return Math.max(1, by);
+  }
+
+  private isHere(at: number): boolean {
+    return this.host.mesh.here.includes(this.fields[at % this.times.length]!);
+  }
+
+  private get stepMs(): number {
+    return kStepMs / Number(this.speed.value);
   }
 
   private get isOnScreen(): boolean {
@@ -206,6 +236,7 @@ export class TimeBar {
     const count = this.times.length;
     if (count === 0) return;
     this.at = (at + count) % count;
+    this.isLate = !this.isHere(this.at);
     this.attributes.write('time', this.at === 0 ? null : this.times[this.at]!.text);
   }
 
