@@ -62,21 +62,25 @@ void keepOpening(Manifest& manifest, const std::vector<std::uint32_t>& kept) {
   }
 }
 
-/// The prediction in the numbers of the fields that are kept. Errors: bad-input (one of those that
-/// it rests on goes, or would come behind it).
-Result<TimePrediction> keptPrediction(const Manifest& manifest, const LogIndex& index,
-                                      const std::vector<std::uint32_t>& kept, std::size_t place) {
-  TimePrediction out = index.fields[kept[place]].prediction;
-  for (std::size_t i = 0; i < out.count; ++i) {
-    const std::uint32_t parent = out.parents[i].field;
-    const auto at = static_cast<std::size_t>(std::ranges::find(kept, parent) - kept.begin());
-    if (at >= place)
+/// The prediction of the field at `place` of the new log, in the numbers of that. Errors: bad-input
+/// (one of those that it rests on goes, or would come behind it).
+Result<TimePrediction> renumbered(const Manifest& manifest, TimePrediction prediction,
+                                  const std::vector<std::uint32_t>& kept, const std::string& name,
+                                  std::size_t place) {
+  for (std::size_t i = 0; i < prediction.count; ++i) {
+    std::uint16_t& parent = prediction.parents[i].field;
+    const bool isAdded = parent >= manifest.fields.size();
+    const std::size_t at =
+        isAdded ? kept.size() + parent - manifest.fields.size()
+                : static_cast<std::size_t>(std::ranges::find(kept, parent) - kept.begin());
+    if (at >= place || (!isAdded && at == kept.size()))
       return fail(ErrorCode::kBadInput,
-                  "field " + fieldKey(manifest, kept[place]) + " is coded as a difference to " +
-                      fieldKey(manifest, parent) + ", which has to stay before it");
-    out.parents[i].field = static_cast<std::uint16_t>(at);
+                  "field " + name + " is coded as a difference to " +
+                      (isAdded ? "one behind it" : fieldKey(manifest, parent)) +
+                      ", which has to stay before it");
+    parent = static_cast<std::uint16_t>(at);
   }
-  return out;
+  return prediction;
 }
 
 }  // namespace
@@ -93,7 +97,8 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
   index.fields.clear();
   for (std::size_t i = 0; i < kept.size(); ++i) {
     assert(kept[i] < manifest->fields.size());
-    const Result<TimePrediction> prediction = keptPrediction(*manifest, log.index(), kept, i);
+    const Result<TimePrediction> prediction = renumbered(
+        *manifest, log.fields()[kept[i]].prediction, kept, fieldKey(*manifest, kept[i]), i);
     if (!prediction) return std::unexpected(prediction.error());
     fields.push_back(manifest->fields[kept[i]]);
     index.fields.push_back(log.index().fields[kept[i]]);
@@ -101,12 +106,14 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
   }
   for (const NewField& field : added) {
     assert(field.blocks.size() == index.chunks.size());
+    const Result<TimePrediction> prediction =
+        renumbered(*manifest, field.prediction, kept, field.info.name, fields.size());
+    if (!prediction) return std::unexpected(prediction.error());
     fields.push_back(field.info);
     index.fields.push_back(
         {field.info.components,
          field.info.association == "cell" ? Association::kCell : Association::kPoint,
-         field.info.hasMissing,
-         {}});
+         field.info.hasMissing, *prediction});
   }
   manifest->fields = std::move(fields);
   keepOpening(*manifest, kept);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/mesh/time_prediction.h"
 #include "proto/byte_sink.h"
 #include "proto/manifest.h"
 
@@ -18,6 +19,8 @@ struct NewField {
   ManifestField info;
   std::vector<Bytes> blocks;       ///< one a chunk
   std::vector<FieldError> errors;  ///< one a level; unused where the log has none of the level
+  /// Its parents: below the number of the log's fields one of them, else an added one before it.
+  TimePrediction prediction{};
 };
 
 /// A log whose blocks lie in another log and in new fields. Both must outlive it.

@@ -153,16 +153,6 @@ Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
               b.offset);
 }
 
-Result<std::vector<std::int32_t>> blockValues(const LogFile& log, std::uint32_t chunk,
-                                              std::uint32_t part) {
-  if (Status s = checkBlock(log, chunk, part); !s) return std::unexpected(s.error());
-  auto values =
-      decodeValueBlock(log.block(chunk, part), log.index().components(part),
-                       log.index().tuples(chunk, part), log.index().chunks[chunk].valueCodec);
-  releaseBlock(log, chunk, part);
-  return values;
-}
-
 FieldInfo fieldInfo(const ManifestField& f) {
   return {f.name, f.components, f.type,  f.association, f.bits,
           f.step, f.minimum,    f.range, f.hasMissing};
@@ -181,6 +171,15 @@ Status LogFile::verifyChecksums() const {
     release(c.block.offset, c.block.size);
   }
   return {};
+}
+
+Result<std::vector<std::int32_t>> LogFile::values(std::uint32_t chunk, std::uint32_t part) const {
+  if (Status s = checkBlock(*this, chunk, part); !s) return std::unexpected(s.error());
+  const LogIndex& index = state_->index;
+  auto out = decodeValueBlock(block(chunk, part), index.components(part), index.tuples(chunk, part),
+                              index.chunks[chunk].valueCodec);
+  releaseBlock(*this, chunk, part);
+  return out;
 }
 
 Result<ByteView> LogFile::closing(ClosingKind kind, std::uint32_t field) const {
@@ -202,7 +201,7 @@ Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
   if (chunk >= log.index().chunks.size())
     return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
   if (Status s = checkBlock(log, chunk, kStructurePart); !s) return s;
-  const auto positions = blockValues(log, chunk, kPositionsPart);
+  const auto positions = log.values(chunk, kPositionsPart);
   if (!positions) return std::unexpected(positions.error());
   if (Status s = refiner.apply(chunk, log.block(chunk, kStructurePart), *positions); !s) return s;
   releaseBlock(log, chunk, kStructurePart);
@@ -217,7 +216,7 @@ Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk
     return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
   if (field >= log.index().fields.size())
     return fail(ErrorCode::kNotFound, "there is no field " + std::to_string(field));
-  const auto values = blockValues(log, chunk, kFirstFieldPart + field);
+  const auto values = log.values(chunk, kFirstFieldPart + field);
   if (!values) return std::unexpected(values.error());
   return refiner.applyField(field, chunk, *values);
 }

@@ -1,12 +1,14 @@
 #include "codec/refine/log_history.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/value_block.h"
 #include "codec/refine/log_file.h"
+#include "codec/refine/patch_block.h"
 #include "codec/refine/refiner.h"
 
 namespace qtet {
@@ -138,7 +140,80 @@ void codeCells(const LogHistory& log, std::uint32_t chunk, const FieldInfo& fiel
     }
 }
 
+/// The inverse of codePoints: `now` are the values by slot, `out` those of the history's vertices.
+/// Fused vertices get theirs just before they split, the others at the end.
+void decodePoints(const LogHistory& log, std::uint32_t chunk, const FieldShape& field,
+                  std::vector<std::int32_t>& now, Values& in, std::vector<std::int32_t>& out) {
+  const std::uint32_t n = field.components;
+  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& {
+    return now[std::size_t{v} * n + c];
+  };
+  if (chunk == 0)
+    for (VertexId v = 0; v < log.baseBirths.size(); ++v)
+      for (std::uint32_t c = 0; c < n; ++c)
+        at(v, c) = in.codeField<false>(
+            field.hasMissing, predictBaseField(log.baseBirths[v], v, c, field.hasMissing, at), 0);
+  const std::vector<Fusion>& fusions = log.history.fusions;
+  for (std::uint32_t b = log.chunkBirths[chunk]; b < log.chunkBirths[chunk + 1]; ++b) {
+    const Birth& birth = log.points.births()[b];
+    const VertexId fused = fusions[fusions.size() - 1 - b].fused;
+    for (std::uint32_t c = 0; c < n; ++c) out[std::size_t{fused} * n + c] = at(birth.slot, c);
+    log.points.code<false>(
+        birth, in, n, at, [](std::size_t, std::uint32_t) { return 0; }, field.hasMissing);
+  }
+}
+
+void decodeCells(const LogHistory& log, std::uint32_t chunk, const FieldShape& field, Values& in,
+                 std::vector<std::int32_t>& out) {
+  const std::uint32_t n = field.components;
+  for (CellId t = log.chunkCells[chunk]; t < log.chunkCells[chunk + 1]; ++t)
+    for (std::uint32_t c = 0; c < n; ++c) {
+      const auto at = [&](CellId u) { return out[std::size_t{u} * n + c]; };
+      out[std::size_t{t} * n + c] =
+          in.codeField<false>(field.hasMissing, log.cells.predict(t, at), 0);
+    }
+}
+
+/// The integers of the field's blocks: its values, or their differences to a prediction in time.
+Result<std::vector<std::int32_t>> codedValues(const LogFile& log, const LogHistory& history,
+                                              std::uint32_t field) {
+  const FieldShape& shape = log.fields()[field];
+  const bool ofCells = shape.association == Association::kCell;
+  const std::size_t elements = ofCells ? history.tetrahedra : history.history.points.size();
+  std::vector<std::int32_t> out(elements * shape.components);
+  std::vector<std::int32_t> now(ofCells ? 0 : std::size_t{history.vertices} * shape.components);
+  for (std::uint32_t chunk = 0; chunk < log.chunks().size(); ++chunk) {
+    const auto block = log.values(chunk, kFirstFieldPart + field);
+    if (!block) return std::unexpected(block.error());
+    Values in(*block);
+    if (ofCells)
+      decodeCells(history, chunk, shape, in, out);
+    else
+      decodePoints(history, chunk, shape, now, in, out);
+    if (in.bad() || !in.atEnd())
+      return refuseChunk(ErrorCode::kBadValue, chunk, "field values out of range or left over");
+  }
+  std::ranges::copy(now, out.begin());  // the last level's vertices come first
+  return out;
+}
+
 }  // namespace
+
+Result<std::vector<std::int32_t>> historyValues(const LogFile& log, const LogHistory& history,
+                                                std::uint32_t field) {
+  std::map<std::uint32_t, std::vector<std::int32_t>> known;
+  for (const std::uint32_t f : withParents(log.fields(), std::span(&field, 1))) {
+    Result<std::vector<std::int32_t>> values = codedValues(log, history, f);
+    if (!values) return std::unexpected(values.error());
+    const TimePrediction& prediction = log.fields()[f].prediction;
+    for (std::size_t i = 0; !prediction.isNone() && i < values->size(); ++i)
+      if (std::int32_t& value = (*values)[i]; value != kMissing)
+        value += static_cast<std::int32_t>(prediction.predict(
+            [&](std::uint16_t parent) { return known.at(parent)[i]; }, kMissing));
+    known[f] = std::move(*values);
+  }
+  return std::move(known.at(field));
+}
 
 Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double)>& progress) {
   const Result<Manifest> manifest = manifestOf(log.index());

@@ -40,6 +40,13 @@ struct LogHistory {
 [[nodiscard]] Result<LogHistory> historyOf(const LogFile& log,
                                            const std::function<void(double)>& progress = {});
 
+/// The field's integers, `components` for each of the history's vertices or, of a cell field,
+/// tetrahedra: those that its writer had. Errors: bad-checksum, all that decoding gives. REQUIRES:
+/// the history of this log, a field of it.
+[[nodiscard]] Result<std::vector<std::int32_t>> historyValues(const LogFile& log,
+                                                              const LogHistory& history,
+                                                              std::uint32_t field);
+
 /// One field's block of every chunk, as a log's writer would have made them. `values` holds
 /// components integers for each of the history's vertices or, of a cell field, tetrahedra. Errors:
 /// limit-exceeded, bad-codec.

@@ -57,7 +57,7 @@ Status refineTo(const LevelRequest& request, Refiner& refiner, const std::stop_t
 /// The fields and their parents, which have smaller numbers, so that each finds its own whole.
 Status applyFields(const LevelRequest& request, Refiner& refiner, const std::stop_token& stop) {
   const LogFile& log = request.mesh->log;
-  for (const std::uint32_t field : log.index().withParents(request.fields))
+  for (const std::uint32_t field : withParents(log.fields(), request.fields))
     for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk) {
       if (stop.stop_requested()) return stopped();
       if (Status s = applyFieldBlock(log, refiner, chunk, field); !s) return s;

@@ -145,20 +145,6 @@ void placePoints(const TetMesh& mesh, const Box& box, const std::stop_token& sto
   }
 }
 
-/// Each field's own box of values, or that of its series, whose instants have one scale. Integers
-/// that the series' box is too large for keep their own where that stores them exactly.
-std::vector<FieldExtents> extentsOfAll(const std::vector<MeshField>& fields) {
-  std::vector<FieldExtents> out;
-  for (const MeshField& field : fields) out.push_back(extentsOf(field));
-  for (const Series& series : seriesOf(std::span(fields))) {
-    FieldExtents all = out[series.fields[0]];
-    for (const std::size_t f : series.fields) all.include(out[f]);
-    for (const std::size_t f : series.fields)
-      if (isFloatType(fields[f].type) || all.fitsExactly() || !out[f].fitsExactly()) out[f] = all;
-  }
-  return out;
-}
-
 Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, QuantisedMesh& out) {
   const std::vector<FieldExtents> extents = extentsOfAll(mesh.fields);
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {

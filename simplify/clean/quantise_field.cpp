@@ -5,8 +5,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "proto/limits.h"
+#include "proto/series.h"
 
 namespace qtet {
 namespace {
@@ -45,6 +47,23 @@ int bitsFor(double extent) {
                   static_cast<int>(std::bit_width(static_cast<std::uint64_t>(extent))));
 }
 
+std::uint64_t nonFiniteOf(const MeshField& field) {
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(field.values, [](double value) { return !std::isfinite(value); }));
+}
+
+/// The integers of `out.info`, and which are missing. REQUIRES: out.nonFinite.
+void place(const MeshField& field, QuantisedField& out) {
+  out.values.reserve(field.values.size());
+  if (out.nonFinite > 0) out.missing.assign(field.values.size(), 0);
+  for (std::size_t i = 0; i < field.values.size(); ++i) {
+    const auto component = static_cast<std::uint32_t>(i % field.components);
+    const bool finite = std::isfinite(field.values[i]);
+    if (!finite) out.missing[i] = 1;
+    out.values.push_back(finite ? fieldInteger(out.info, component, field.values[i]) : 0);
+  }
+}
+
 }  // namespace
 
 FieldExtents extentsOf(const MeshField& field) {
@@ -57,6 +76,18 @@ FieldExtents extentsOf(const MeshField& field) {
     if (!std::isfinite(value)) continue;
     out.minimum[i % components] = std::min(out.minimum[i % components], value);
     out.maximum[i % components] = std::max(out.maximum[i % components], value);
+  }
+  return out;
+}
+
+std::vector<FieldExtents> extentsOfAll(const std::vector<MeshField>& fields) {
+  std::vector<FieldExtents> out;
+  for (const MeshField& field : fields) out.push_back(extentsOf(field));
+  for (const Series& series : seriesOf(std::span(fields))) {
+    FieldExtents all = out[series.fields[0]];
+    for (const std::size_t f : series.fields) all.include(out[f]);
+    for (const std::size_t f : series.fields)
+      if (isFloatType(fields[f].type) || all.fitsExactly() || !out[f].fitsExactly()) out[f] = all;
   }
   return out;
 }
@@ -93,8 +124,7 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
         "field " + field.name + " spans more than the largest float64; leave it out with `fields`");
   }
   QuantisedField out;
-  out.nonFinite = static_cast<std::uint64_t>(
-      std::ranges::count_if(field.values, [](double value) { return !std::isfinite(value); }));
+  out.nonFinite = nonFiniteOf(field);
   out.exact = !isFloatType(field.type) && extents.fitsExactly();
   out.info = FieldInfo{.name = field.name,
                        .components = field.components,
@@ -111,14 +141,25 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
     out.info.step =
         std::max(largest / (std::ldexp(1.0, bits) - 1), std::numeric_limits<double>::min());
   }
-  out.values.reserve(field.values.size());
-  if (out.nonFinite > 0) out.missing.assign(field.values.size(), 0);
-  for (std::size_t i = 0; i < field.values.size(); ++i) {
-    const auto component = static_cast<std::uint32_t>(i % field.components);
-    const bool finite = std::isfinite(field.values[i]);
-    if (!finite) out.missing[i] = 1;
-    out.values.push_back(finite ? fieldInteger(out.info, component, field.values[i]) : 0);
-  }
+  place(field, out);
+  return out;
+}
+
+std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField& field) {
+  if (scale.components != field.components || scale.type != field.type) return std::nullopt;
+  const FieldExtents extents = extentsOf(field);
+  const double reach = scale.step * (std::ldexp(1.0, scale.bits) - 0.5);
+  for (std::size_t c = 0; c < scale.components; ++c)
+    if (extents.minimum[c] < scale.minimum[c] - 0.5 * scale.step ||
+        extents.maximum[c] > scale.minimum[c] + reach)
+      return std::nullopt;
+  QuantisedField out;
+  out.nonFinite = nonFiniteOf(field);
+  out.exact = !isFloatType(field.type) && scale.step == 1;
+  out.info = scale;
+  out.info.name = field.name, out.info.association = field.association;
+  out.info.range = rangeOf(field), out.info.hasMissing = out.nonFinite > 0;
+  place(field, out);
   return out;
 }
 

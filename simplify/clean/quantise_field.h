@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,18 @@ struct FieldExtents {
 };
 [[nodiscard]] FieldExtents extentsOf(const MeshField& field);
 
+/// Each field's own box of values, or that of its series, whose instants have one scale. Integers
+/// that the series' box is too large for keep their own where that stores them exactly.
+[[nodiscard]] std::vector<FieldExtents> extentsOfAll(const std::vector<MeshField>& fields);
+
 /// See quantise(). The integers are those of `extents`, the field's own or those of its series.
 /// Errors: bad-input (an extent above the largest double).
 [[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field,
                                                    const FieldExtents& extents, int bits);
+/// With the bits, step and minimum of `scale`; nullopt where a value lies beyond it, or where the
+/// fields differ in components or type.
+[[nodiscard]] std::optional<QuantisedField> quantiseAs(const FieldInfo& scale,
+                                                       const MeshField& field);
 [[nodiscard]] inline Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
   return quantiseField(field, extentsOf(field), bits);
 }

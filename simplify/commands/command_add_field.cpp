@@ -1,15 +1,13 @@
 #include <algorithm>
 #include <numeric>
 
-#include "codec/log/log_index.h"
-#include "codec/log/log_manifest.h"
 #include "proto/field_key.h"
 #include "proto/limits.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
+#include "simplify/commands/edited_log_report.h"
 #include "simplify/commands/progress.h"
-#include "simplify/commands/written_log.h"
 #include "simplify/log/add_fields.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/mesh/workers.h"
@@ -19,16 +17,6 @@ namespace qtet {
 namespace {
 
 constexpr int kMaxThreads = 256;
-
-/// Where the new log goes: over the old one unless --output says otherwise.
-std::string outputOf(const ParsedWords& parsed) {
-  return parsed.get<std::string>(parsed.has("output") ? "output" : "LOG");
-}
-
-Status checkNewLog(const ParsedWords& parsed, const std::string& mesh) {
-  return parsed.has("output") ? checkOutput(parsed.get<std::string>("output"), ".qtet", mesh)
-                              : Status{};
-}
 
 /// The log's fields without those that `mesh` replaces. Errors: bad-value (a name that is there,
 /// without --replace).
@@ -49,69 +37,6 @@ Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMes
     }
   }
   return kept;
-}
-
-std::size_t bytesOf(const NewField& field) {
-  return std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0},
-                         [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
-}
-
-OrderedJson toJson(const NewField& field) {
-  const ManifestField& info = field.info;
-  OrderedJson out = {{"name", info.name},
-                     {"association", info.association},
-                     {"components", info.components},
-                     {"type", info.type},
-                     {"bits", info.bits},
-                     {"step", info.step},
-                     {"minimum", info.minimum},
-                     {"range", info.range},
-                     {"missingValues", info.hasMissing},
-                     {"bytes", bytesOf(field)}};
-  if (!field.errors.empty())
-    out["error"] = {{"rms", field.errors.front().rms}, {"max", field.errors.front().max}};
-  return out;
-}
-
-/// Writes the new log. Returns the report that add-field and remove-field share: {input, output,
-/// digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields}. `fields` are the keys of
-/// those that the new log holds.
-/// Errors: those of LogIndex::parse, manifestOf and writeLog.
-Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const LogFile& before,
-                                const EditedLog& edited) {
-  const Result<LogIndex> index = LogIndex::parse(edited.head());
-  if (!index) return std::unexpected(index.error());
-  const Result<Manifest> manifest = manifestOf(*index);
-  if (!manifest) return std::unexpected(manifest.error());
-  OrderedJson fields = OrderedJson::array();
-  for (std::size_t f = 0; f < manifest->fields.size(); ++f)
-    fields.push_back(fieldKey(*manifest, f));
-  const Result<WrittenLog> written =
-      writeLog(outputOf(parsed), [&](const ByteSink& sink) { return edited.writeTo(sink); });
-  if (!written) return std::unexpected(written.error());
-  return OrderedJson{{"input", parsed.get<std::string>("LOG")},
-                     {"output", outputOf(parsed)},
-                     {"digest", written->digest},
-                     {"bytes", written->bytes},
-                     {"bytesBefore", before.bytes().size()},
-                     {"tetrahedra", manifest->levels.back().tetrahedra},
-                     {"vertices", manifest->levels.back().vertices},
-                     {"levels", manifest->levels.size() - 1},
-                     {"fields", fields}};
-}
-
-void printNew(const OrderedJson& report, std::ostream& out) {
-  out << report["output"].get<std::string>() << ": " << report["bytes"] << " bytes, before "
-      << report["bytesBefore"] << "\n";
-}
-
-void printAdded(const std::vector<NewField>& fields, std::ostream& out) {
-  for (const NewField& field : fields) {
-    out << field.info.association << " field " << printable(field.info.name) << ": "
-        << bytesOf(field) << " bytes, " << field.info.bits << " bits, step " << field.info.step;
-    if (!field.errors.empty()) out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
-    out << "\n";
-  }
 }
 
 Status addField(const ParsedWords& parsed, Progress& progress, Console& console) {

@@ -45,7 +45,7 @@ void setWeld(const std::string& text, ReadOptions& options) {
 
 }  // namespace
 
-void addReadOptions(boost::program_options::options_description& options) {
+void addReadOptions(boost::program_options::options_description& options, const char* time) {
   namespace po = boost::program_options;
   options.add_options()("curved", po::value<std::string>()->default_value("split"),
                         "quadratic cells and those of higher degree: split at all of their nodes, "
@@ -53,7 +53,7 @@ void addReadOptions(boost::program_options::options_description& options) {
       "weld", po::value<std::string>(),
       "a distance: join points within it (0: at the same place), as where an O-grid closes; none: "
       "keep pieces of a parallel result apart, which are joined at the points that they share")(
-      "time", po::value<std::string>()->default_value("last"),
+      "time", po::value<std::string>()->default_value(time),
       "of a series: a step's time, first, last; or all, or FROM:TO:EVERY: the steps' fields, as "
       "NAME@TIME")(
       "threshold", po::value<std::string>(),

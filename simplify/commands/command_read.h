@@ -9,7 +9,9 @@
 namespace qtet {
 
 /// --curved, --weld, --time, --threshold, --plot3d, --read-seconds, --format.
-void addReadOptions(boost::program_options::options_description& options);
+/// `time` is what --time means where it is not given.
+void addReadOptions(boost::program_options::options_description& options,
+                    const char* time = "last");
 
 /// The words that say the same once more, for another command.
 [[nodiscard]] Words readWordsOf(const ParsedWords& parsed);

@@ -21,7 +21,9 @@ int runSample(const Words& words, Console& console) {
   options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
       "cells", po::value<double>(),
       "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)")(
-      "steps", po::value<int>(), "so many time steps of each field, 2 to 85 (fin)");
+      "steps", po::value<int>(),
+      ("so many time steps of each field, 2 to " + std::to_string(kMaxSampleInstants) + " (fin)")
+          .c_str());
   const ParsedWords parsed(
       words,
       {"sample", "sample NAME -o FILE.vtu [--cells N] [--steps N]", listOfSamples(),

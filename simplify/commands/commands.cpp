@@ -14,7 +14,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<Command, 15> kCommands{{
+constexpr std::array<Command, 16> kCommands{{
     {"sample", "make a mesh to try things with", runSample, true},
     {"check", "say what is wrong with a mesh, and what simplify would do about it", runCheck, false,
      Command::Pipe::kMesh},
@@ -25,6 +25,7 @@ constexpr std::array<Command, 15> kCommands{{
     {"extract", "write one level of a log as an ordinary mesh", runExtract, true,
      Command::Pipe::kLog},
     {"add-field", "add fields of a mesh file to a log", runAddField, true},
+    {"add-steps", "add time steps behind those that a log has", runAddSteps, true},
     {"remove-field", "leave fields of a log out", runRemoveField, true},
     {"verify", "check a log, also against the mesh that it was made from", runVerify, false,
      Command::Pipe::kLog},

@@ -74,6 +74,7 @@ int runConvert(const Words& words, Console& console);
 int runInfo(const Words& words, Console& console);
 int runExtract(const Words& words, Console& console);
 int runAddField(const Words& words, Console& console);
+int runAddSteps(const Words& words, Console& console);
 int runRemoveField(const Words& words, Console& console);
 int runPush(const Words& words, Console& console);
 int runPublish(const Words& words, Console& console);

@@ -1,13 +1,19 @@
-// Fields of a mesh file for a log that is there already (ALGORITHM.md, "Fields added later").
+// Fields of mesh files for a log that is there already (ALGORITHM.md, "Fields added later").
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codec/refine/log_edit.h"
 #include "codec/refine/log_history.h"
+#include "simplify/log/fused_values.h"
+#include "simplify/log/match_mesh.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/mesh/tet_mesh.h"
 
@@ -17,7 +23,7 @@ struct AddFieldsOptions {
   int fieldBits = 12;
   Effort effort = Effort::kLevels;  ///< for measuring, where the log knows the errors of its levels
   int threads = 1;
-  std::function<void(double)> progress;  ///< fraction done
+  std::function<void(double)> progress;  ///< fraction done, of make() and of each add()
 };
 
 struct AddedFields {
@@ -25,17 +31,63 @@ struct AddedFields {
   std::vector<std::string> notes;
 };
 
-/// The fields of `mesh` as blocks for `log`, whose last level must be the mesh; its geometry stays
-/// as it is. Errors: matchMesh's, quantiseField's, bad-value (a position off the log's lattice),
-/// and all that decoding gives. REQUIRES: a mesh that cleanMesh has passed.
+class FieldAdder {
+ public:
+  /// Decodes the geometry of the log, which must outlive it. Errors: all that decoding gives.
+  [[nodiscard]] static Result<FieldAdder> make(const LogFile& log, const AddFieldsOptions& options);
+
+  /// Adds the fields of `mesh` as blocks for the log, whose last level must be the mesh; its
+  /// geometry stays as it is. Instants NAME@TIME are coded as differences to each other. They rest
+  /// on the last instant of their series so far, too, where they come behind it. A log of one mesh
+  /// after the other needs the memory of one. Errors: matchMesh's, quantiseField's, bad-value (a
+  /// position off the log's lattice), and all that decoding gives; after one the adder is of no
+  /// use. REQUIRES: a mesh that cleanMesh has passed.
+  [[nodiscard]] Status add(const TetMesh& mesh);
+  /// All that was added. REQUIRES: called once and last.
+  [[nodiscard]] AddedFields take() { return std::move(added_); }
+
+ private:
+  /// A field on its way into the log.
+  struct Item {
+    FieldInfo info;
+    std::vector<std::int32_t> values;     // of the history's elements, a number everywhere
+    std::vector<std::int32_t> completed;  // the same with the missing values missing
+    std::vector<FieldError> errors;       // one a level
+  };
+  /// The last instant of a series: `number` as NewField::prediction counts.
+  struct Last {
+    FieldInfo info;
+    double time = 0;
+    std::size_t number = 0;
+    std::vector<std::int32_t> values;  // completed; empty until they are needed
+  };
+  using SeriesKey = std::pair<std::string, std::string>;  // association, name
+
+  FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest manifest,
+             std::unique_ptr<LogHistory> history);
+  [[nodiscard]] Status matchTo(const TetMesh& mesh);
+  [[nodiscard]] Result<std::vector<Item>> itemsOf(const TetMesh& mesh);
+  [[nodiscard]] Status measure(std::vector<Item>& items);
+  [[nodiscard]] Status code(std::vector<Item> items);
+  [[nodiscard]] Last* lastBefore(const FieldInfo& info);
+  [[nodiscard]] bool mayBeParent(const Last& last) const;
+  [[nodiscard]] Status fetch(Last& last);
+
+  const LogFile& log_;
+  AddFieldsOptions options_;
+  Manifest manifest_;
+  std::unique_ptr<LogHistory> history_;
+  std::unique_ptr<FusedValues> fused_;
+  std::vector<Tetrahedron> finest_;  // the last level's cells
+  TetMesh matched_;                  // the mesh that `match_` is of, without fields
+  MeshMatch match_;
+  std::map<SeriesKey, Last> last_;
+  std::vector<std::size_t> depths_;  // by number: how many predictions a field rests on in a row
+  AddedFields added_;
+};
+
+/// The same for one mesh.
 [[nodiscard]] Result<AddedFields> addFields(const LogFile& log, const TetMesh& mesh,
                                             const AddFieldsOptions& options = {});
-
-/// Values of all of the history's vertices from those of the last level's, `components` integers
-/// each. A fused vertex on an edge takes the values of its two prey at its place there. With more
-/// than two prey it takes their mean by the volume that they stand for.
-[[nodiscard]] std::vector<std::int32_t> fusedValues(const LogHistory& log,
-                                                    std::vector<std::int32_t> values,
-                                                    std::uint32_t components);
 
 }  // namespace qtet

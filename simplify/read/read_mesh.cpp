@@ -61,9 +61,11 @@ bool hasFaces(const std::filesystem::path& path) {
   return false;
 }
 
-Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesystem::path& path) {
+Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesystem::path& path,
+                        const ReadOptions& options) {
   if (!steps) return std::unexpected(steps.error());
-  if (steps->size() == 1) return std::move(steps->front().cells);
+  if (steps->size() == 1 && !(options.namesTime && !steps->front().time.empty()))
+    return std::move(steps->front().cells);
   return joinSteps(std::move(*steps), path);
 }
 
@@ -73,7 +75,7 @@ Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std:
   const Status done =
       throughMeshio({path, kind, options.time, options.patience},
                     [&](const std::filesystem::path& file) -> Status {
-                      out = joined(readSteps(file, formatOf(file), options, report), path);
+                      out = joined(readSteps(file, formatOf(file), options, report), path, options);
                       if (!out) return std::unexpected(out.error());
                       return {};
                     });
@@ -84,7 +86,7 @@ Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std:
 Result<CellMesh> readFluent(const std::filesystem::path& path, const ReadOptions& options,
                             ReadReport& report) {
   if (!hasFaces(path)) return readThroughMeshio(path, "ansys", options, report);
-  return joined(readSteps(path, MeshFormat::kFluent, options, report), path);
+  return joined(readSteps(path, MeshFormat::kFluent, options, report), path, options);
 }
 
 Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
@@ -171,7 +173,7 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
     case MeshFormat::kOther: return readThroughMeshio(path, options.format, options, report);
     default: break;
   }
-  return joined(readSteps(path, format, options, report), path);
+  return joined(readSteps(path, format, options, report), path, options);
 }
 
 /// "of its 12 cells, 8 hexahedron and 4 wedge were split"

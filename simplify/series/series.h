@@ -13,6 +13,9 @@ namespace qtet {
 /// instant takes those of its window that it is predicted from; with more there would be more.
 inline constexpr std::size_t kWindow = 8;
 
+/// Anchors in a row that may rest on the one before: seeking decodes all of them.
+inline constexpr std::size_t kAnchorsInARow = 4;
+
 /// An instant in the order of decoding, with the instants that come before it and lie around it.
 struct InstantStep {
   std::size_t instant;

@@ -15,8 +15,6 @@ namespace {
 
 // With more bits a difference of a prediction could leave what a value block holds.
 constexpr int kMostBits = 24;
-// Anchors in a row that may rest on the one before: seeking decodes all of them.
-constexpr std::size_t kAnchorsInARow = 4;
 
 std::int32_t differenceOf(const FusionHistory& history, std::size_t f,
                           const TimePrediction& prediction, std::size_t i) {

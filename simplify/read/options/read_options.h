@@ -32,6 +32,8 @@ struct ReadOptions {
   bool originalIds = false;
   std::optional<Threshold> threshold;
   std::string time = "last";  ///< a step's, "first", "last", "all" or FROM:TO:EVERY
+  /// Fields are called NAME@TIME also where one step is read, if the file knows its time.
+  bool namesTime = false;
   /// The file's kind as an ending without dot; empty: as its name says.
   std::string format;
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.

@@ -22,8 +22,8 @@ TEST_F(Tool, helpAndVersionSucceed) {
   const Ran help = run("--help");
   EXPECT_EQ(help.code, 0);
   for (const char* command :
-       {"sample", "check", "convert", "simplify", "info", "extract", "add-field", "remove-field",
-        "verify", "push", "publish", "page", "view", "completion", "manual"}) {
+       {"sample", "check", "convert", "simplify", "info", "extract", "add-field", "add-steps",
+        "remove-field", "verify", "push", "publish", "page", "view", "completion", "manual"}) {
     EXPECT_NE(help.out.find(command), std::string::npos);
     const Ran own = run(std::string(command) + " --help");
     EXPECT_EQ(own.code, 0);

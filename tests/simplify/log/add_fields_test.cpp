@@ -151,7 +151,7 @@ TEST_P(AddFields, fusedVerticesLieBetweenTheirPrey) {
   std::mt19937 random(GetParam());
   for (std::size_t i = 0; i < 2 * std::size_t{decoded->vertices}; ++i)
     values.push_back(static_cast<std::int32_t>(random() % 4096));
-  const std::vector<std::int32_t> all = fusedValues(*decoded, values, 2);
+  const std::vector<std::int32_t> all = FusedValues(*decoded).of(values, 2);
   ASSERT_EQ(all.size(), 2 * decoded->history.points.size());
   EXPECT_TRUE(std::equal(values.begin(), values.end(), all.begin()));
   for (const Fusion& fusion : decoded->history.fusions)

@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <tuple>
+
+#include "proto/field_key.h"
+#include "proto/limits.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/commands/command_line.h"
+#include "simplify/commands/command_read.h"
+#include "simplify/commands/edited_log_report.h"
+#include "simplify/commands/progress.h"
+#include "simplify/log/add_fields.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/mesh/workers.h"
+#include "simplify/read/options/time_steps.h"
+#include "simplify/read/read_mesh.h"
+#include "simplify/series/series.h"
+
+namespace qtet {
+namespace {
+
+constexpr int kMaxThreads = 256;
+
+/// --times: one number a file. Throws UsageError.
+std::vector<double> timesOf(const ParsedWords& parsed, std::size_t files) {
+  std::vector<double> out;
+  if (!parsed.has("times")) return out;
+  const auto text = parsed.get<std::string>("times");
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    double time = 0;
+    const auto [stop, code] = std::from_chars(text.data() + at, text.data() + end, time);
+    if (code != std::errc() || stop != text.data() + end || !std::isfinite(time))
+      throw UsageError("--times '" + text + "' is no list of numbers between commas");
+    out.push_back(time);
+    at = end + 1;
+  }
+  if (out.size() != files)
+    throw UsageError("--times gives " + std::to_string(out.size()) + " times for " +
+                     std::to_string(files) + " files; give one a file");
+  return out;
+}
+
+/// The last time of each series of the log, by association and name.
+using LastTimes = std::map<std::pair<std::string, std::string>, double>;
+
+LastTimes lastTimesOf(const Manifest& manifest) {
+  LastTimes out;
+  for (const ManifestField& field : manifest.fields) {
+    const auto name = instantName(field.name);
+    if (!name) continue;
+    const auto at = out.try_emplace({field.association, std::string(name->series)}, name->time);
+    at.first->second = std::max(at.first->second, name->time);
+  }
+  return out;
+}
+
+/// Gives fields without a time that of their file. Errors: bad-input (neither knows a time, or both
+/// do).
+Status nameInstants(TetMesh& mesh, const std::string& file, std::optional<double> time) {
+  for (MeshField& field : mesh.fields) {
+    const bool isNamed = instantName(field.name).has_value();
+    if (isNamed && time)
+      return fail(ErrorCode::kBadInput,
+                  file + " has times of its own (" + field.name + "); leave --times out");
+    if (!isNamed && !time)
+      return fail(ErrorCode::kBadInput, file + " knows no time; give it with --times");
+    if (!isNamed) field.name += "@" + timeText(*time);
+  }
+  return {};
+}
+
+/// Leaves the fields that the log has no series of, unless they were asked for. Errors: not-found
+/// (none is left), bad-value (an instant that is not behind the last one).
+Status keepInstants(TetMesh& mesh, const std::string& file, bool asked, LastTimes& last) {
+  std::string left;
+  std::erase_if(mesh.fields, [&](const MeshField& field) {
+    const auto name = instantName(field.name);
+    const bool isKnown = last.contains({field.association, std::string(name->series)});
+    if (!isKnown && !asked) left += (left.empty() ? "" : ", ") + field.name;
+    return !isKnown && !asked;
+  });
+  if (mesh.fields.empty())
+    return fail(ErrorCode::kNotFound,
+                file + " holds no instant of a series of the log" +
+                    (left.empty() ? "" : " (it has " + left + ")") +
+                    "; name others with --fields");
+  std::ranges::sort(mesh.fields, {}, [](const MeshField& field) {
+    return std::tuple(instantName(field.name)->time, field.association, field.name);
+  });
+  for (const MeshField& field : mesh.fields) {
+    const auto name = instantName(field.name);
+    const auto at = last.try_emplace({field.association, std::string(name->series)}, name->time);
+    if (!at.second && name->time <= at.first->second)
+      return fail(ErrorCode::kBadValue,
+                  file + ": " + field.name + " is not behind the last instant, " +
+                      timeText(at.first->second) + "; give steps in the order of their times");
+    at.first->second = name->time;
+  }
+  return {};
+}
+
+/// Adds windows of instants, so that no more than one is in memory at once.
+class Windows {
+ public:
+  explicit Windows(FieldAdder& adder) : adder_(adder) {}
+
+  Status take(TetMesh&& mesh) {
+    const bool isSame =
+        mesh.points == pending_.points && mesh.tetrahedra == pending_.tetrahedra;
+    if (!isSame)
+      if (Status s = flush(); !s) return s;
+    if (pending_.fields.empty()) {
+      pending_ = std::move(mesh);
+    } else {
+      std::ranges::move(mesh.fields, std::back_inserter(pending_.fields));
+    }
+    return ++steps_ < kWindow ? Status{} : flush();
+  }
+  Status flush() {
+    steps_ = 0;
+    if (pending_.fields.empty()) return {};
+    const Status added = adder_.add(pending_);
+    pending_.fields.clear();
+    return added;
+  }
+
+ private:
+  FieldAdder& adder_;
+  TetMesh pending_;
+  std::size_t steps_ = 0;
+};
+
+struct Request {
+  std::vector<std::string> files;
+  std::vector<double> times;
+  ReadOptions reading;
+  AddFieldsOptions adding;
+};
+
+Result<AddedFields> addFiles(const OpenedLog& log, const Request& request, Progress& progress) {
+  Result<FieldAdder> adder = FieldAdder::make(log.file, request.adding);
+  if (!adder) return std::unexpected(adder.error());
+  LastTimes last = lastTimesOf(log.manifest);
+  Windows windows(*adder);
+  for (std::size_t i = 0; i < request.files.size(); ++i) {
+    const std::string& file = request.files[i];
+    progress.stage("adding " + file);
+    Result<ReadMesh> read = readMesh(file, request.reading);
+    if (!read) return std::unexpected(read.error());
+    const auto time = request.times.empty() ? std::nullopt : std::optional(request.times[i]);
+    if (Status s = nameInstants(read->mesh, file, time); !s) return std::unexpected(s.error());
+    if (Status s = keepInstants(read->mesh, file, request.reading.fields.has_value(), last); !s)
+      return std::unexpected(s.error());
+    if (const auto cleaned = cleanMesh(read->mesh); !cleaned)
+      return std::unexpected(cleaned.error());
+    if (Status s = windows.take(std::move(read->mesh)); !s) return std::unexpected(s.error());
+  }
+  if (Status s = windows.flush(); !s) return std::unexpected(s.error());
+  return adder->take();
+}
+
+/// A line a series: its new instants and their bytes.
+void printSeries(const AddedFields& added, std::ostream& out) {
+  std::map<std::string, std::pair<std::size_t, std::size_t>> sums;
+  for (const NewField& field : added.fields) {
+    auto& [instants, bytes] =
+        sums[field.info.association + " field " +
+             std::string(nameWithoutStep(field.info.name).value_or(field.info.name))];
+    ++instants;
+    for (const Bytes& block : field.blocks) bytes += block.size();
+  }
+  for (const auto& [name, sum] : sums)
+    out << printable(name) << ": " << sum.first << (sum.first == 1 ? " instant, " : " instants, ")
+        << sum.second << " bytes\n";
+}
+
+Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console) {
+  Request request;
+  request.files = parsed.get<std::vector<std::string>>("FILE...");
+  request.times = timesOf(parsed, request.files.size());
+  request.reading = readOptionsOf(parsed);
+  request.reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
+  request.reading.namesTime = true;
+  request.adding.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  request.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
+  request.adding.progress = [&](double fraction) { progress.update(fraction); };
+  for (const std::string& file : request.files)
+    if (Status checked = checkNewLog(parsed, file); !checked) return checked;
+  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
+  if (!log) return std::unexpected(log.error());
+  progress.stage("decoding " + parsed.get<std::string>("LOG"));
+  const Result<AddedFields> added = addFiles(*log, request, progress);
+  if (!added) return std::unexpected(added.error());
+  std::vector<std::uint32_t> kept(log->manifest.fields.size());
+  std::iota(kept.begin(), kept.end(), 0u);
+  const Result<EditedLog> edited = withFields(log->file, kept, added->fields);
+  if (!edited) return std::unexpected(edited.error());
+  Result<OrderedJson> report = writeNewLog(parsed, log->file, *edited);
+  if (!report) return std::unexpected(report.error());
+  progress.clear();
+  for (const std::string& note : added->notes) console.note(note);
+  if (!parsed.has("json")) {
+    printSeries(*added, console.out);
+    printNew(*report, console.out);
+    return {};
+  }
+  (*report)["files"] = request.files;
+  (*report)["added"] = OrderedJson::array();
+  for (const NewField& field : added->fields) (*report)["added"].push_back(toJson(field));
+  (*report)["notes"] = added->notes;
+  printJson(*report, console);
+  return {};
+}
+
+}  // namespace
+
+int runAddSteps(const Words& words, Console& console) {
+  namespace po = boost::program_options;
+  po::options_description options("options");
+  options.add_options()("times", po::value<std::string>(),
+                        "one time a file, between commas, where the files know none: 0.1,0.2")(
+      "fields", po::value<std::string>()->default_value("all"),
+      "all: those of which the log has a series; or names as `qtet simplify --fields` takes them")(
+      "output,o", po::value<std::string>(),
+      "the log to write, NAME.qtet; without it the log itself is replaced once the new one is "
+      "whole")("field-bits", po::value<int>()->default_value(12),
+               "bits of a float field's values that a series' own scale does not hold, 1 to 28")(
+      "threads", po::value<int>()->default_value(1),
+      "threads for measuring, as many as there are processors at most; the result does not depend "
+      "on it")("json", "print one JSON object");
+  addReadOptions(options, "all");
+  const ParsedWords parsed(
+      words,
+      {"add-steps", "add-steps LOG.qtet FILE... [--times T,T] [-o OUT.qtet]",
+       "Adds time steps of a simulation that goes on behind those that the log has. Each file holds "
+       "one step or several, of the log's own mesh.\n"
+       "Steps are read in windows of eight, and coded as differences to each other and to the log's "
+       "last one. All blocks of the log stay as they\nare, byte for byte.\n"
+       "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
+       "(keys), files, added [as of add-field], notes.",
+       "  qtet add-steps run.qtet later.pvd\n  qtet add-steps run.qtet step-17.vtu step-18.vtu "
+       "--times 1.7,1.8\n"},
+      options, {"LOG", "FILE..."});
+  if (parsed.helped(console)) return kExitOk;
+  Progress progress(console);
+  const Status done = addSteps(parsed, progress, console);
+  progress.clear();
+  return done ? kExitOk : reportFailure(done.error(), parsed.has("json"), console);
+}
+
+}  // namespace qtet

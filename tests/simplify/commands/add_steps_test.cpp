@@ -1,0 +1,114 @@
+// `qtet add-steps`: the steps of a run that goes on.
+#include <cmath>
+#include <numeric>
+
+#include "simplify/read/options/time_steps.h"
+#include "simplify/read/read_mesh.h"
+#include "tests/simplify/commands/tool_run.h"
+
+namespace qtet {
+namespace {
+
+/// A box with a series T of cells and points, and its log of the first three steps.
+class AddStepsTool : public Tool {
+ protected:
+  static constexpr int kSteps = 14;
+
+  void SetUp() override {
+    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+    mesh_ = readMesh(folder_ / "box.vtu").value().mesh;
+    mesh_.fields.resize(1);
+    mesh_.fields[0].name = "T";
+    scalar_ = mesh_.fields[0].values;
+    for (int step = 0; step < kSteps; ++step) write(fileOf(step), at(step));
+    put("run.pvd", collection(0, kSteps));
+    const Ran made = run("simplify run.pvd --time 0:1 -o log.qtet --base-cells 600");
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  static std::string fileOf(int step) { return "step-" + std::to_string(step) + ".vtu"; }
+  [[nodiscard]] TetMesh at(int step) const {
+    TetMesh out = mesh_;
+    for (std::size_t i = 0; i < scalar_.size(); ++i)
+      out.fields[0].values[i] = scalar_[i] * (1 - 0.02 * step);
+    return out;
+  }
+  static std::string collection(int first, int end) {
+    std::string out = R"(<VTKFile type="Collection"><Collection>)";
+    for (int step = first; step < end; ++step)
+      out += "<DataSet timestep=\"" + timeText(0.5 * step) + "\" file=\"" + fileOf(step) + "\"/>";
+    return out + "</Collection></VTKFile>";
+  }
+  /// Expects the values of every step below `end` in the log.
+  void expectSteps(const std::string& log, int end) {
+    for (int step = 0; step < end; step += 3) {
+      const Ran ran = run("extract " + log + " --ratio 1 --time " + timeText(0.5 * step) +
+                          " -o out.vtu");
+      ASSERT_EQ(ran.code, 0) << ran.err;
+      const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
+      const auto sum = [](const std::vector<double>& values) {
+        return std::accumulate(values.begin(), values.end(), 0.0);
+      };
+      const double expected = sum(at(step).fields[0].values);
+      EXPECT_NEAR(sum(mesh.fields[0].values), expected, 1e-3 * std::abs(expected)) << step;
+    }
+    EXPECT_EQ(run("verify " + log).code, 0);
+  }
+
+  TetMesh mesh_;
+  std::vector<double> scalar_;
+};
+
+TEST_F(AddStepsTool, aCollectionThatGoesOn) {
+  const Ran ran = run("add-steps log.qtet run.pvd --time 1.5: --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.json()["added"].size(), kSteps - 3u);
+  EXPECT_EQ(ran.json()["fields"].size(), std::size_t{kSteps});
+  EXPECT_EQ(ran.json()["files"], nlohmann::json{"run.pvd"});
+  expectSteps("log.qtet", kSteps);
+}
+
+TEST_F(AddStepsTool, filesThatKnowNoTime) {
+  std::string files, times;
+  for (int step = 3; step < kSteps; ++step) {
+    files += " " + fileOf(step);
+    times += (step > 3 ? "," : "") + timeText(0.5 * step);
+  }
+  const Ran ran = run("add-steps log.qtet" + files + " --times " + times + " -o more.qtet");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("point field T: 11 instants, "), std::string::npos) << ran.out;
+  expectSteps("more.qtet", kSteps);
+  expectSteps("log.qtet", 3);
+}
+
+TEST_F(AddStepsTool, whatCannotBeAddedIsRefusedAndTheLogStays) {
+  const std::string before = contentOf(folder_ / "log.qtet");
+  expectFailure("add-steps log.qtet step-5.vtu", 1, "knows no time; give it with --times");
+  expectFailure("add-steps log.qtet step-5.vtu --times 2,3", 2, "2 times for 1 file");
+  expectFailure("add-steps log.qtet step-5.vtu --times nan", 2, "no list of numbers");
+  expectFailure("add-steps log.qtet step-5.vtu --times 1,", 2, "no list of numbers");
+  expectFailure("add-steps log.qtet step-5.vtu --times 1", 1, "T@1 is not behind the last instant");
+  expectFailure("add-steps log.qtet run.pvd --time 2:3 --times 5", 1, "has times of its own");
+  expectFailure("add-steps log.qtet step-5.vtu step-6.vtu --times 3,2.5", 1,
+                "T@2.5 is not behind the last instant, 3");
+  TetMesh other = at(5);
+  other.fields[0].name = "U";
+  write("other.vtu", other);
+  expectFailure("add-steps log.qtet other.vtu --times 2", 1, "it has U@2");
+  other.fields[0].name = "T";
+  other.points[0][0] += 0.25;
+  write("other.vtu", other);
+  expectFailure("add-steps log.qtet other.vtu --times 2", 1, "point");
+  EXPECT_EQ(contentOf(folder_ / "log.qtet"), before);
+}
+
+TEST_F(AddStepsTool, aSeriesThatTheLogLacksIsAddedByName) {
+  TetMesh other = at(5);
+  other.fields[0].name = "U";
+  write("other.vtu", other);
+  const Ran ran = run("add-steps log.qtet other.vtu --times 2 --fields U");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("point field U: 1 instant, "), std::string::npos) << ran.out;
+}
+
+}  // namespace
+}  // namespace qtet
