@@ -58,6 +58,15 @@ test('aMovieThatIsCancelledAtItsEndIsNotReturned', async () => {
   expect(log.at(-1)).toBe('restore');
 });
 
+test('cancellingDoesNotWaitForAPicture', async () => {
+  stage.draw = () => new Promise(() => undefined);
+  const making = made();
+  await Promise.resolve();
+  ends.abort();
+  await expect(making).rejects.toThrow(/abort/i);
+  expect(log).toEqual(['show 0', 'restore']);
+});
+
 test('aFailureAnywhereRestoresTheView', async () => {
   const failing = async (): Promise<never> => {
     throw new Error('no');

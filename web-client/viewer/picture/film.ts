@@ -30,15 +30,18 @@ export interface Filming {
 /** Rejects with the signal's reason once it is aborted. Nothing is returned then. */
 export async function film(stage: Stage, sink: Sink, {signal, progress}: Filming): Promise<Blob> {
   const count = stage.instants.length;
+  const aborted = new Promise<never>((_, reject) => {
+    signal.addEventListener('abort', () => reject(signal.reason as Error), {once: true});
+  });
+  aborted.catch(() => undefined);
   try {
     for (let i = 0; i < count; ++i) {
       progress(i, count);
       await stage.show(i, signal);
-      await sink.add(await stage.draw());
-      signal.throwIfAborted();
+      await Promise.race([stage.draw().then((frame) => sink.add(frame)), aborted]);
     }
     progress(count, count);
-    const movie = await sink.end();
+    const movie = await Promise.race([sink.end(), aborted]);
     signal.throwIfAborted();
     return movie;
   } finally {

@@ -10,6 +10,7 @@ const kBitsPerPixel = 0.3;
 const kKeySeconds = 2;
 /** Frames that the encoder may hold. */
 const kMaxQueue = 2;
+const kPollMs = 10;
 /** Levels of VP9 by pixels of a picture (libvpx's vp9_level_defs). */
 const kLevels: readonly [number, string][] = [
   [2228224, '40'],
@@ -71,16 +72,21 @@ class WebmSink implements Sink {
     const i = this.count++;
     const timestamp = Math.round(i * frameUs);
     const frame = new VideoFrame(canvas, {timestamp, duration: Math.round(frameUs)});
-    encoder.encode(frame, {keyFrame: i % (kKeySeconds * track.framesPerSecond) === 0});
-    frame.close();
+    try {
+      encoder.encode(frame, {keyFrame: i % (kKeySeconds * track.framesPerSecond) === 0});
+    } finally {
+      frame.close();
+    }
+    // A failure empties the queue.
     while (encoder.encodeQueueSize > kMaxQueue)
-      await new Promise((resolve) => void (encoder.ondequeue = resolve));
+      await new Promise((resolve) => setTimeout(resolve, kPollMs));
   }
 
   async end(): Promise<Blob> {
     await this.encoder.flush().catch((thrown: unknown) => {
       throw this.error ?? thrown;
     });
+    if (this.error) throw this.error;
     if (this.frames.length !== this.count)
       throw new Error("The browser's encoder has lost a frame.");
     return new Blob(webm(this.track, this.frames), {type: 'video/webm'});
