@@ -16,6 +16,7 @@ import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {lineChecks} from './line_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
+import {movieChecks} from './movie_checks.mjs';
 import {pageChecks} from './page_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
@@ -47,7 +48,7 @@ if (!options.bin || !options.viewer || !options.out) {
 const lists = {
   checks,
   element: {...elementChecks, ...lineChecks},
-  transport: transportChecks,
+  transport: {...transportChecks, ...movieChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
   edge: edgeChecks,

@@ -1,7 +1,13 @@
 import {describe, expect, test} from 'vitest';
 import {colorGradient, labelGradient} from '../core/picture/color_maps';
-import {frameOf, stopsOf, unitOf, type Figure, type LegendTexts} from '../viewer/picture/figure';
-import {refusalOf} from '../viewer/picture/picture_dialog';
+import {
+  frameOf,
+  refusalOf,
+  stopsOf,
+  unitOf,
+  type Figure,
+  type LegendTexts,
+} from '../viewer/picture/figure';
 
 const kFigure: Figure = {
   width: 3000,

@@ -116,6 +116,18 @@ test('aListenerMaySetTheTimeThatItIsTold', () => {
   expect([attributes.get('time'), told]).toEqual(['1', [[1, false]]]);
 });
 
+test('theInstantsOfAMovieAreShownAndNotTold', () => {
+  mesh.filmed = {time: 1, ahead: [1]};
+  write('range', '0,1');
+  expect([root.querySelector('.time').querySelector('output').textContent, mesh.ahead]).toEqual([
+    't = 1',
+    [1],
+  ]);
+  mesh.filmed = null;
+  write('range', '0,2');
+  expect([attributes.get('time'), told]).toEqual([undefined, []]);
+});
+
 test('instantsAreLookedUpOnceForASeries', () => {
   const {fields} = mesh.manifest!;
   let reads = 0;

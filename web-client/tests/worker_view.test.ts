@@ -79,6 +79,13 @@ test('aPictureThatCannotBeTakenIsRefused', async () => {
   await expect(picture).rejects.toThrow('no memory');
 });
 
+test('aPictureThatIsUnderWayWhenTheViewEndsIsRefused', async () => {
+  const view = await open();
+  const picture = view.picture('#fff');
+  view.dispose();
+  await expect(picture).rejects.toThrow('the graphics have ended');
+});
+
 test('aViewOrCameraThatThereIsNotIsRefusedBeforeItIsSent', async () => {
   const view = await open();
   const sent = FakeWorker.last.posted.length;

@@ -22,6 +22,7 @@ import {Panels, type PanelsHost} from './panels/panels';
 import type {Shell} from './panels/shell';
 import {TimeBar, type TimeHost} from './panels/time_bar';
 import type {MeshDrop} from './drop/mesh_drop';
+import type {MovieOptions} from './picture/movies';
 import type {Pictures} from './picture/pictures';
 
 export interface LaterHost extends ActionsHost, PanelsHost, TimeHost {
@@ -161,6 +162,13 @@ export class Later {
   /** Opens the dialog that makes a picture. */
   async picture(): Promise<void> {
     (await this.pictures.get())?.picture();
+  }
+
+  /** A movie of the shown series. */
+  async movie(options: MovieOptions): Promise<Blob> {
+    const pictures = await this.pictures.get();
+    if (!pictures) throw new Error('What makes movies cannot be loaded. Try again later.');
+    return pictures.movie(options);
   }
 
   /** A log that is dropped is shown, a mesh is simplified before. A picture opens its view. */

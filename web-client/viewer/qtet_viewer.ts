@@ -31,7 +31,8 @@
 //                figures, the error, the camera, the attribute or the time.
 // Slots          poster (shown until the first picture), progress (instead of the viewer's own).
 // Parts          canvas, panel, progress, legend, hint, marks, result, notice.
-// Methods        digest(), pause(), resume(), resetView(), look(direction), picture().
+// Methods        digest(), pause(), resume(), resetView(), look(direction), picture(),
+//                movie(options).
 // Properties     counts, statistics, state, view, cameraState, playing, token.
 
 import {kNoStatistics, type Statistics} from '../core/decode/statistics';
@@ -47,6 +48,7 @@ import type {QtetViewerEventMap} from './page/events';
 import type {Kept, Page} from './page/page';
 import {adopt, setMarkup} from './page/trusted';
 import {chosenMesh} from './panels/mesh_menu';
+import type {MovieOptions} from './picture/movies';
 import {kViewAttributes, type ViewAttribute} from './settings/settings';
 import styles from './style.css?inline';
 import {kTemplate} from './template';
@@ -159,6 +161,14 @@ export class QtetViewer extends HTMLElement {
   /** The scene as a PNG; null before there is one. */
   async picture(): Promise<Blob | null> {
     return this.viewing?.picture() ?? null;
+  }
+  /**
+   * The instants of the shown series: WebM, or a .zip of PNG files where the browser encodes no
+   * video. Rejects with a sentence if it cannot be made, or with the signal's reason.
+   */
+  async movie(options: MovieOptions = {}): Promise<Blob> {
+    if (!this.viewing) throw new Error('The viewer is in no document.');
+    return this.viewing.movie(options);
   }
 
   // ---- typed events

@@ -17,6 +17,7 @@ import {Shell} from './panels/shell';
 import {displayOf, Requests} from './requests';
 import {readSettings, type Settings, type ShownRange} from './settings/settings';
 import type {Later, LaterHost} from './later';
+import type {MovieOptions} from './picture/movies';
 import {StreamControl} from './stream_control';
 
 /**
@@ -160,6 +161,12 @@ export class Viewing implements LaterHost {
   async picture(): Promise<Blob | null> {
     const ground = getComputedStyle(this.page.element).getPropertyValue('--ground');
     return this.view?.picture(ground) ?? null;
+  }
+
+  async movie(options: MovieOptions): Promise<Blob> {
+    await this.loadLater();
+    if (!this.later) throw new Error('What makes movies cannot be loaded. Try again later.');
+    return this.later.movie(options);
   }
 
   togglePause(): void {

@@ -208,6 +208,9 @@ class WorkerView implements View {
     this.ended.abort();
     this.resizes.disconnect();
     this.worker.terminate();
+    for (const picture of this.pictures.values())
+      picture.reject(new Error('the graphics have ended'));
+    this.pictures.clear();
   }
 
   private take<Picture>(wanted: Wanted): Promise<Picture> {

@@ -15,7 +15,12 @@ export interface ActionsHost {
   /** Null before the first picture is on the screen. */
   readonly later: {
     picture(): Promise<void>;
-    readonly time: {toggle(): void; step(by: number): void; readonly isShown: boolean};
+    readonly time: {
+      toggle(): void;
+      step(by: number): void;
+      readonly isShown: boolean;
+      isPlaying: boolean;
+    };
   } | null;
   /** Shows a standard view, or (null) the first one, beside the cards that are open now. */
   look(direction: Direction | null): void;

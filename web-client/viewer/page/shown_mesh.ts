@@ -40,6 +40,11 @@ export class ShownMesh {
   playing: readonly number[] = [];
   /** Fields that are plotted over time. */
   plotted: readonly number[] = [];
+  /**
+   * The instant that a movie shows instead of the attribute's, and the fields that it shows soon;
+   * null: no movie is made.
+   */
+  filmed: {time: number; ahead: readonly number[]} | null = null;
   /** An error keeps the fields ahead from coming. */
   aheadEnded = false;
   /** The newest picture. */
@@ -58,7 +63,7 @@ export class ShownMesh {
 
   /** Fields that are wanted behind the shown ones. */
   get ahead(): number[] {
-    return [...new Set([...this.playing, ...this.plotted])];
+    return [...new Set([...(this.filmed?.ahead ?? []), ...this.playing, ...this.plotted])];
   }
 
   takeBase({bounds, chord}: BaseFigures): void {
@@ -83,10 +88,11 @@ export class ShownMesh {
 
 /** The settings of the attributes, with what the mesh decides where they say nothing. */
 export function settingsFor(
-  {manifest, firstField, chord, snapshot}: ShownMesh,
+  {manifest, firstField, chord, snapshot, filmed}: ShownMesh,
   read: (name: ViewAttribute) => string | null,
 ): Settings {
   const settings = readSettings(read);
+  if (filmed) settings.time = filmed.time;
   const fields = manifest?.fields ?? [];
   showTime(fields, settings.time);
   const shown = shownScalar(read('field'), fields, firstField);

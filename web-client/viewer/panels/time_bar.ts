@@ -118,6 +118,7 @@ export class TimeBar {
 
   /** The host may change the time at once. */
   private tell(): void {
+    if (this.host.mesh.filmed) return; // a movie leaves the time as it is
     const {isPlaying: playing, told} = this;
     const {time} = this.times[this.at]!;
     if (told?.time === time && told.playing === playing) return;

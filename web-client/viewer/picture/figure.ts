@@ -18,6 +18,12 @@ const kAxis = 34;
 /** Texts leave at least this share of the height to the mesh. */
 const kMinFree = 0.4;
 
+/** The sides of 8K. Browsers make no much larger pictures. */
+const kMaxSide = 7680;
+const kMaxPixels = 7680 * 4320;
+/** Smaller ones have no room for a legend. */
+const kMinSide = 100;
+
 /** Inks of a light ground. */
 const kInk = '#16202c';
 const kSoftInk = '#556273';
@@ -95,6 +101,15 @@ export function stopsOf(gradient: string): [number, string][] {
     const given = shares!.match(/[\d.]+/g)?.map((share) => Number(share) / 100);
     return (given ?? [i / Math.max(1, stops.length - 1)]).map((share) => [share, color!]);
   });
+}
+
+/** A sentence if there is no picture of this size; empty: there is one. */
+export function refusalOf({width, height}: Pick<Figure, 'width' | 'height'>): string {
+  const isSide = (pixels: number): boolean =>
+    Number.isInteger(pixels) && pixels >= kMinSide && pixels <= kMaxSide;
+  if (!isSide(width) || !isSide(height))
+    return `Width and height are whole numbers from ${kMinSide} to ${kMaxSide}.`;
+  return width * height > kMaxPixels ? 'A picture has at most 7680 × 4320 pixels.' : '';
 }
 
 /** Pixels of the picture in a unit. */

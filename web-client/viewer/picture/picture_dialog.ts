@@ -8,14 +8,11 @@ import type {Page} from '../page/page';
 import {save} from '../page/save';
 import {setMarkup} from '../page/trusted';
 import {linkTo, publicAddress} from '../settings/share';
-import {draw, frameOf, legendOf, type Figure, type Ground, type Looks} from './figure';
+import {refusalOf, type Figure, type Ground} from './figure';
+import {kMovieMarkup, MovieSection} from './movie_section';
+import type {Movies} from './movies';
+import {drawPage} from './page_figure';
 import {withView} from './png_view';
-
-/** The sides of 8K. Browsers make no much larger pictures. */
-const kMaxSide = 7680;
-const kMaxPixels = 7680 * 4320;
-/** Smaller ones have no room for a legend. */
-const kMinSide = 100;
 
 const kSizes = [
   ['', 'As on the screen'],
@@ -64,6 +61,7 @@ const kMarkup = `
   <div class="buttons"><button class="save-picture" autofocus>Save</button>
     <button type="button" class="copy-picture">Copy</button></div>
 </form>
+${kMovieMarkup}
 <div class="row">
   <p class="hint">A saved picture opens its view again: drop it on this page.</p>
   <label class="toggle"><input type="file" name="picture" accept="image/png">
@@ -83,10 +81,12 @@ export class PictureDialog {
   /** Counts the openings: a picture that comes after its own is not wanted. */
   private openings = 0;
   private isBusy = false;
+  private readonly movie: MovieSection;
 
   constructor(
     private readonly page: Page,
     private readonly host: PictureHost,
+    movies: Movies,
   ) {
     const {dialog} = this;
     dialog.className = 'picture-dialog';
@@ -94,6 +94,14 @@ export class PictureDialog {
     setMarkup(dialog, kMarkup);
     page.root.append(dialog);
     this.form = find(dialog, '.figure');
+    this.movie = new MovieSection(find(dialog, '.movie'), movies, {
+      figure: () => this.figure(),
+      saved: () => {
+        dialog.close();
+        page.announce('Saved');
+      },
+    });
+    dialog.addEventListener('close', () => this.movie.cancel());
     this.form.addEventListener('submit', (event) => {
       event.preventDefault();
       void this.run((picture) => this.save(picture));
@@ -122,6 +130,7 @@ export class PictureDialog {
     const mesh = this.meshName;
     if (mesh !== this.mesh) this.box('title').value = mesh;
     this.mesh = mesh;
+    this.movie.show();
     this.dialog.showModal();
   }
 
@@ -138,7 +147,7 @@ export class PictureDialog {
 
   /** Makes the picture for `use`, which returns what is said then. */
   private async run(use: (picture: Promise<Blob>) => Promise<string>): Promise<void> {
-    if (this.isBusy) return; // disabled buttons would lose the focus
+    if (this.isBusy || this.movie.isBusy) return; // disabled buttons would lose the focus
     const figure = this.figure();
     const why = refusalOf(figure);
     if (why !== '') return this.say(why);
@@ -159,14 +168,8 @@ export class PictureDialog {
     const {view} = this.host;
     if (!view) throw new Error('the graphics have not started');
     const address = linkTo(publicAddress(location.href), page.view);
-    const legend = legendOf(page.root);
-    const tiles = await view.render(frameOf(figure, legend, view.canvas));
-    try {
-      const canvas = draw(figure, tiles, legend, looksOf(page, view));
-      return withView(await canvas.convertToBlob({type: 'image/png'}), address);
-    } finally {
-      for (const {bitmap} of tiles) bitmap.close();
-    }
+    const canvas = await drawPage(page, view, figure);
+    return withView(await canvas.convertToBlob({type: 'image/png'}), address);
   }
 
   private async save(making: Promise<Blob>): Promise<string> {
@@ -216,26 +219,4 @@ export class PictureDialog {
   private say(status: string): void {
     find(this.form, '[role=status]').textContent = status;
   }
-}
-
-/** A sentence if there is no picture of this size; empty: there is one. */
-export function refusalOf({width, height}: Pick<Figure, 'width' | 'height'>): string {
-  const isSide = (pixels: number): boolean =>
-    Number.isInteger(pixels) && pixels >= kMinSide && pixels <= kMaxSide;
-  if (!isSide(width) || !isSide(height))
-    return `Width and height are whole numbers from ${kMinSide} to ${kMaxSide}.`;
-  return width * height > kMaxPixels ? 'A picture has at most 7680 × 4320 pixels.' : '';
-}
-
-function looksOf({element}: Page, {pose}: View): Looks {
-  const style = getComputedStyle(element);
-  const its = (name: string): string => style.getPropertyValue(name).trim();
-  return {
-    ink: its('--ink'),
-    softInk: its('--ink-soft'),
-    ground: its('--ground'),
-    back: style.backgroundImage,
-    font: style.fontFamily,
-    axes: pose.axes,
-  };
 }

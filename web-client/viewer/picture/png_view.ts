@@ -1,6 +1,7 @@
 // The address of a view in the PNG that shows it: an iTXt chunk (PNG, third edition, 11.3.3.4).
 
 import {QtetError} from '../../core/protocol/errors';
+import {crc32} from './crc32';
 
 const kKeyword = 'qtet-view';
 const kSignature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
@@ -72,13 +73,3 @@ function chunkOf(type: string, data: readonly number[]): Uint8Array<ArrayBuffer>
 
 const bytesOf = (text: string): Uint8Array => new TextEncoder().encode(text);
 const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
-
-/** The checksum of PNG (5.5), bit by bit: addresses are short. */
-function crc32(bytes: Uint8Array): number {
-  let crc = -1;
-  for (const byte of bytes) {
-    crc ^= byte;
-    for (let bit = 0; bit < 8; ++bit) crc = (crc >>> 1) ^ (crc & 1 ? 0xedb88320 : 0);
-  }
-  return ~crc >>> 0;
-}

@@ -1,0 +1,99 @@
+// Movies of the shown series: all instants in order, drawn as pictures are.
+
+import type {View} from '../../webgl/view';
+import {find} from '../page/find';
+import type {Page} from '../page/page';
+import {refusalOf, type Figure} from './figure';
+import {film, type Filming, type Sink} from './film';
+import {openSink} from './movie_sinks';
+import {drawPage, pageFrame} from './page_figure';
+import {SeriesStage, type StageHost} from './series_stage';
+
+const kFramesPerSecond = 10;
+const kMaxFramesPerSecond = 60;
+
+/**
+ * By default the size is the element's, and the ground white. The sides are rounded down to even
+ * numbers. A video has no transparency: its ground is white then.
+ */
+export interface MovieOptions extends Partial<Figure>, Partial<Filming> {
+  /** A whole number up to 60; by default 10. */
+  framesPerSecond?: number;
+  /** Only the instants that are loaded. */
+  onlyLoaded?: boolean;
+}
+
+export interface MovieHost extends StageHost {
+  readonly view: View | null;
+  readonly later: {readonly time: {isPlaying: boolean}} | null;
+}
+
+export class Movies {
+  private isBusy = false;
+
+  constructor(
+    private readonly page: Page,
+    private readonly host: MovieHost,
+  ) {}
+
+  /** A series is shown. */
+  get isOffered(): boolean {
+    const {manifest, snapshot} = this.host.mesh;
+    return Boolean(snapshot?.color && manifest?.fields[snapshot.color.field]?.instant);
+  }
+
+  get name(): string {
+    return find(this.page.root, '.mesh-name').textContent;
+  }
+
+  async make({framesPerSecond = kFramesPerSecond, ...options}: MovieOptions): Promise<Blob> {
+    if (this.isBusy) throw new Error('Another movie is being made.');
+    const isRate = Number.isInteger(framesPerSecond) && framesPerSecond > 0;
+    if (!isRate || framesPerSecond > kMaxFramesPerSecond)
+      throw new Error(`framesPerSecond is a whole number from 1 to ${kMaxFramesPerSecond}.`);
+    const figure = this.figureOf(options);
+    const why = refusalOf(figure);
+    if (why !== '') throw new Error(why);
+    this.isBusy = true;
+    let sink: Sink | null = null;
+    try {
+      if (this.host.later) this.host.later.time.isPlaying = false;
+      const {onlyLoaded = false, signal, progress} = options;
+      sink = await openSink({...figure, framesPerSecond}, this.name);
+      if (sink.isOpaque && figure.ground === 'transparent') figure.ground = 'white';
+      const stage = new SeriesStage(this.host, onlyLoaded, this.drawing(figure));
+      return await film(stage, sink, {
+        signal: signal ?? new AbortController().signal,
+        progress: progress ?? (() => undefined),
+      });
+    } finally {
+      sink?.close();
+      this.isBusy = false;
+    }
+  }
+
+  private figureOf(options: MovieOptions): Figure {
+    const {clientWidth, clientHeight} = this.page.element;
+    const even = (pixels: number): number => pixels - (pixels % 2);
+    return {
+      width: even(options.width ?? Math.round(clientWidth * devicePixelRatio)),
+      height: even(options.height ?? Math.round(clientHeight * devicePixelRatio)),
+      ground: options.ground ?? 'white',
+      hasLegend: options.hasLegend ?? true,
+      hasAxes: options.hasAxes ?? true,
+      title: options.title ?? '',
+      unit: options.unit ?? '',
+    };
+  }
+
+  /** Draws the figure. The mesh stays in its place, even if the legend's height changes. */
+  private drawing(figure: Figure): () => Promise<OffscreenCanvas> {
+    const {host, page} = this;
+    let frame: ReturnType<typeof pageFrame> | undefined;
+    return () => {
+      if (!host.view) throw new Error('The graphics have stopped.');
+      frame ??= pageFrame(page, host.view, figure);
+      return drawPage(page, host.view, figure, frame);
+    };
+  }
+}

@@ -1,0 +1,99 @@
+// The instants of the shown series, one after the other, each wholly on the screen. The attribute
+// `time` stays as it is, so that neither the address nor the steps of undo change.
+
+import {instantsOf} from '../../core/protocol/series';
+import type {StreamState} from '../../core/session/worker_messages';
+import type {View} from '../../webgl/view';
+import type {ShownMesh} from '../page/shown_mesh';
+import {fieldsAhead} from '../panels/time_bar';
+import type {Stage} from './film';
+
+export interface StageHost {
+  readonly view: View | null;
+  readonly mesh: ShownMesh;
+  readonly stream: {readonly state: StreamState};
+  /** Brings the picture in line with the mesh. */
+  apply(): void;
+}
+
+const kPollMs = 20;
+/** An instant is lost if nothing of it comes for so long. */
+const kPatienceMs = 60000;
+/** The stream asks for nothing more by itself. */
+const kRest: readonly StreamState[] = ['complete', 'held', 'paused', 'failed'];
+
+export class SeriesStage implements Stage {
+  readonly instants: readonly number[];
+  private readonly mesh: ShownMesh;
+  private readonly series: string;
+
+  /** Throws if no series is shown. */
+  constructor(
+    private readonly host: StageHost,
+    private readonly onlyLoaded: boolean,
+    readonly draw: () => Promise<OffscreenCanvas>,
+  ) {
+    const {manifest, snapshot, here} = (this.mesh = host.mesh);
+    const fields = manifest?.fields ?? [];
+    const series = snapshot?.color && fields[snapshot.color.field]?.instant?.series;
+    if (series == null) throw new Error('No series is shown. A movie shows the instants of one.');
+    this.series = series;
+    const all = instantsOf(fields, series);
+    this.instants = onlyLoaded ? all.filter((field) => here.includes(field)) : all;
+    if (this.instants.length === 0) throw new Error('No instant is loaded.');
+  }
+
+  async show(i: number, signal: AbortSignal): Promise<void> {
+    const {mesh, instants, onlyLoaded} = this;
+    const field = instants[i]!;
+    const {time} = mesh.manifest!.fields[field]!.instant!;
+    mesh.filmed = {time, ahead: onlyLoaded ? [] : fieldsAhead(instants, i)};
+    this.host.apply();
+    let {bytes} = mesh.statistics;
+    let since = performance.now();
+    for (;;) {
+      signal.throwIfAborted();
+      this.check(field);
+      if (this.isWhole(field)) return;
+      await new Promise((resolve) => setTimeout(resolve, kPollMs));
+      const now = performance.now();
+      // A hidden page draws nothing.
+      if (document.hidden || mesh.statistics.bytes !== bytes) since = now;
+      ({bytes} = mesh.statistics);
+      if (now - since > kPatienceMs) this.lost(field, `nothing came for ${kPatienceMs / 1000} s`);
+    }
+  }
+
+  restore(): void {
+    const {host, mesh} = this;
+    mesh.filmed = null;
+    if (host.mesh === mesh) host.apply();
+  }
+
+  /** Throws if the instant cannot come any more. */
+  private check(field: number): void {
+    const {host, mesh} = this;
+    const {color} = mesh.snapshot ?? {};
+    if (host.mesh !== mesh) throw new Error('Another mesh was opened.');
+    if (!host.view) throw new Error('The graphics have stopped.');
+    if (!color || mesh.manifest!.fields[color.field]!.instant?.series !== this.series)
+      throw new Error('Another field was chosen.');
+    if (mesh.here.includes(field)) return;
+    const {state} = host.stream;
+    if (state === 'failed') this.lost(field, 'the stream has failed');
+    if (state === 'paused') this.lost(field, 'the stream is paused');
+  }
+
+  private lost(field: number, why: string): never {
+    const {text} = this.mesh.manifest!.fields[field]!.instant!;
+    throw new Error(`The instant t = ${text} did not come: ${why}.`);
+  }
+
+  /** No other picture of the instant follows by itself. */
+  private isWhole(field: number): boolean {
+    const {snapshot, drawn, here, statistics} = this.mesh;
+    if (snapshot?.color?.field !== field || drawn !== snapshot.statistics) return false;
+    if (!here.includes(field) || !kRest.includes(this.host.stream.state)) return false;
+    return drawn.bytes >= Math.min(drawn.bytesNeeded, statistics.bytes);
+  }
+}
