@@ -162,7 +162,8 @@ Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& cal
   return writeFileAtomically(asked, [bytes](const ByteSink& sink) { return sink(bytes); }, calls);
 }
 
-Status writeFileAtomically(const fs::path& asked, const ByteSource& content, FileCalls& calls) {
+Status writeFileAtomically(const fs::path& asked, const ByteSource& content, FileCalls& calls,
+                           Leftovers leftovers) {
   const Result<fs::path> behind = fileBehindLinks(asked);
   if (!behind) return std::unexpected(behind.error());
   const fs::path& path = *behind;
@@ -183,8 +184,9 @@ Status writeFileAtomically(const fs::path& asked, const ByteSource& content, Fil
   // Opened before anything is changed: what cannot be flushed later is better not begun.
   const Descriptor opened(calls, calls.open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0));
   if (opened.get() < 0) return systemError("open the folder", folder, errno);
-  removeUnfinished(
-      folder, [own = nameWithin(path)](std::string_view name) { return name == own; }, calls);
+  if (leftovers == Leftovers::kRemove)
+    removeUnfinished(
+        folder, [own = nameWithin(path)](std::string_view name) { return name == own; }, calls);
   if (Status status = writeAndRename(
           path, replaces ? std::optional(old.st_mode & 07777) : std::nullopt, content, calls);
       !status)

@@ -2,6 +2,7 @@
 // crash.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string_view>
@@ -22,10 +23,13 @@ namespace qtet {
 /// file is there; with the file and the operating system's reason).
 [[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path, ByteView bytes,
                                          FileCalls& calls = systemFileCalls());
+/// Whether writers that were killed are cleaned up after, which looks at every file of the folder.
+enum class Leftovers : std::uint8_t { kRemove, kKeep };
 /// The same of bytes that come in pieces. Errors: also those of `content`.
 [[nodiscard]] Status writeFileAtomically(const std::filesystem::path& path,
                                          const ByteSource& content,
-                                         FileCalls& calls = systemFileCalls());
+                                         FileCalls& calls = systemFileCalls(),
+                                         Leftovers leftovers = Leftovers::kRemove);
 
 /// The file that writing to `path` makes or replaces: behind every symbolic link, whether it is
 /// there or not. Errors: io (a circle of links).

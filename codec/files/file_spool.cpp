@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "codec/files/atomic_file.h"
 #include "codec/files/buffered_file.h"
 
 namespace qtet {
@@ -75,7 +76,9 @@ int openNameless(const fs::path& folder, FileCalls& calls) {
 }  // namespace
 
 Result<std::unique_ptr<ByteSpool>> fileSpoolBeside(const fs::path& beside, FileCalls& calls) {
-  const fs::path folder = beside.has_parent_path() ? beside.parent_path() : fs::path(".");
+  const Result<fs::path> target = fileBehindLinks(beside);
+  if (!target) return std::unexpected(target.error());
+  const fs::path folder = target->has_parent_path() ? target->parent_path() : fs::path(".");
   const int file = openNameless(folder, calls);
   if (file < 0 && errno == ENOENT)
     return fail(ErrorCode::kNotFound,

@@ -10,8 +10,8 @@
 
 namespace qtet {
 
-/// In the folder of `beside`, a file that is or will be there. Takes 1 MB of memory. Errors:
-/// not-found (the folder does not exist), io.
+/// In the folder of `beside`, a file that is or will be there; behind its symbolic links. Takes
+/// 1 MB of memory. Errors: not-found (the folder does not exist), io.
 [[nodiscard]] Result<std::unique_ptr<ByteSpool>> fileSpoolBeside(
     const std::filesystem::path& beside, FileCalls& calls = systemFileCalls());
 

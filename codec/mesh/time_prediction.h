@@ -2,6 +2,7 @@
 // "Series"). A log then holds what is left, coded as a field of its own.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -43,6 +44,16 @@ struct TimePrediction {
       sum += std::int64_t{parent.weight} * value;
     }
     return isWhole ? sum >> kWeightBits : present;
+  }
+
+  /// The value of a difference that is not missing. Values are held within +-2^30, not refused: the
+  /// parents' values on the way depend on the order in which blocks come.
+  template <class At>
+  [[nodiscard]] std::int32_t restore(std::int32_t difference, const At& at,
+                                     std::int32_t missing) const {
+    constexpr std::int64_t kLargest = std::int64_t{1} << 30;
+    return static_cast<std::int32_t>(
+        std::clamp(difference + predict(at, missing), -kLargest, kLargest));
   }
 };
 

@@ -208,8 +208,8 @@ Result<std::vector<std::int32_t>> historyValues(const LogFile& log, const LogHis
     const TimePrediction& prediction = log.fields()[f].prediction;
     for (std::size_t i = 0; !prediction.isNone() && i < values->size(); ++i)
       if (std::int32_t& value = (*values)[i]; value != kMissing)
-        value += static_cast<std::int32_t>(prediction.predict(
-            [&](std::uint16_t parent) { return known.at(parent)[i]; }, kMissing));
+        value = prediction.restore(
+            value, [&](std::uint16_t parent) { return known.at(parent)[i]; }, kMissing);
     known[f] = std::move(*values);
   }
   return std::move(known.at(field));

@@ -23,9 +23,10 @@ void RecordReader::makeRoom(const Slots& total, std::uint64_t records) {
 
 void RecordReader::start(CoarsePart&& coarse) {
   assert(mesh_.points.empty());
-  mesh_.points = std::move(coarse.points);
-  mesh_.tetrahedra = std::move(coarse.tetrahedra);
-  mesh_.boundary = std::move(coarse.boundary);
+  // not moved: makeRoom() may have reserved memory for all that is to come
+  mesh_.points.assign(coarse.points.begin(), coarse.points.end());
+  mesh_.tetrahedra.assign(coarse.tetrahedra.begin(), coarse.tetrahedra.end());
+  mesh_.boundary.assign(coarse.boundary.begin(), coarse.boundary.end());
   mesh_.start(positionBits_, coarse.frozen);
   if (ancestry_.cells) ancestry_.cells->addBase(mesh_.tetrahedra);
 }

@@ -142,6 +142,8 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk,
   return state_->fields.apply(field, chunk, values);
 }
 
+void Refiner::forgetField(std::uint32_t field) { state_->fields.forget(field); }
+
 void Refiner::observe(SplitObserver* observer) { state_->requests.observer = observer; }
 void Refiner::askBeforeLevels(LevelGate* gate) { state_->requests.gate = gate; }
 void Refiner::stopAtLevel(std::uint32_t level) { state_->requests.stopLevel = level; }

@@ -37,6 +37,10 @@ class Refiner {
   /// lag behind the mesh, never run ahead, and takes chunks in file order, like the mesh.
   Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
 
+  /// Gives the memory of a field's values back, as if none of its blocks had come. REQUIRES: a
+  /// field of the log.
+  void forgetField(std::uint32_t field);
+
   /// A chunk that goes beyond `level` then ends there, and chunks that begin beyond it are refused.
   /// Once level() is `level`, the mesh is that level's.
   void stopAtLevel(std::uint32_t level);

@@ -92,20 +92,15 @@ Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
   return {};
 }
 
-// Values are held within the range, not refused: the parents' values on the way depend on the order
-// in which blocks come.
 void RefinerFields::restore(Field& f, const FieldShape& shape, std::size_t element) const {
-  constexpr std::int64_t kLargest = std::int64_t{1} << 30;
   for (std::size_t i = element * shape.components; i < (element + 1) * shape.components; ++i) {
     if (f.differences[i] == kMissing) {
       f.values[i] = kMissing;
       continue;
     }
-    const std::int64_t value =
-        f.differences[i] +
-        shape.prediction.predict([&](std::uint16_t parent) { return fields_[parent].values[i]; },
-                                 kMissing);
-    f.values[i] = static_cast<std::int32_t>(std::clamp(value, -kLargest, kLargest));
+    f.values[i] = shape.prediction.restore(
+        f.differences[i], [&](std::uint16_t parent) { return fields_[parent].values[i]; },
+        kMissing);
   }
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 #include <string>
+#include <vector>
 
 #include "codec/refine/log_file.h"
 #include "codec/refine/refiner.h"
@@ -39,58 +39,82 @@ Status checkLevels(const std::vector<ManifestLevel>& levels, std::span<const Lev
 
 /// The original's integers lie within the bits that the manifest states; those of coarser levels
 /// may leave them.
-Status checkBits(const Manifest& manifest, const Refiner& finest) {
-  for (std::uint32_t f = 0; f < manifest.fields.size(); ++f) {
-    const std::int32_t end = std::int32_t{1} << manifest.fields[f].bits;
-    const std::span<const std::int32_t> values = finest.fieldValues(f);
-    const auto outside = std::ranges::find_if(values, [end](std::int32_t value) {
-      return value != kMissing && (value < 0 || value >= end);
-    });
-    if (outside != values.end())
-      return fail(ErrorCode::kBadValue, "field " + fieldKey(manifest, f) + " holds the integer " +
-                                            std::to_string(*outside) + ", beyond the " +
-                                            std::to_string(manifest.fields[f].bits) +
-                                            " bits that the manifest says; build the log again");
-  }
-  return {};
+Status checkBits(const Manifest& manifest, const Refiner& finest, std::uint32_t f) {
+  const std::int32_t end = std::int32_t{1} << manifest.fields[f].bits;
+  const std::span<const std::int32_t> values = finest.fieldValues(f);
+  const auto outside = std::ranges::find_if(values, [end](std::int32_t value) {
+    return value != kMissing && (value < 0 || value >= end);
+  });
+  if (outside == values.end()) return {};
+  return fail(ErrorCode::kBadValue, "field " + fieldKey(manifest, f) + " holds the integer " +
+                                        std::to_string(*outside) + ", beyond the " +
+                                        std::to_string(manifest.fields[f].bits) +
+                                        " bits that the manifest says; build the log again");
 }
 
 class Gate final : public LevelGate {
  public:
-  Gate(const std::function<bool(double)>& ask, std::size_t chunks)
-      : ask_(ask), chunks_(static_cast<double>(chunks)) {}
-  bool goOn() override { return !ask_ || ask_(done_ / chunks_); }
-  bool chunkIsDone() {
-    ++done_;
-    return goOn();
+  Gate(const std::function<bool(double)>& ask, std::uint64_t bytes)
+      : ask_(ask), bytes_(static_cast<double>(bytes)) {}
+  bool goOn() override { return !ask_ || ask_(std::min(done_ / bytes_, 1.0)); }
+  Status isDone(std::uint64_t bytes) {
+    done_ += static_cast<double>(bytes);
+    return goOn() ? Status{} : fail(ErrorCode::kIo, "stopped, as was asked for");
   }
 
  private:
   const std::function<bool(double)>& ask_;
-  double chunks_, done_ = 0;
+  double bytes_, done_ = 0;
 };
+
+/// By field: the last field that is predicted from it, or itself.
+std::vector<std::uint32_t> lastUsers(std::span<const FieldShape> fields) {
+  std::vector<std::uint32_t> out(fields.size());
+  for (std::uint32_t f = 0; f < fields.size(); ++f) {
+    out[f] = f;
+    for (const TimePrediction::Parent& parent : fields[f].prediction.all()) out[parent.field] = f;
+  }
+  return out;
+}
+
+/// Decodes the fields of a refiner that has the whole mesh.
+Status verifyFields(const LogFile& log, const Manifest& manifest, Refiner& refiner, Gate& gate,
+                    Verified left) {
+  const std::vector<std::uint32_t> users = lastUsers(log.fields());
+  for (std::uint32_t f = 0; f < users.size(); ++f) {
+    for (std::uint32_t chunk = 0; chunk < log.chunks().size(); ++chunk) {
+      if (Status s = applyFieldBlock(log, refiner, chunk, f); !s) return s;
+      if (Status s = gate.isDone(log.chunks()[chunk].blocks[kFirstFieldPart + f].size); !s)
+        return s;
+    }
+    if (Status s = checkBits(manifest, refiner, f); !s) return s;
+    for (std::uint32_t g = 0; left == Verified::kMesh && g <= f; ++g)
+      if (users[g] == f) refiner.forgetField(g);
+  }
+  return {};
+}
 
 }  // namespace
 
 Result<Refiner> decodeVerified(const LogFile& log, const Manifest& manifest,
-                               const std::function<bool(double fraction)>& goOn) {
+                               const std::function<bool(double fraction)>& goOn, Verified left) {
   assert(manifest.fields.size() == log.fields().size());
   if (Status checked = log.verifyChecksums(); !checked) return std::unexpected(checked.error());
   Refiner refiner(log.index());
-  Gate gate(goOn, log.chunks().size());
+  Gate gate(goOn, log.bytes().size() - log.headBytes());
   refiner.askBeforeLevels(&gate);
-  std::vector<std::uint32_t> fields(manifest.fields.size());
-  std::iota(fields.begin(), fields.end(), 0u);
-  const auto chunks = static_cast<std::uint32_t>(log.chunks().size());
-  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    if (Status applied = applyChunk(log, refiner, chunk, fields); !applied)
-      return std::unexpected(applied.error());
-    if (!gate.chunkIsDone()) return fail(ErrorCode::kIo, "stopped, as was asked for");
+  for (std::uint32_t chunk = 0; chunk < log.chunks().size(); ++chunk) {
+    if (Status s = applyChunk(log, refiner, chunk, {}); !s) return std::unexpected(s.error());
+    const std::vector<BlockEntry>& blocks = log.chunks()[chunk].blocks;
+    const std::uint64_t bytes =
+        std::uint64_t{blocks[kStructurePart].size} + blocks[kPositionsPart].size;
+    if (Status s = gate.isDone(bytes); !s) return std::unexpected(s.error());
   }
   refiner.askBeforeLevels(nullptr);
   if (Status levels = checkLevels(manifest.levels, refiner.levelCounts()); !levels)
     return std::unexpected(levels.error());
-  if (Status bits = checkBits(manifest, refiner); !bits) return std::unexpected(bits.error());
+  if (Status s = verifyFields(log, manifest, refiner, gate, left); !s)
+    return std::unexpected(s.error());
   return refiner;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "codec/log/target_choice.h"
 #include "codec/picture/poster.h"
@@ -86,9 +87,11 @@ OrRefusal<std::vector<std::uint32_t>> wantedFields(const RequestTarget& target,
     std::iota(out.begin(), out.end(), 0u);
     return out;
   }
+  std::set<std::string_view> names;
   for (std::string_view rest = *text; !rest.empty();) {
     const std::string_view name = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(name.size() + 1, rest.size()));
+    if (!names.insert(name).second) continue;  // looking a name up again and again would take long
     const std::vector<std::uint32_t> meant = fieldsNamed(mesh.manifest, name);
     if (meant.empty()) return notFound("this mesh has no field '" + std::string(name) + "'");
     out.insert(out.end(), meant.begin(), meant.end());

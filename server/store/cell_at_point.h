@@ -9,7 +9,7 @@
 
 namespace qtet {
 
-/// Lattice steps. A point that is at most so far from a cell counts as its own. The input's points
+/// Lattice steps. A point no farther than that from a cell counts as one of it. The input's points
 /// moved to the lattice by up to half a step on each axis, 0.87 together. So those of its surface
 /// may lie outside.
 inline constexpr double kNearSteps = 1;
@@ -19,9 +19,9 @@ struct PointInCell {
   std::array<double, 4> weights{};  ///< barycentric: none negative, together 1
 };
 
-/// The first cell that holds `point` (lattice coordinates, not rounded). If none does, the cell
-/// whose point with the negative weights left out is nearest, within kNearSteps. Else nullopt.
-/// Cells without volume hold nothing. Looks at every cell. REQUIRES: indices within range.
+/// The first cell that holds `point` (lattice coordinates, not rounded). If none does, the nearest
+/// cell within kNearSteps, with the weights of its point nearest to `point`. Else nullopt. Cells
+/// without volume hold nothing. Looks at every cell. REQUIRES: indices within range.
 [[nodiscard]] std::optional<PointInCell> cellAtPoint(std::span<const LatticePoint> points,
                                                      std::span<const Tetrahedron> cells,
                                                      const std::array<double, 3>& point);

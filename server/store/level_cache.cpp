@@ -152,7 +152,10 @@ LevelFile LevelCache::put(const std::string& key, Bytes bytes) {
   const std::size_t size = bytes.size();
   const Bytes seal = sealOf(bytes);
   bytes.insert(bytes.end(), seal.begin(), seal.end());
-  const Status written = writeFileAtomically(pathOf(key), bytes);
+  // the folder may hold many files, and open() has removed what writers before left
+  const Status written = writeFileAtomically(
+      pathOf(key), [&](const ByteSink& sink) { return sink(bytes); }, systemFileCalls(),
+      Leftovers::kKeep);
   bytes.resize(size);
   if (!written) {
     spdlog::warn("a level is not kept: {}", written.error().message);

@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -54,14 +56,34 @@ Status refineTo(const LevelRequest& request, Refiner& refiner, const std::stop_t
   return {};
 }
 
-/// The fields and their parents, which have smaller numbers, so that each finds its own whole.
-Status applyFields(const LevelRequest& request, Refiner& refiner, const std::stop_token& stop) {
+/// Decodes the fields and those that they are predicted from, one after the other; parents have
+/// smaller numbers. Each is shown to `whole` when it is there, and forgotten once none of the rest
+/// is predicted from it.
+Status eachField(const LevelRequest& request, Refiner& refiner, const std::stop_token& stop,
+                 const std::function<void(std::uint32_t field)>& whole) {
   const LogFile& log = request.mesh->log;
-  for (const std::uint32_t field : withParents(log.fields(), request.fields))
+  const std::vector<std::uint32_t> fields = withParents(log.fields(), request.fields);
+  std::map<std::uint32_t, std::uint32_t> lastUser;
+  for (const std::uint32_t field : fields) {
+    lastUser[field] = field;
+    for (const TimePrediction::Parent& parent : log.fields()[field].prediction.all())
+      lastUser[parent.field] = field;
+  }
+  for (const std::uint32_t field : fields) {
     for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk) {
       if (stop.stop_requested()) return stopped();
       if (Status s = applyFieldBlock(log, refiner, chunk, field); !s) return s;
     }
+    whole(field);
+    for (auto at = lastUser.begin(); at != lastUser.end();) {
+      if (at->second != field) {
+        ++at;
+        continue;
+      }
+      refiner.forgetField(at->first);
+      at = lastUser.erase(at);
+    }
+  }
   return {};
 }
 
@@ -164,18 +186,19 @@ Result<Bytes> makeSeries(const LevelRequest& request, const std::stop_token& sto
   const std::optional<PointInCell> place =
       cellAtPoint(refiner.points(), refiner.tetrahedra(), point);
   if (!place) return isOutside(request, refiner.points(), lattice);
-  if (Status s = applyFields(request, refiner, stop); !s) return std::unexpected(s.error());
 
   std::string name;
   std::vector<Instant> instants;
-  for (const std::uint32_t f : request.fields) {
+  const auto take = [&](std::uint32_t f) {
+    if (std::ranges::find(request.fields, f) == request.fields.end()) return;
     const ManifestField& field = manifest.fields[f];
     const std::optional<InstantName> instant = instantName(field.name);
     name = instant ? instant->series : field.name;
     instants.push_back(
         {instant ? std::optional(instant->time) : std::nullopt,
          valuesAt(field, refiner.fieldValues(f), *place, refiner.tetrahedra()[place->cell])});
-  }
+  };
+  if (Status s = eachField(request, refiner, stop, take); !s) return std::unexpected(s.error());
   std::ranges::sort(instants, {}, &Instant::time);
   const std::string text = request.form == LevelForm::kCsv
                                ? csvText(request, name, instants)

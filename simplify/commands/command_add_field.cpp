@@ -59,6 +59,7 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   AddFieldsOptions options;
   options.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
+  options.kept = *kept;
   options.progress = [&](double fraction) { progress.update(fraction); };
   const Result<AddedFields> added = addFields(log->file, read->mesh, options);
   if (!added) return std::unexpected(added.error());

@@ -8,6 +8,7 @@
 
 #include "proto/field_key.h"
 #include "proto/limits.h"
+#include "proto/series.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
@@ -45,16 +46,23 @@ std::vector<double> timesOf(const ParsedWords& parsed, std::size_t files) {
   return out;
 }
 
-/// The last time of each series of the log, by association and name.
-using LastTimes = std::map<std::pair<std::string, std::string>, double>;
+/// The end of a series: its last time, and what its instants have in common.
+struct SeriesEnd {
+  double time = 0;
+  std::uint32_t components = 1;
+  std::string type;
+};
+/// By association and name.
+using SeriesEnds = std::map<std::pair<std::string, std::string>, SeriesEnd>;
 
-LastTimes lastTimesOf(const Manifest& manifest) {
-  LastTimes out;
+SeriesEnds seriesEndsOf(const Manifest& manifest) {
+  SeriesEnds out;
   for (const ManifestField& field : manifest.fields) {
     const auto name = instantName(field.name);
     if (!name) continue;
-    const auto at = out.try_emplace({field.association, std::string(name->series)}, name->time);
-    at.first->second = std::max(at.first->second, name->time);
+    const auto at = out.try_emplace({field.association, std::string(name->series)},
+                                    SeriesEnd{name->time, field.components, field.type});
+    at.first->second.time = std::max(at.first->second.time, name->time);
   }
   return out;
 }
@@ -74,44 +82,65 @@ Status nameInstants(TetMesh& mesh, const std::string& file, std::optional<double
   return {};
 }
 
-/// Leaves the fields that the log has no series of, unless they were asked for. Errors: not-found
-/// (none is left), bad-value (an instant that is not behind the last one).
-Status keepInstants(TetMesh& mesh, const std::string& file, bool asked, LastTimes& last) {
-  std::string left;
-  std::erase_if(mesh.fields, [&](const MeshField& field) {
-    const auto name = instantName(field.name);
-    const bool isKnown = last.contains({field.association, std::string(name->series)});
-    if (!isKnown && !asked) left += (left.empty() ? "" : ", ") + field.name;
-    return !isKnown && !asked;
-  });
-  if (mesh.fields.empty())
-    return fail(ErrorCode::kNotFound,
-                file + " holds no instant of a series of the log" +
-                    (left.empty() ? "" : " (it has " + left + ")") +
-                    "; name others with --fields");
-  std::ranges::sort(mesh.fields, {}, [](const MeshField& field) {
-    return std::tuple(instantName(field.name)->time, field.association, field.name);
-  });
-  for (const MeshField& field : mesh.fields) {
-    const auto name = instantName(field.name);
-    const auto at = last.try_emplace({field.association, std::string(name->series)}, name->time);
-    if (!at.second && name->time <= at.first->second)
-      return fail(ErrorCode::kBadValue,
-                  file + ": " + field.name + " is not behind the last instant, " +
-                      timeText(at.first->second) + "; give steps in the order of their times");
-    at.first->second = name->time;
-  }
+/// Puts an instant behind the end of its series. Errors: bad-input (another type or number of
+/// components), bad-value (an instant that is not behind the last one).
+Status append(MeshField& field, const std::string& file, SeriesEnds& ends) {
+  const auto name = instantName(field.name);
+  const auto at = ends.try_emplace({field.association, std::string(name->series)},
+                                   SeriesEnd{name->time, field.components, field.type});
+  SeriesEnd& end = at.first->second;
+  if (at.second) return {};
+  const bool areFloats = isFloatType(field.type) && isFloatType(end.type);
+  if (field.components != end.components || (field.type != end.type && !areFloats))
+    return fail(ErrorCode::kBadInput, file + ": " + field.name + " has " +
+                                          std::to_string(field.components) + " components of " +
+                                          field.type + ", its series in the log " +
+                                          std::to_string(end.components) + " of " + end.type +
+                                          "; write it as the earlier steps are");
+  if (name->time <= end.time || isSameTime(name->time, end.time))
+    return fail(ErrorCode::kBadValue, file + ": " + field.name +
+                                          " is not behind the last instant, " + timeText(end.time) +
+                                          "; give steps in the order of their times");
+  if (field.type != end.type && end.type == "float32")
+    for (double& value : field.values) value = static_cast<float>(value);
+  field.type = end.type;
+  end.time = name->time;
   return {};
 }
 
-/// Adds windows of instants, so that no more than one is in memory at once.
+/// Leaves the fields of which the log has a series; all where they were `asked` for. Errors:
+/// not-found (none is left), append's.
+Status keepInstants(TetMesh& mesh, const std::string& file, bool asked, SeriesEnds& ends,
+                    std::vector<std::string>& notes) {
+  std::string left;
+  std::erase_if(mesh.fields, [&](const MeshField& field) {
+    const auto name = instantName(field.name);
+    const bool stays = asked || ends.contains({field.association, std::string(name->series)});
+    if (!stays) left += (left.empty() ? "" : ", ") + field.name;
+    return !stays;
+  });
+  if (mesh.fields.empty())
+    return fail(ErrorCode::kNotFound, file + " holds no instant of a series of the log" +
+                                          (left.empty() ? "" : " (it has " + left + ")") +
+                                          "; name others with --fields");
+  if (!left.empty())
+    notes.push_back(file + ": left out, since the log has no such series: " + left +
+                    "; --fields adds them");
+  std::ranges::sort(mesh.fields, {}, [](const MeshField& field) {
+    return std::tuple(instantName(field.name)->time, field.association, field.name);
+  });
+  for (MeshField& field : mesh.fields)
+    if (Status s = append(field, file, ends); !s) return s;
+  return {};
+}
+
+/// Adds files in windows, so that the values of no more than one window are in memory at once.
 class Windows {
  public:
   explicit Windows(FieldAdder& adder) : adder_(adder) {}
 
   Status take(TetMesh&& mesh) {
-    const bool isSame =
-        mesh.points == pending_.points && mesh.tetrahedra == pending_.tetrahedra;
+    const bool isSame = mesh.points == pending_.points && mesh.tetrahedra == pending_.tetrahedra;
     if (!isSame)
       if (Status s = flush(); !s) return s;
     if (pending_.fields.empty()) {
@@ -145,7 +174,8 @@ struct Request {
 Result<AddedFields> addFiles(const OpenedLog& log, const Request& request, Progress& progress) {
   Result<FieldAdder> adder = FieldAdder::make(log.file, request.adding);
   if (!adder) return std::unexpected(adder.error());
-  LastTimes last = lastTimesOf(log.manifest);
+  SeriesEnds ends = seriesEndsOf(log.manifest);
+  std::vector<std::string> notes;
   Windows windows(*adder);
   for (std::size_t i = 0; i < request.files.size(); ++i) {
     const std::string& file = request.files[i];
@@ -154,14 +184,17 @@ Result<AddedFields> addFiles(const OpenedLog& log, const Request& request, Progr
     if (!read) return std::unexpected(read.error());
     const auto time = request.times.empty() ? std::nullopt : std::optional(request.times[i]);
     if (Status s = nameInstants(read->mesh, file, time); !s) return std::unexpected(s.error());
-    if (Status s = keepInstants(read->mesh, file, request.reading.fields.has_value(), last); !s)
+    if (Status s = keepInstants(read->mesh, file, request.reading.fields.has_value(), ends, notes);
+        !s)
       return std::unexpected(s.error());
     if (const auto cleaned = cleanMesh(read->mesh); !cleaned)
       return std::unexpected(cleaned.error());
     if (Status s = windows.take(std::move(read->mesh)); !s) return std::unexpected(s.error());
   }
   if (Status s = windows.flush(); !s) return std::unexpected(s.error());
-  return adder->take();
+  AddedFields out = adder->take();
+  out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
+  return out;
 }
 
 /// A line a series: its new instants and their bytes.
@@ -237,9 +270,11 @@ int runAddSteps(const Words& words, Console& console) {
   const ParsedWords parsed(
       words,
       {"add-steps", "add-steps LOG.qtet FILE... [--times T,T] [-o OUT.qtet]",
-       "Adds time steps of a simulation that goes on behind those that the log has. Each file holds "
+       "Adds time steps of a simulation that goes on behind those that the log has. Each file "
+       "holds "
        "one step or several, of the log's own mesh.\n"
-       "Steps are read in windows of eight, and coded as differences to each other and to the log's "
+       "Steps are read in windows of eight, and coded as differences to each other and to the "
+       "log's "
        "last one. All blocks of the log stay as they\nare, byte for byte.\n"
        "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
        "(keys), files, added [as of add-field], notes.",

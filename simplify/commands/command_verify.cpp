@@ -71,7 +71,8 @@ Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
   if (!log) return std::unexpected(log.error());
   progress.stage("decoding");
   const Result<Refiner> refiner = decodeVerified(
-      log->file, log->manifest, [&](double fraction) { return progress.update(fraction), true; });
+      log->file, log->manifest, [&](double fraction) { return progress.update(fraction), true; },
+      parsed.has("against") ? Verified::kFields : Verified::kMesh);
   if (!refiner) return std::unexpected(refiner.error());
   const ManifestLevel& finest = log->manifest.levels.back();
   OrderedJson report = {{"ok", true},

@@ -6,6 +6,7 @@
 
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
+#include "proto/limits.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
 #include "simplify/mesh/history_levels.h"
@@ -78,7 +79,9 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
     depths_.push_back(depthOf(log_.fields()[f].prediction, depths_));
     const FieldInfo info = infoOf(manifest_.fields[f]);
     const auto name = instantName(info.name);
-    if (!name) continue;
+    const bool stays =
+        !options_.kept || std::ranges::find(*options_.kept, f) != options_.kept->end();
+    if (!name || !stays) continue;
     const SeriesKey key{info.association, std::string(name->series)};
     const auto at = last_.find(key);
     if (at == last_.end() || at->second.time < name->time) last_[key] = {info, name->time, f, {}};
@@ -217,7 +220,10 @@ Status FieldAdder::code(std::vector<Item> items) {
     if (last.info.name.empty() || last.time < name->time)
       last = {item.info, name->time, numbers.back(), std::move(item.completed)};
   }
-  const Result<std::size_t> differences = toTimeDifferences(h);
+  std::vector<std::size_t> rows;  // of the instants that are there already
+  for (const std::size_t number : numbers)
+    if (rows.size() < before) rows.push_back(depths_[number]);
+  const Result<std::size_t> differences = toTimeDifferences(h, {}, {}, rows);
   if (!differences) return std::unexpected(differences.error());
   for (std::size_t i = before; i < numbers.size(); ++i) {
     TimePrediction prediction = h.fields[i].prediction;
@@ -236,6 +242,10 @@ Status FieldAdder::code(std::vector<Item> items) {
 }
 
 Status FieldAdder::add(const TetMesh& mesh) {
+  const std::size_t kept = options_.kept ? options_.kept->size() : manifest_.fields.size();
+  if (kept + added_.fields.size() + mesh.fields.size() > kMaxFields)
+    return fail(ErrorCode::kLimitExceeded,
+                "the log would have more than 1,024 fields; remove some first");
   if (Status s = matchTo(mesh); !s) return s;
   Result<std::vector<Item>> items = itemsOf(mesh);
   if (!items) return std::unexpected(items.error());

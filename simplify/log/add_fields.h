@@ -23,7 +23,10 @@ struct AddFieldsOptions {
   int fieldBits = 12;
   Effort effort = Effort::kLevels;  ///< for measuring, where the log knows the errors of its levels
   int threads = 1;
-  std::function<void(double)> progress;  ///< fraction done, of make() and of each add()
+  /// The log's fields that stay, as withFields takes them; all without it. Nothing is predicted
+  /// from another one.
+  std::optional<std::vector<std::uint32_t>> kept{};
+  std::function<void(double)> progress{};  ///< fraction done, of make() and of each add()
 };
 
 struct AddedFields {
@@ -37,11 +40,11 @@ class FieldAdder {
   [[nodiscard]] static Result<FieldAdder> make(const LogFile& log, const AddFieldsOptions& options);
 
   /// Adds the fields of `mesh` as blocks for the log, whose last level must be the mesh; its
-  /// geometry stays as it is. Instants NAME@TIME are coded as differences to each other. They rest
-  /// on the last instant of their series so far, too, where they come behind it. A log of one mesh
-  /// after the other needs the memory of one. Errors: matchMesh's, quantiseField's, bad-value (a
-  /// position off the log's lattice), and all that decoding gives; after one the adder is of no
-  /// use. REQUIRES: a mesh that cleanMesh has passed.
+  /// geometry stays as it is. Instants NAME@TIME are coded as differences to each other, and to the
+  /// last instant before them that the log has or that was added. Only this mesh's values are held
+  /// in memory, and those of such last instants. Errors: matchMesh's, quantiseField's, bad-value (a
+  /// position off the log's lattice), limit-exceeded (too many fields), and all that decoding
+  /// gives; after one the adder is of no use. REQUIRES: a mesh that cleanMesh has passed.
   [[nodiscard]] Status add(const TetMesh& mesh);
   /// All that was added. REQUIRES: called once and last.
   [[nodiscard]] AddedFields take() { return std::move(added_); }

@@ -65,8 +65,8 @@ class FinestValues {
         gathered(history_.values[f], info.components, historyElements(info));
     for (std::size_t i = 0; !info.prediction.isNone() && i < values.size(); ++i)
       if (values[i] != kMissing)
-        values[i] += static_cast<std::int32_t>(info.prediction.predict(
-            [&](std::uint16_t parent) { return values_[parent][i]; }, kMissing));
+        values[i] = info.prediction.restore(
+            values[i], [&](std::uint16_t parent) { return values_[parent][i]; }, kMissing);
     return values_.emplace_back(std::move(values));
   }
   [[nodiscard]] std::span<const std::uint32_t> historyElements(const FieldInfo& info) const {

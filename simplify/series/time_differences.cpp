@@ -68,10 +68,15 @@ bool haveOneScale(const FieldInfo& a, const FieldInfo& b) {
 
 class Chooser {
  public:
-  Chooser(FusionHistory& history, const Series& series) : history_(history), series_(series) {}
+  Chooser(FusionHistory& history, const Series& series, std::span<const std::size_t> rows)
+      : history_(history), series_(series), rows_(rows) {}
 
   void choose(const InstantStep& step) {
     const std::size_t f = series_.fields[step.instant];
+    if (f < rows_.size()) {
+      anchorsInARow_ = rows_[f];
+      return;
+    }
     if (history_.fields[f].bits > kMostBits) return;
     best_ = {};
     least_ = bitsOf(history_, f, best_);
@@ -123,6 +128,7 @@ class Chooser {
 
   FusionHistory& history_;
   const Series& series_;
+  std::span<const std::size_t> rows_;
   TimePrediction best_;
   std::uint64_t least_ = 0;
   std::size_t anchorsInARow_ = 0;
@@ -131,12 +137,13 @@ class Chooser {
 }  // namespace
 
 Result<std::size_t> toTimeDifferences(FusionHistory& history, const std::stop_token& stop,
-                                      const std::function<void(double)>& progress) {
+                                      const std::function<void(double)>& progress,
+                                      std::span<const std::size_t> rows) {
   const std::vector<Series> all = seriesOf(std::span<const FieldInfo>(history.fields));
   std::size_t instants = 0, done = 0;
   for (const Series& series : all) instants += series.fields.size();
   for (const Series& series : all) {
-    Chooser chooser(history, series);
+    Chooser chooser(history, series, rows);
     for (const InstantStep& step : decodingOrder(series.fields.size())) {
       if (stop.stop_requested()) return cancelled();
       chooser.choose(step);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <stop_token>
 
 #include "codec/record/fusion_history.h"
@@ -16,9 +17,10 @@ namespace qtet {
 /// Only instants of one bits, step and minimum predict each other. Its values become what is left,
 /// and its FieldInfo says of what. `progress` gets fractions of the work. Returns how many instants
 /// became differences. Errors: cancelled; the history is then of no use. REQUIRES: series in the
-/// order of decoding (orderSeries).
+/// order of decoding (orderSeries). The first rows.size() fields stay as they are: instants that a
+/// log has already. rows[f] is how many predictions field f rests on there, one on the other.
 [[nodiscard]] Result<std::size_t> toTimeDifferences(
     FusionHistory& history, const std::stop_token& stop = {},
-    const std::function<void(double)>& progress = {});
+    const std::function<void(double)>& progress = {}, std::span<const std::size_t> rows = {});
 
 }  // namespace qtet

@@ -49,6 +49,18 @@ TEST(FileSpool, saysWhichFolderIsNotThere) {
   EXPECT_NE(spool.error().message.find("no does not exist"), std::string::npos);
 }
 
+TEST(FileSpool, liesBehindSymbolicLinks) {
+  const fs::path folder = testing::freshFolder("spool-link");
+  fs::create_directory(folder / "real");
+  fs::create_symlink(folder / "real" / "part.qtet", folder / "link.qtet");
+  EXPECT_TRUE(fileSpoolBeside(folder / "link.qtet"));
+  fs::remove_all(folder / "real");
+  const auto spool = fileSpoolBeside(folder / "link.qtet");
+  ASSERT_FALSE(spool);
+  EXPECT_NE(spool.error().message.find("real does not exist"), std::string::npos)
+      << spool.error().message;
+}
+
 /// A disk that is full after so many bytes.
 class FullDisk final : public FileCalls {
  public:

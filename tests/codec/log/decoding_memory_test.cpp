@@ -23,7 +23,7 @@ void compare(const LogFile& log, const std::string& what, double maxTimes) {
   ASSERT_TRUE(manifest) << what;
   const auto foretold = static_cast<double>(decodingBytes(log.index()));
   const auto taken = static_cast<double>(testing::peakBytesOf([&] {
-    const Result<Refiner> decoded = decodeVerified(log, *manifest);
+    const Result<Refiner> decoded = decodeVerified(log, *manifest, {}, Verified::kFields);
     ASSERT_TRUE(decoded) << what << decoded.error().text();
   }));
   EXPECT_LE(taken, foretold) << what;
@@ -104,6 +104,26 @@ TEST(DecodeVerified, endsBeforeTheNextLevelWhereNobodyWaits) {
     EXPECT_EQ(decoded.error().code, ErrorCode::kIo);
     EXPECT_EQ(left, -1) << "it was asked again";
   }
+}
+
+TEST(DecodeVerified, forgetsFieldsThatNobodyAsksFor) {
+  LatticeMesh mesh = testing::soundMesh(8, 1);
+  for (int copy = 0; copy < 40; ++copy)
+    mesh.fields.push_back(mesh.fields[1]), mesh.values.push_back(mesh.values[1]),
+        mesh.fields.back().name += std::to_string(copy);
+  const auto encoded = encodeLog(simplify(mesh, {}).value(), {});
+  ASSERT_TRUE(encoded) << encoded.error().text();
+  const LogFile log = LogFile::fromBytes(encoded->bytes).value();
+  const Manifest manifest = manifestOf(log.index()).value();
+  const auto peakOf = [&](Verified left) {
+    return testing::peakBytesOf([&] {
+      const Result<Refiner> decoded = decodeVerified(log, manifest, {}, left);
+      ASSERT_TRUE(decoded) << decoded.error().text();
+      EXPECT_EQ(decoded->fieldValues(5).empty(), left == Verified::kMesh);
+    });
+  };
+  const std::size_t bytesOfFields = 40 * mesh.values[1].size() * sizeof(std::int32_t);
+  EXPECT_LT(peakOf(Verified::kMesh), peakOf(Verified::kFields) - bytesOfFields / 2);
 }
 
 TEST(DecodeVerified, aFieldsIntegersLieWithinTheBitsThatTheManifestSays) {

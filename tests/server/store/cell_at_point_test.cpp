@@ -43,6 +43,32 @@ TEST(CellAtPoint, aPointOutsideByAStepIsTheCellsAndNoFurtherOne) {
   EXPECT_FALSE(cellAtPoint(kPoints, kCell, {6, 6, 0})) << "within the box, 1.4 steps outside";
 }
 
+// A boundary layer's cells are flat. The corner opposite to the wall is far along it.
+TEST(CellAtPoint, aPointOverAFlatCellIsNearItsFaceNotItsCorner) {
+  const std::vector<LatticePoint> points = {{0, 0, 0}, {300, 0, 0}, {0, 300, 0}, {290, 5, 3}};
+  for (const double outside : {0.5, 0.99}) {
+    const auto found = cellAtPoint(points, kCell, {20, 30, -outside});
+    ASSERT_TRUE(found) << outside;
+    EXPECT_EQ(found->weights[3], 0);
+    EXPECT_NEAR(found->weights[1], 20 / 300.0, 1e-12);
+    EXPECT_NEAR(found->weights[2], 30 / 300.0, 1e-12);
+  }
+  EXPECT_FALSE(cellAtPoint(points, kCell, {20, 30, -1.01}));
+  const auto beside = cellAtPoint(points, kCell, {150, -0.5, -0.5});
+  ASSERT_TRUE(beside) << "nearest to an edge";
+  EXPECT_NEAR(beside->weights[1], 0.5, 1e-12);
+}
+
+// The determinants of coplanar corners are noise where the point is no integer.
+TEST(CellAtPoint, aCellThatIsFlatButForRoundingHoldsNothingFar) {
+  const std::vector<LatticePoint> points = {
+      {3, 7, 11}, {103, 57, 36}, {53, 132, 68}, {153, 182, 93}};
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.37 * i;
+    EXPECT_FALSE(cellAtPoint(points, kCell, {80.1 + t / 10, 90.7 - t / 7, 200.3 + t})) << i;
+  }
+}
+
 TEST(CellAtPoint, theCellThatHoldsItGoesBeforeANearOne) {
   std::vector<LatticePoint> points = kPoints;
   points.push_back({0, 0, -10});

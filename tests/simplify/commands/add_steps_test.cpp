@@ -1,6 +1,6 @@
 // `qtet add-steps`: the steps of a run that goes on.
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/read_mesh.h"
@@ -38,18 +38,25 @@ class AddStepsTool : public Tool {
       out += "<DataSet timestep=\"" + timeText(0.5 * step) + "\" file=\"" + fileOf(step) + "\"/>";
     return out + "</Collection></VTKFile>";
   }
-  /// Expects the values of every step below `end` in the log.
+  static std::array<int, 3> placeOf(const Position& p) {
+    const auto of = [](double x) { return static_cast<int>(std::lround(1024 * x)); };
+    return {of(p[0]), of(p[1]), of(p[2])};
+  }
+  /// Expects the values of every third step below `end` in the log.
   void expectSteps(const std::string& log, int end) {
-    for (int step = 0; step < end; step += 3) {
-      const Ran ran = run("extract " + log + " --ratio 1 --time " + timeText(0.5 * step) +
-                          " -o out.vtu");
+    for (int step = 0; step < end; step += 3) {  // every value, by its point
+      const Ran ran =
+          run("extract " + log + " --ratio 1 --time " + timeText(0.5 * step) + " -o out.vtu");
       ASSERT_EQ(ran.code, 0) << ran.err;
       const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
-      const auto sum = [](const std::vector<double>& values) {
-        return std::accumulate(values.begin(), values.end(), 0.0);
-      };
-      const double expected = sum(at(step).fields[0].values);
-      EXPECT_NEAR(sum(mesh.fields[0].values), expected, 1e-3 * std::abs(expected)) << step;
+      std::map<std::array<int, 3>, double> values;  // by place, in 1 / 1024
+      for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        values[placeOf(mesh.points[i])] = mesh.fields[0].values[i];
+      ASSERT_EQ(values.size(), mesh_.points.size());
+      const TetMesh expected = at(step);
+      for (std::size_t i = 0; i < mesh_.points.size(); ++i)
+        ASSERT_NEAR(values.at(placeOf(mesh_.points[i])), expected.fields[0].values[i], 1e-3)
+            << step << " " << i;
     }
     EXPECT_EQ(run("verify " + log).code, 0);
   }
@@ -90,7 +97,13 @@ TEST_F(AddStepsTool, whatCannotBeAddedIsRefusedAndTheLogStays) {
   expectFailure("add-steps log.qtet run.pvd --time 2:3 --times 5", 1, "has times of its own");
   expectFailure("add-steps log.qtet step-5.vtu step-6.vtu --times 3,2.5", 1,
                 "T@2.5 is not behind the last instant, 3");
+  expectFailure("add-steps log.qtet step-5.vtu --times 1.0000000000000002", 1, "not behind");
   TetMesh other = at(5);
+  other.fields[0].type = "int32";
+  for (double& value : other.fields[0].values) value = std::round(value);
+  write("other.vtu", other);
+  expectFailure("add-steps log.qtet other.vtu --times 2", 1, "T@2 has 1 components of int32");
+  other = at(5);
   other.fields[0].name = "U";
   write("other.vtu", other);
   expectFailure("add-steps log.qtet other.vtu --times 2", 1, "it has U@2");
@@ -99,6 +112,25 @@ TEST_F(AddStepsTool, whatCannotBeAddedIsRefusedAndTheLogStays) {
   write("other.vtu", other);
   expectFailure("add-steps log.qtet other.vtu --times 2", 1, "point");
   EXPECT_EQ(contentOf(folder_ / "log.qtet"), before);
+}
+
+TEST_F(AddStepsTool, floatsOfTheOtherWidthJoinTheirSeries) {
+  TetMesh other = at(3);
+  other.fields[0].type = other.fields[0].type == "float32" ? "float64" : "float32";
+  other.fields.push_back(other.fields[0]);
+  other.fields[1].name = "U";
+  write("other.vtu", other);
+  const Ran ran = run("add-steps log.qtet other.vtu --times 1.5");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.err.find("no such series: U@1.5"), std::string::npos) << ran.err;
+  expectSteps("log.qtet", 4);
+}
+
+// The instants that go must not be what the new ones rest on.
+TEST_F(AddStepsTool, addFieldReplacesInstantsThatLaterOnesCouldRestOn) {
+  const Ran ran = run("add-field log.qtet --from run.pvd --time 0:3 --replace -o new.qtet");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  expectSteps("new.qtet", 7);
 }
 
 TEST_F(AddStepsTool, aSeriesThatTheLogLacksIsAddedByName) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
@@ -62,7 +63,7 @@ class AddSteps : public ::testing::Test {
   }
   [[nodiscard]] LogFile log() const { return LogFile::fromBytes(bytes_).value(); }
 
-  static Bytes with(const LogFile& log, AddedFields added) {
+  static Bytes with(const LogFile& log, const AddedFields& added) {
     std::vector<std::uint32_t> kept(log.fields().size());
     std::iota(kept.begin(), kept.end(), 0u);
     return withFields(log, kept, added.fields).value().together();
@@ -130,10 +131,10 @@ TEST_F(AddSteps, theHistorysValuesAreThoseOfTheWriter) {
 
 TEST_F(AddSteps, aWindowIsCodedAsDifferences) {
   const LogFile file = log();
-  AddedFields added = addFields(file, steps(kBefore, 11)).value();
-  EXPECT_EQ(std::ranges::count_if(added.fields,
-                                  [](const NewField& f) { return f.prediction.isNone(); }),
-            0);
+  const AddedFields added = addFields(file, steps(kBefore, 11)).value();
+  EXPECT_EQ(
+      std::ranges::count_if(added.fields, [](const NewField& f) { return f.prediction.isNone(); }),
+      0);
   EXPECT_LT(added.fields.front().prediction.parents[0].field, file.fields().size());
   std::size_t alone = 0;
   for (std::size_t i = kBefore; i < 11; ++i) {
@@ -142,7 +143,7 @@ TEST_F(AddSteps, aWindowIsCodedAsDifferences) {
     alone += bytesOf(addFields(file, one).value());
   }
   EXPECT_LT(bytesOf(added), alone - alone / 5) << "blocks of some ten bytes each";
-  const Bytes all = with(file, std::move(added));
+  const Bytes all = with(file, added);
   const LogFile after = LogFile::fromBytes(all).value();
   expectAll(after, 11);
   for (std::uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk)
@@ -175,7 +176,14 @@ TEST_F(AddSteps, severalWindowsOfOneAdderAreOneLog) {
   FieldAdder adder = FieldAdder::make(file, {}).value();
   ASSERT_TRUE(adder.add(steps(kBefore, 9)));
   ASSERT_TRUE(adder.add(steps(9, kInstants)));
-  expectAll(LogFile::fromBytes(with(file, adder.take())).value(), kInstants);
+  const AddedFields added = adder.take();
+  const std::size_t second = file.fields().size() + (9 - kBefore);
+  std::size_t across = 0;
+  for (const NewField& field : std::span(added.fields).subspan(9 - kBefore))
+    for (const TimePrediction::Parent& parent : field.prediction.all())
+      across += parent.field < second;
+  EXPECT_GT(across, 0u) << "nothing is predicted across windows";
+  expectAll(LogFile::fromBytes(with(file, added)).value(), kInstants);
 }
 
 TEST_F(AddSteps, valuesBeyondTheSeriesScaleGetTheirOwn) {
