@@ -44,7 +44,9 @@ export function makeInputs(bin, folder) {
   qtet('sample', 'box', '-o', 'box.vtu');
   withFields(folder, 'part.vtu', ['Density']);
   withFields(folder, 'part-with-stress.vtu', ['Stress']);
-  withFields(folder, 'step.vtu', ['T', 'U']);
+  for (const file of ['step.vtu', 'step-17.vtu', 'step-18.vtu']) {
+    withFields(folder, file, ['T', 'U']);
+  }
   const step = (time) => `<DataSet timestep="${time}" file="step.vtu"/>`;
   const steps = [0, 0.25, 0.5].map(step).join('');
   const series = `<VTKFile type="Collection"><Collection>${steps}</Collection></VTKFile>\n`;
