@@ -24,6 +24,13 @@ Status systemError(const std::string& what, const fs::path& path, int number) {
               "cannot " + what + " " + path.string() + ": " + std::strerror(number));
 }
 
+Result<fs::path> folderOf(const fs::path& path) {
+  fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (std::error_code code; fs::is_directory(folder, code)) return folder;
+  return fail(ErrorCode::kNotFound, "the folder " + folder.string() +
+                                        " does not exist; make it first or choose another output");
+}
+
 /// Owns a descriptor.
 class Descriptor {
  public:
@@ -158,6 +165,11 @@ Result<fs::path> fileBehindLinks(const fs::path& asked) {
   return path;
 }
 
+Result<fs::path> folderBehindLinks(const fs::path& path) {
+  const Result<fs::path> behind = fileBehindLinks(path);
+  return behind ? folderOf(*behind) : behind;
+}
+
 Status writeFileAtomically(const fs::path& asked, ByteView bytes, FileCalls& calls) {
   return writeFileAtomically(asked, [bytes](const ByteSink& sink) { return sink(bytes); }, calls);
 }
@@ -167,14 +179,10 @@ Status writeFileAtomically(const fs::path& asked, const ByteSource& content, Fil
   const Result<fs::path> behind = fileBehindLinks(asked);
   if (!behind) return std::unexpected(behind.error());
   const fs::path& path = *behind;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::error_code code;
-  if (!fs::is_directory(folder, code)) {
-    return fail(ErrorCode::kNotFound,
-                "the folder " + folder.string() +
-                    " does not exist; make it first or choose another output");
-  }
-  if (fs::is_directory(path, code)) {
+  const Result<fs::path> found = folderOf(path);
+  if (!found) return std::unexpected(found.error());
+  const fs::path& folder = *found;
+  if (std::error_code code; fs::is_directory(path, code)) {
     return fail(ErrorCode::kIo, path.string() + " is a folder; give the name of a file");
   }
   struct stat old{};

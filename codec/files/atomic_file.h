@@ -35,6 +35,9 @@ enum class Leftovers : std::uint8_t { kRemove, kKeep };
 /// there or not. Errors: io (a circle of links).
 [[nodiscard]] Result<std::filesystem::path> fileBehindLinks(const std::filesystem::path& path);
 
+/// The folder of that file. Errors: also not-found (there is no such folder).
+[[nodiscard]] Result<std::filesystem::path> folderBehindLinks(const std::filesystem::path& path);
+
 /// Removes from `folder` the unfinished files of writers that were killed, if `isOurs` accepts
 /// their names, of at most 190 bytes. Each writer locks its own file, so the files of running
 /// writers stay, in every process. A file that cannot be removed does no harm.

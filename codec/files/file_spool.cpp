@@ -76,16 +76,11 @@ int openNameless(const fs::path& folder, FileCalls& calls) {
 }  // namespace
 
 Result<std::unique_ptr<ByteSpool>> fileSpoolBeside(const fs::path& beside, FileCalls& calls) {
-  const Result<fs::path> target = fileBehindLinks(beside);
-  if (!target) return std::unexpected(target.error());
-  const fs::path folder = target->has_parent_path() ? target->parent_path() : fs::path(".");
-  const int file = openNameless(folder, calls);
-  if (file < 0 && errno == ENOENT)
-    return fail(ErrorCode::kNotFound,
-                "the folder " + folder.string() +
-                    " does not exist; make it first or choose another output");
-  if (file < 0) return failed("make", folder);
-  return std::make_unique<FileSpool>(file, folder, calls);
+  const Result<fs::path> folder = folderBehindLinks(beside);
+  if (!folder) return std::unexpected(folder.error());
+  const int file = openNameless(*folder, calls);
+  if (file < 0) return failed("make", *folder);
+  return std::make_unique<FileSpool>(file, *folder, calls);
 }
 
 }  // namespace qtet

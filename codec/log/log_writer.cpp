@@ -8,6 +8,7 @@
 #include "codec/log/level_runs.h"
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
+#include "codec/log/manifest_field.h"
 #include "codec/log/record_writer.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
@@ -104,9 +105,7 @@ Manifest manifestFor(const FusionHistory& history, const LogWriterOptions& optio
   m.latticeOrigin = history.lattice.origin;
   m.focus = options.focus;
   m.opening = options.opening;
-  for (const FieldInfo& f : history.fields)
-    m.fields.push_back({f.name, f.components, f.type, f.association, f.bits, f.step, f.minimum,
-                        f.range, f.hasMissing});
+  for (const FieldInfo& f : history.fields) m.fields.push_back(manifestFieldOf(f));
   m.levels = levelsOf(added, options.errors);
   return m;
 }

@@ -51,7 +51,7 @@ Status RecordWriter::base() {
   for (const VertexId vertex : coder.vertexOrder) base.points.push_back(history_.points[vertex]);
   base.boundary = boundaryOf(coder.tetrahedra);
   base.tetrahedra = std::move(coder.tetrahedra);
-  if (Status s = start(std::move(base), inOrder, coder.vertexOrder); !s) return s;
+  if (Status s = start(base, inOrder, coder.vertexOrder); !s) return s;
   const std::vector<LatticePoint>& points = mesh().points;
   const auto at = [&](VertexId u, std::uint32_t c) { return points[u][c]; };
   for (VertexId v = 0; v < points.size(); ++v)
@@ -62,15 +62,15 @@ Status RecordWriter::base() {
   return {};
 }
 
-Status RecordWriter::patch(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+Status RecordWriter::patch(const CoarsePart& coarse, std::span<const std::uint32_t> cells,
                            std::span<const VertexId> vertices) {
   assert(history_.fields.empty());
-  return start(std::move(coarse), cells, vertices);
+  return start(coarse, cells, vertices);
 }
 
-Status RecordWriter::start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+Status RecordWriter::start(const CoarsePart& coarse, std::span<const std::uint32_t> cells,
                            std::span<const VertexId> vertices) {
-  if (Status s = mirror_.start(std::move(coarse), cells, vertices); !s) return s;
+  if (Status s = mirror_.start(coarse, cells, vertices); !s) return s;
   for (VertexId v = 0; v < mirror_.vertices().size(); ++v) describer_.place(v);
   added_[0] = mesh().next();
   return {};

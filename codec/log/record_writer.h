@@ -31,7 +31,7 @@ class RecordWriter {
   Status base();
   /// Begins a patch instead, with the coarse part that its reader has: chunk 0 stays empty. `cells`
   /// and `vertices` are the history's. Errors: bad-value. REQUIRES: a history without fields.
-  Status patch(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+  Status patch(const CoarsePart& coarse, std::span<const std::uint32_t> cells,
                std::span<const VertexId> vertices);
   /// Writes the split flag of v in the current level (GrowingMesh::beginLevel). The fusion that its
   /// split undoes, or nullptr. REQUIRES: v may split.
@@ -60,7 +60,7 @@ class RecordWriter {
   }
 
  private:
-  Status start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+  Status start(const CoarsePart& coarse, std::span<const std::uint32_t> cells,
                std::span<const VertexId> vertices);
 
   const FusionHistory& history_;

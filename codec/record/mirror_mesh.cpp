@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <utility>
 
 #include "codec/mesh/boundary.h"
 #include "codec/record/base_coder.h"
@@ -12,7 +11,7 @@ namespace qtet {
 MirrorMesh::MirrorMesh(const FusionHistory& history)
     : history_(history), slots_(history.points.size(), kGhost) {}
 
-Status MirrorMesh::start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+Status MirrorMesh::start(const CoarsePart& coarse, std::span<const std::uint32_t> cells,
                          std::span<const VertexId> vertices) {
   assert(vertices_.empty());
   const auto isGhost = [](const auto& cell) {

@@ -22,7 +22,7 @@ class MirrorMesh {
 
   /// Takes the coarse part, and what the history calls each of its tetrahedra and vertices. Errors:
   /// bad-value (the history's ghost cells are not its boundary). REQUIRES: called once and first.
-  Status start(CoarsePart&& coarse, std::span<const std::uint32_t> cells,
+  Status start(const CoarsePart& coarse, std::span<const std::uint32_t> cells,
                std::span<const VertexId> vertices);
   /// Applies a split of v, which undoes `fusion`: as GrowingMesh::apply. `restored` holds the
   /// history's cell of each of `split.deleted`.

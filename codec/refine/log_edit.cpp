@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,22 +21,23 @@ class Pieces {
   explicit Pieces(const LogFile& log) : log_(log) {}
 
   BlockEntry keep(const BlockEntry& block) {
-    return add(log_.bytes().subspan(static_cast<std::size_t>(block.offset), block.size), block.crc);
+    const auto offset = static_cast<std::size_t>(block.offset);
+    return add({log_.bytes().subspan(offset, block.size), block.offset}, block.crc);
   }
-  BlockEntry add(ByteView block) { return add(block, crc32c(block)); }
+  BlockEntry add(ByteView block) { return add({block, std::nullopt}, crc32c(block)); }
 
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  [[nodiscard]] std::vector<ByteView>& all() { return all_; }
+  [[nodiscard]] std::vector<EditedLog::Piece>& all() { return all_; }
 
  private:
-  BlockEntry add(ByteView block, std::uint32_t crc) {
-    all_.push_back(block);
-    bytes_ += block.size();
-    return {0, static_cast<std::uint32_t>(block.size()), crc};
+  BlockEntry add(const EditedLog::Piece& piece, std::uint32_t crc) {
+    all_.push_back(piece);
+    bytes_ += piece.bytes.size();
+    return {0, static_cast<std::uint32_t>(piece.bytes.size()), crc};
   }
 
   const LogFile& log_;
-  std::vector<ByteView> all_;
+  std::vector<EditedLog::Piece> all_;
   std::uint64_t bytes_ = 0;
 };
 
@@ -85,13 +86,18 @@ Result<TimePrediction> renumbered(const Manifest& manifest, TimePrediction predi
 
 }  // namespace
 
+Status checkFieldCount(std::size_t fields) {
+  return fields <= kMaxFields
+             ? Status{}
+             : fail(ErrorCode::kLimitExceeded,
+                    "the log would have more than 1,024 fields; remove some first");
+}
+
 Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
                              const std::vector<NewField>& added) {
   Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
-  if (kept.size() + added.size() > kMaxFields)
-    return fail(ErrorCode::kLimitExceeded,
-                "the log would have more than 1,024 fields; remove some first");
+  if (Status s = checkFieldCount(kept.size() + added.size()); !s) return std::unexpected(s.error());
   LogIndex index = log.index();
   std::vector<ManifestField> fields;
   index.fields.clear();
@@ -152,12 +158,9 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
 
 Status EditedLog::writeTo(const ByteSink& sink) const {
   if (Status s = sink(head_); !s) return s;
-  const std::uint8_t* const first = log_.bytes().data();
-  const std::uint8_t* const end = first + log_.bytes().size();
-  for (const ByteView block : blocks_) {
-    if (Status s = sink(block); !s) return s;
-    if (std::less_equal<>()(first, block.data()) && std::less<>()(block.data(), end))
-      log_.release(static_cast<std::uint64_t>(block.data() - first), block.size());
+  for (const Piece& piece : blocks_) {
+    if (Status s = sink(piece.bytes); !s) return s;
+    if (piece.offset) log_.release(*piece.offset, piece.bytes.size());
   }
   return {};
 }

@@ -2,7 +2,9 @@
 // blocks and their checksums stay as they are.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,7 +28,13 @@ struct NewField {
 /// A log whose blocks lie in another log and in new fields. Both must outlive it.
 class EditedLog {
  public:
-  EditedLog(const LogFile& log, Bytes head, std::vector<ByteView> blocks)
+  /// A block, and where it lies in the other log if it is one of that.
+  struct Piece {
+    ByteView bytes;
+    std::optional<std::uint64_t> offset;
+  };
+
+  EditedLog(const LogFile& log, Bytes head, std::vector<Piece> blocks)
       : log_(log), head_(std::move(head)), blocks_(std::move(blocks)) {}
 
   /// Header, manifest and table.
@@ -40,8 +48,11 @@ class EditedLog {
  private:
   const LogFile& log_;
   Bytes head_;
-  std::vector<ByteView> blocks_;
+  std::vector<Piece> blocks_;
 };
+
+/// Errors: limit-exceeded (more fields than a log may have).
+[[nodiscard]] Status checkFieldCount(std::size_t fields);
 
 /// The log with the fields `kept` (numbers of its own fields, in the order wanted) and then
 /// `added`. Errors: limit-exceeded (too many fields, a block too large), bad-value (the log's

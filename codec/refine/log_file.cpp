@@ -13,6 +13,7 @@
 
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
+#include "codec/log/manifest_field.h"
 #include "codec/log/value_block.h"
 #include "codec/mesh/mesh.h"
 #include "codec/refine/refiner.h"
@@ -153,11 +154,6 @@ Status checkBlock(const LogFile& log, std::uint32_t chunk, std::uint32_t part) {
               b.offset);
 }
 
-FieldInfo fieldInfo(const ManifestField& f) {
-  return {f.name, f.components, f.type,  f.association, f.bits,
-          f.step, f.minimum,    f.range, f.hasMissing};
-}
-
 }  // namespace
 
 Status LogFile::verifyChecksums() const {
@@ -229,7 +225,7 @@ LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner,
   mesh.tetrahedra.assign(refiner.tetrahedra().begin(), refiner.tetrahedra().end());
   mesh.boundary.assign(refiner.boundary().begin(), refiner.boundary().end());
   for (const std::uint32_t f : fields) {
-    mesh.fields.push_back(fieldInfo(manifest.fields[f]));
+    mesh.fields.push_back(fieldInfoOf(manifest.fields[f]));
     mesh.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
   }
   return mesh;

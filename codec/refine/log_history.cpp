@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "codec/log/log_manifest.h"
@@ -111,66 +112,52 @@ void fuseAll(FusionHistory& h) {
   }
 }
 
-void codePoints(const LogHistory& log, std::uint32_t chunk, const FieldInfo& field,
-                std::span<const std::int32_t> truth, std::vector<std::int32_t>& now, Values& out) {
-  const std::uint32_t n = field.components;
-  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& {
-    return now[std::size_t{v} * n + c];
-  };
+/// The history's integers of a field, `components` a vertex or tetrahedron: an encoder reads them,
+/// a decoder writes them.
+template <bool kEncoding>
+struct HistoryField {
+  std::uint32_t components;
+  bool hasMissing;
+  std::span<std::conditional_t<kEncoding, const std::int32_t, std::int32_t>> values;
+};
+
+/// `now`: the values by slot. A decoder notes a fused vertex's just before it splits; those of the
+/// last level are left in `now`.
+template <bool kEncoding>
+void codePoints(const LogHistory& log, std::uint32_t chunk, const HistoryField<kEncoding>& field,
+                std::vector<std::int32_t>& now, Values& coded) {
+  const std::size_t n = field.components;
+  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return now[v * n + c]; };
+  const auto truth = [&](VertexId v, std::uint32_t c) { return field.values[v * n + c]; };
   if (chunk == 0)
     for (VertexId v = 0; v < log.baseBirths.size(); ++v)
       for (std::uint32_t c = 0; c < n; ++c)
-        at(v, c) = out.codeField<true>(
+        at(v, c) = coded.codeField<kEncoding>(
             field.hasMissing, predictBaseField(log.baseBirths[v], v, c, field.hasMissing, at),
-            truth[std::size_t{log.baseVertices[v]} * n + c]);
-  for (std::uint32_t b = log.chunkBirths[chunk]; b < log.chunkBirths[chunk + 1]; ++b)
-    log.points.code<true>(
-        log.points.births()[b], out, n, at,
-        [&](std::size_t i, std::uint32_t c) { return truth[std::size_t{log.prey[b][i]} * n + c]; },
-        field.hasMissing);
-}
-
-void codeCells(const LogHistory& log, std::uint32_t chunk, const FieldInfo& field,
-               std::span<const std::int32_t> truth, Values& out) {
-  const std::uint32_t n = field.components;
-  for (CellId t = log.chunkCells[chunk]; t < log.chunkCells[chunk + 1]; ++t)
-    for (std::uint32_t c = 0; c < n; ++c) {
-      const auto at = [&](CellId u) { return truth[std::size_t{u} * n + c]; };
-      out.codeField<true>(field.hasMissing, log.cells.predict(t, at), at(t));
-    }
-}
-
-/// The inverse of codePoints: `now` are the values by slot, `out` those of the history's vertices.
-/// Fused vertices get theirs just before they split, the others at the end.
-void decodePoints(const LogHistory& log, std::uint32_t chunk, const FieldShape& field,
-                  std::vector<std::int32_t>& now, Values& in, std::vector<std::int32_t>& out) {
-  const std::uint32_t n = field.components;
-  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& {
-    return now[std::size_t{v} * n + c];
-  };
-  if (chunk == 0)
-    for (VertexId v = 0; v < log.baseBirths.size(); ++v)
-      for (std::uint32_t c = 0; c < n; ++c)
-        at(v, c) = in.codeField<false>(
-            field.hasMissing, predictBaseField(log.baseBirths[v], v, c, field.hasMissing, at), 0);
+            truth(log.baseVertices[v], c));
   const std::vector<Fusion>& fusions = log.history.fusions;
   for (std::uint32_t b = log.chunkBirths[chunk]; b < log.chunkBirths[chunk + 1]; ++b) {
     const Birth& birth = log.points.births()[b];
-    const VertexId fused = fusions[fusions.size() - 1 - b].fused;
-    for (std::uint32_t c = 0; c < n; ++c) out[std::size_t{fused} * n + c] = at(birth.slot, c);
-    log.points.code<false>(
-        birth, in, n, at, [](std::size_t, std::uint32_t) { return 0; }, field.hasMissing);
+    if constexpr (!kEncoding) {
+      const VertexId fused = fusions[fusions.size() - 1 - b].fused;
+      for (std::uint32_t c = 0; c < n; ++c) field.values[fused * n + c] = at(birth.slot, c);
+    }
+    log.points.code<kEncoding>(
+        birth, coded, field.components, at,
+        [&](std::size_t i, std::uint32_t c) { return truth(log.prey[b][i], c); }, field.hasMissing);
   }
 }
 
-void decodeCells(const LogHistory& log, std::uint32_t chunk, const FieldShape& field, Values& in,
-                 std::vector<std::int32_t>& out) {
-  const std::uint32_t n = field.components;
+template <bool kEncoding>
+void codeCells(const LogHistory& log, std::uint32_t chunk, const HistoryField<kEncoding>& field,
+               Values& coded) {
+  const std::size_t n = field.components;
   for (CellId t = log.chunkCells[chunk]; t < log.chunkCells[chunk + 1]; ++t)
     for (std::uint32_t c = 0; c < n; ++c) {
-      const auto at = [&](CellId u) { return out[std::size_t{u} * n + c]; };
-      out[std::size_t{t} * n + c] =
-          in.codeField<false>(field.hasMissing, log.cells.predict(t, at), 0);
+      const auto at = [&](CellId u) { return field.values[u * n + c]; };
+      const std::int32_t value =
+          coded.codeField<kEncoding>(field.hasMissing, log.cells.predict(t, at), at(t));
+      if constexpr (!kEncoding) field.values[t * n + c] = value;
     }
 }
 
@@ -181,15 +168,16 @@ Result<std::vector<std::int32_t>> codedValues(const LogFile& log, const LogHisto
   const bool ofCells = shape.association == Association::kCell;
   const std::size_t elements = ofCells ? history.tetrahedra : history.history.points.size();
   std::vector<std::int32_t> out(elements * shape.components);
+  const HistoryField<false> coded{shape.components, shape.hasMissing, out};
   std::vector<std::int32_t> now(ofCells ? 0 : std::size_t{history.vertices} * shape.components);
   for (std::uint32_t chunk = 0; chunk < log.chunks().size(); ++chunk) {
     const auto block = log.values(chunk, kFirstFieldPart + field);
     if (!block) return std::unexpected(block.error());
     Values in(*block);
     if (ofCells)
-      decodeCells(history, chunk, shape, in, out);
+      codeCells(history, chunk, coded, in);
     else
-      decodePoints(history, chunk, shape, now, in, out);
+      codePoints(history, chunk, coded, now, in);
     if (in.bad() || !in.atEnd())
       return refuseChunk(ErrorCode::kBadValue, chunk, "field values out of range or left over");
   }
@@ -251,14 +239,15 @@ Result<LogHistory> historyOf(const LogFile& log, const std::function<void(double
 Result<std::vector<Bytes>> encodeFieldBlocks(const LogHistory& log, const FieldInfo& field,
                                              std::span<const std::int32_t> values) {
   std::vector<Bytes> out;
+  const HistoryField<true> truth{field.components, field.hasMissing, values};
   std::vector<std::int32_t> now(isCellField(field) ? 0
                                                    : std::size_t{log.vertices} * field.components);
   for (std::uint32_t chunk = 0; chunk + 1 < log.chunkBirths.size(); ++chunk) {
     Values coded;
     if (isCellField(field))
-      codeCells(log, chunk, field, values, coded);
+      codeCells(log, chunk, truth, coded);
     else
-      codePoints(log, chunk, field, values, now, coded);
+      codePoints(log, chunk, truth, now, coded);
     Result<Bytes> block =
         encodeValueBlock(coded.written(), field.components, log.valueCodecs[chunk]);
     if (!block) return std::unexpected(block.error());

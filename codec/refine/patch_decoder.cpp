@@ -1,7 +1,6 @@
 #include "codec/refine/patch_decoder.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace qtet {
 namespace {
@@ -59,8 +58,8 @@ void PatchDecoder::completeLevel() {
   levels_.push_back({mesh.vertices, mesh.tetrahedra, mesh.triangles});
 }
 
-void PatchDecoder::start(CoarsePart&& coarse) {
-  records_.start(std::move(coarse));
+void PatchDecoder::start(const CoarsePart& coarse) {
+  records_.start(coarse);
   completeLevel();
 }
 

@@ -26,7 +26,7 @@ class PatchDecoder {
 
   /// Takes the coarse part, which is level 0. REQUIRES: called once and first; ids in range,
   /// coordinates in the lattice.
-  void start(CoarsePart&& coarse);
+  void start(const CoarsePart& coarse);
   /// Applies the next block, a run of levels. kPartial: up to stopLevel. Errors: bad-value,
   /// truncated, limit-exceeded, io (the gate's no); the mesh is then a part of the block's.
   [[nodiscard]] Result<Extent> read(PatchBlock& block);

@@ -1,7 +1,6 @@
 #include "codec/refine/patch_records.h"
 
 #include <cassert>
-#include <utility>
 
 namespace qtet {
 RecordReader::RecordReader(const PatchKind& kind, const PatchRequests& requests)
@@ -21,7 +20,7 @@ void RecordReader::makeRoom(const Slots& total, std::uint64_t records) {
   ancestry_.points.reserve(records, total.vertices);
 }
 
-void RecordReader::start(CoarsePart&& coarse) {
+void RecordReader::start(const CoarsePart& coarse) {
   assert(mesh_.points.empty());
   // not moved: makeRoom() may have reserved memory for all that is to come
   mesh_.points.assign(coarse.points.begin(), coarse.points.end());

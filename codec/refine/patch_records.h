@@ -41,7 +41,7 @@ class RecordReader {
   void makeRoom(const Slots& total, std::uint64_t records);
   /// Takes the coarse part. REQUIRES: called once and first; ids in range, coordinates in the
   /// lattice.
-  void start(CoarsePart&& coarse);
+  void start(const CoarsePart& coarse);
   /// The coder with which vertex() reads the chunk's records.
   [[nodiscard]] RecordCoder<RangeDecoder> coderOf(PatchBlock& chunk) {
     return {chunk.decoder, models_, mesh_, link_, chunk.positions};

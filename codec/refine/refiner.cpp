@@ -88,7 +88,7 @@ Result<Extent> Refiner::State::readBase(PatchBlock& block) {
   Result<BaseMesh> base = decodeBaseMesh(block, plan.index.positionBits);
   if (!base) return std::unexpected(base.error());
   baseBirths = std::move(base->births);
-  mesh.start(std::move(base->mesh));
+  mesh.start(base->mesh);
   // whoever decodes the rest reads this chunk again, to its end
   if (!kBaseOnly && !block.decoder.atEnd()) return refuseBaseMesh(block);
   return Extent::kWhole;

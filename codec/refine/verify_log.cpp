@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <string>
 #include <vector>
 
+#include "codec/log/last_uses.h"
 #include "codec/refine/log_file.h"
 #include "codec/refine/refiner.h"
 #include "proto/manifest.h"
@@ -67,29 +69,21 @@ class Gate final : public LevelGate {
   double bytes_, done_ = 0;
 };
 
-/// By field: the last field that is predicted from it, or itself.
-std::vector<std::uint32_t> lastUsers(std::span<const FieldShape> fields) {
-  std::vector<std::uint32_t> out(fields.size());
-  for (std::uint32_t f = 0; f < fields.size(); ++f) {
-    out[f] = f;
-    for (const TimePrediction::Parent& parent : fields[f].prediction.all()) out[parent.field] = f;
-  }
-  return out;
-}
-
 /// Decodes the fields of a refiner that has the whole mesh.
 Status verifyFields(const LogFile& log, const Manifest& manifest, Refiner& refiner, Gate& gate,
                     Verified left) {
-  const std::vector<std::uint32_t> users = lastUsers(log.fields());
-  for (std::uint32_t f = 0; f < users.size(); ++f) {
+  std::vector<std::uint32_t> fields(log.fields().size());
+  std::iota(fields.begin(), fields.end(), 0u);
+  const std::vector<std::vector<std::uint32_t>> uses = lastUses(log.fields(), fields);
+  for (const std::uint32_t f : fields) {
     for (std::uint32_t chunk = 0; chunk < log.chunks().size(); ++chunk) {
       if (Status s = applyFieldBlock(log, refiner, chunk, f); !s) return s;
       if (Status s = gate.isDone(log.chunks()[chunk].blocks[kFirstFieldPart + f].size); !s)
         return s;
     }
     if (Status s = checkBits(manifest, refiner, f); !s) return s;
-    for (std::uint32_t g = 0; left == Verified::kMesh && g <= f; ++g)
-      if (users[g] == f) refiner.forgetField(g);
+    if (left == Verified::kFields) continue;
+    for (const std::uint32_t used : uses[f]) refiner.forgetField(used);
   }
   return {};
 }

@@ -5,13 +5,12 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "codec/log/log_index.h"
+#include "codec/log/last_uses.h"
 #include "codec/mesh/mesh.h"
 #include "codec/refine/refiner.h"
 #include "proto/field_key.h"
@@ -48,8 +47,7 @@ Status refineTo(const LevelRequest& request, Refiner& refiner, const std::stop_t
   const LogFile& log = request.mesh->log;
   refiner.stopAtLevel(request.level);
   for (std::uint32_t chunk = 0;
-       chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < request.level);
-       ++chunk) {
+       chunk < log.chunks().size() && (chunk == 0 || refiner.level() < request.level); ++chunk) {
     if (stop.stop_requested()) return stopped();
     if (Status s = applyChunk(log, refiner, chunk, {}); !s) return s;
   }
@@ -63,26 +61,14 @@ Status eachField(const LevelRequest& request, Refiner& refiner, const std::stop_
                  const std::function<void(std::uint32_t field)>& whole) {
   const LogFile& log = request.mesh->log;
   const std::vector<std::uint32_t> fields = withParents(log.fields(), request.fields);
-  std::map<std::uint32_t, std::uint32_t> lastUser;
-  for (const std::uint32_t field : fields) {
-    lastUser[field] = field;
-    for (const TimePrediction::Parent& parent : log.fields()[field].prediction.all())
-      lastUser[parent.field] = field;
-  }
-  for (const std::uint32_t field : fields) {
+  const std::vector<std::vector<std::uint32_t>> uses = lastUses(log.fields(), fields);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
     for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk) {
       if (stop.stop_requested()) return stopped();
-      if (Status s = applyFieldBlock(log, refiner, chunk, field); !s) return s;
+      if (Status s = applyFieldBlock(log, refiner, chunk, fields[i]); !s) return s;
     }
-    whole(field);
-    for (auto at = lastUser.begin(); at != lastUser.end();) {
-      if (at->second != field) {
-        ++at;
-        continue;
-      }
-      refiner.forgetField(at->first);
-      at = lastUser.erase(at);
-    }
+    whole(fields[i]);
+    for (const std::uint32_t used : uses[i]) refiner.forgetField(used);
   }
   return {};
 }

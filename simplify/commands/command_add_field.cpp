@@ -39,6 +39,15 @@ Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMes
   return kept;
 }
 
+void printAdded(const std::vector<NewField>& fields, std::ostream& out) {
+  for (const NewField& field : fields) {
+    out << field.info.association << " field " << printable(field.info.name) << ": "
+        << bytesOf(field) << " bytes, " << field.info.bits << " bits, step " << field.info.step;
+    if (!field.errors.empty()) out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
+    out << "\n";
+  }
+}
+
 Status addField(const ParsedWords& parsed, Progress& progress, Console& console) {
   const auto from = parsed.get<std::string>("from");
   if (Status checked = checkNewLog(parsed, from); !checked) return checked;
@@ -63,23 +72,10 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   options.progress = [&](double fraction) { progress.update(fraction); };
   const Result<AddedFields> added = addFields(log->file, read->mesh, options);
   if (!added) return std::unexpected(added.error());
-  const Result<EditedLog> edited = withFields(log->file, *kept, added->fields);
-  if (!edited) return std::unexpected(edited.error());
-  Result<OrderedJson> report = writeNewLog(parsed, log->file, *edited);
-  if (!report) return std::unexpected(report.error());
-  progress.clear();
-  for (const std::string& note : added->notes) console.note(note);
-  if (!parsed.has("json")) {
-    printAdded(added->fields, console.out);
-    printNew(*report, console.out);
-    return {};
-  }
-  (*report)["from"] = from;
-  (*report)["added"] = OrderedJson::array();
-  for (const NewField& field : added->fields) (*report)["added"].push_back(toJson(field));
-  (*report)["notes"] = added->notes;
-  printJson(*report, console);
-  return {};
+  return writeAdded(
+      parsed, log->file, *kept, *added, {{"from", from}},
+      [&](const std::vector<NewField>& fields) { printAdded(fields, console.out); }, progress,
+      console);
 }
 
 Status removeField(const ParsedWords& parsed, Console& console) {

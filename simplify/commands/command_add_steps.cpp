@@ -198,14 +198,14 @@ Result<AddedFields> addFiles(const OpenedLog& log, const Request& request, Progr
 }
 
 /// A line a series: its new instants and their bytes.
-void printSeries(const AddedFields& added, std::ostream& out) {
+void printSeries(const std::vector<NewField>& added, std::ostream& out) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> sums;
-  for (const NewField& field : added.fields) {
+  for (const NewField& field : added) {
     auto& [instants, bytes] =
         sums[field.info.association + " field " +
              std::string(nameWithoutStep(field.info.name).value_or(field.info.name))];
     ++instants;
-    for (const Bytes& block : field.blocks) bytes += block.size();
+    bytes += bytesOf(field);
   }
   for (const auto& [name, sum] : sums)
     out << printable(name) << ": " << sum.first << (sum.first == 1 ? " instant, " : " instants, ")
@@ -231,23 +231,10 @@ Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console)
   if (!added) return std::unexpected(added.error());
   std::vector<std::uint32_t> kept(log->manifest.fields.size());
   std::iota(kept.begin(), kept.end(), 0u);
-  const Result<EditedLog> edited = withFields(log->file, kept, added->fields);
-  if (!edited) return std::unexpected(edited.error());
-  Result<OrderedJson> report = writeNewLog(parsed, log->file, *edited);
-  if (!report) return std::unexpected(report.error());
-  progress.clear();
-  for (const std::string& note : added->notes) console.note(note);
-  if (!parsed.has("json")) {
-    printSeries(*added, console.out);
-    printNew(*report, console.out);
-    return {};
-  }
-  (*report)["files"] = request.files;
-  (*report)["added"] = OrderedJson::array();
-  for (const NewField& field : added->fields) (*report)["added"].push_back(toJson(field));
-  (*report)["notes"] = added->notes;
-  printJson(*report, console);
-  return {};
+  return writeAdded(
+      parsed, log->file, kept, *added, {{"files", request.files}},
+      [&](const std::vector<NewField>& fields) { printSeries(fields, console.out); }, progress,
+      console);
 }
 
 }  // namespace

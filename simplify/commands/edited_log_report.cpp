@@ -12,22 +12,6 @@
 namespace qtet {
 namespace {
 
-std::size_t bytesOf(const NewField& field) {
-  return std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0},
-                         [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
-}
-
-}  // namespace
-
-std::string outputOf(const ParsedWords& parsed) {
-  return parsed.get<std::string>(parsed.has("output") ? "output" : "LOG");
-}
-
-Status checkNewLog(const ParsedWords& parsed, const std::string& mesh) {
-  return parsed.has("output") ? checkOutput(parsed.get<std::string>("output"), ".qtet", mesh)
-                              : Status{};
-}
-
 OrderedJson toJson(const NewField& field) {
   const ManifestField& info = field.info;
   OrderedJson out = {{"name", info.name},
@@ -43,6 +27,22 @@ OrderedJson toJson(const NewField& field) {
   if (!field.errors.empty())
     out["error"] = {{"rms", field.errors.front().rms}, {"max", field.errors.front().max}};
   return out;
+}
+
+}  // namespace
+
+std::size_t bytesOf(const NewField& field) {
+  return std::accumulate(field.blocks.begin(), field.blocks.end(), std::size_t{0},
+                         [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
+}
+
+std::string outputOf(const ParsedWords& parsed) {
+  return parsed.get<std::string>(parsed.has("output") ? "output" : "LOG");
+}
+
+Status checkNewLog(const ParsedWords& parsed, const std::string& mesh) {
+  return parsed.has("output") ? checkOutput(parsed.get<std::string>("output"), ".qtet", mesh)
+                              : Status{};
 }
 
 Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const LogFile& before,
@@ -73,13 +73,28 @@ void printNew(const OrderedJson& report, std::ostream& out) {
       << report["bytesBefore"] << "\n";
 }
 
-void printAdded(const std::vector<NewField>& fields, std::ostream& out) {
-  for (const NewField& field : fields) {
-    out << field.info.association << " field " << printable(field.info.name) << ": "
-        << bytesOf(field) << " bytes, " << field.info.bits << " bits, step " << field.info.step;
-    if (!field.errors.empty()) out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
-    out << "\n";
+Status writeAdded(const ParsedWords& parsed, const LogFile& log,
+                  const std::vector<std::uint32_t>& kept, const AddedFields& added,
+                  const OrderedJson& source,
+                  const std::function<void(const std::vector<NewField>&)>& print,
+                  Progress& progress, Console& console) {
+  const Result<EditedLog> edited = withFields(log, kept, added.fields);
+  if (!edited) return std::unexpected(edited.error());
+  Result<OrderedJson> report = writeNewLog(parsed, log, *edited);
+  if (!report) return std::unexpected(report.error());
+  progress.clear();
+  for (const std::string& note : added.notes) console.note(note);
+  if (!parsed.has("json")) {
+    print(added.fields);
+    printNew(*report, console.out);
+    return {};
   }
+  report->update(source);
+  (*report)["added"] = OrderedJson::array();
+  for (const NewField& field : added.fields) (*report)["added"].push_back(toJson(field));
+  (*report)["notes"] = added.notes;
+  printJson(*report, console);
+  return {};
 }
 
 }  // namespace qtet

@@ -1,13 +1,17 @@
-// Writing of logs whose fields were changed, and the report about it: what add-field, add-steps and
-// remove-field share.
+// Writing of logs whose fields were changed, and the report about it. Add-field, add-steps and
+// remove-field share it.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "codec/refine/log_edit.h"
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/progress.h"
+#include "simplify/log/add_fields.h"
 
 namespace qtet {
 
@@ -24,9 +28,18 @@ namespace qtet {
                                               const EditedLog& edited);
 void printNew(const OrderedJson& report, std::ostream& out);
 
-/// {name, association, components, type, bits, step, minimum, range, missingValues, bytes, error
-/// {rms, max} of the base mesh}.
-[[nodiscard]] OrderedJson toJson(const NewField& field);
-void printAdded(const std::vector<NewField>& fields, std::ostream& out);
+/// Writes the log with the fields `kept` and then those added. Reports notes, and then what
+/// `print(fields)` says and a line. The report as JSON has also the members of `source`, `added`
+/// and `notes`. The members of an added field are name, association, components, type, bits, step,
+/// minimum, range, missingValues, bytes, and error {rms, max} of the base mesh. Errors:
+/// withFields's and writeNewLog's.
+[[nodiscard]] Status writeAdded(const ParsedWords& parsed, const LogFile& log,
+                                const std::vector<std::uint32_t>& kept, const AddedFields& added,
+                                const OrderedJson& source,
+                                const std::function<void(const std::vector<NewField>&)>& print,
+                                Progress& progress, Console& console);
+
+/// Bytes of all of its blocks.
+[[nodiscard]] std::size_t bytesOf(const NewField& field);
 
 }  // namespace qtet

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "codec/log/log_manifest.h"
+#include "codec/log/manifest_field.h"
 #include "codec/refine/log_file.h"
-#include "proto/limits.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
 #include "simplify/mesh/history_levels.h"
@@ -26,11 +26,6 @@ std::vector<T> inLogOrder(const std::vector<T>& values, std::uint32_t components
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * components), components,
                 out.begin() + static_cast<std::ptrdiff_t>(std::size_t{logs[i]} * components));
   return out;
-}
-
-FieldInfo infoOf(const ManifestField& f) {
-  return {f.name, f.components, f.type,  f.association, f.bits,
-          f.step, f.minimum,    f.range, f.hasMissing};
 }
 
 /// How many predictions a field rests on in a row, if its parents' are known.
@@ -77,7 +72,7 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
   levels.moveTo(0);
   for (std::size_t f = 0; f < manifest_.fields.size(); ++f) {
     depths_.push_back(depthOf(log_.fields()[f].prediction, depths_));
-    const FieldInfo info = infoOf(manifest_.fields[f]);
+    const FieldInfo info = fieldInfoOf(manifest_.fields[f]);
     const auto name = instantName(info.name);
     const bool stays =
         !options_.kept || std::ranges::find(*options_.kept, f) != options_.kept->end();
@@ -194,6 +189,7 @@ Status FieldAdder::fetch(Last& last) {
 Status FieldAdder::code(std::vector<Item> items) {
   FusionHistory& h = history_->history;
   std::vector<std::size_t> numbers;  // of the history's fields, as NewField::prediction counts
+  std::vector<std::size_t> rows;     // depths of those that are there already
   for (const Item& item : items) {
     Last* const last = lastBefore(item.info);
     if (last == nullptr || !mayBeParent(*last) ||
@@ -201,31 +197,22 @@ Status FieldAdder::code(std::vector<Item> items) {
       continue;
     if (Status s = fetch(*last); !s) return s;
     h.fields.push_back(last->info), h.values.push_back(last->values);
-    numbers.push_back(last->number);
+    numbers.push_back(last->number), rows.push_back(depths_[last->number]);
   }
-  const std::size_t before = numbers.size();
   for (const std::size_t place : decodingOrderOf(h.fields, items)) {
     Item& item = items[place];
     numbers.push_back(manifest_.fields.size() + added_.fields.size());
     h.fields.push_back(item.info), h.values.push_back(item.completed);
-    added_.fields.push_back(
-        {{item.info.name, item.info.components, item.info.type, item.info.association,
-          item.info.bits, item.info.step, item.info.minimum, item.info.range, item.info.hasMissing},
-         {},
-         std::move(item.errors),
-         {}});
+    added_.fields.push_back({manifestFieldOf(item.info), {}, std::move(item.errors), {}});
     const auto name = instantName(item.info.name);
     if (!name) continue;
     Last& last = last_[{item.info.association, std::string(name->series)}];
     if (last.info.name.empty() || last.time < name->time)
       last = {item.info, name->time, numbers.back(), std::move(item.completed)};
   }
-  std::vector<std::size_t> rows;  // of the instants that are there already
-  for (const std::size_t number : numbers)
-    if (rows.size() < before) rows.push_back(depths_[number]);
   const Result<std::size_t> differences = toTimeDifferences(h, {}, {}, rows);
   if (!differences) return std::unexpected(differences.error());
-  for (std::size_t i = before; i < numbers.size(); ++i) {
+  for (std::size_t i = rows.size(); i < numbers.size(); ++i) {
     TimePrediction prediction = h.fields[i].prediction;
     for (std::size_t p = 0; p < prediction.count; ++p)
       prediction.parents[p].field =
@@ -243,9 +230,7 @@ Status FieldAdder::code(std::vector<Item> items) {
 
 Status FieldAdder::add(const TetMesh& mesh) {
   const std::size_t kept = options_.kept ? options_.kept->size() : manifest_.fields.size();
-  if (kept + added_.fields.size() + mesh.fields.size() > kMaxFields)
-    return fail(ErrorCode::kLimitExceeded,
-                "the log would have more than 1,024 fields; remove some first");
+  if (Status s = checkFieldCount(kept + added_.fields.size() + mesh.fields.size()); !s) return s;
   if (Status s = matchTo(mesh); !s) return s;
   Result<std::vector<Item>> items = itemsOf(mesh);
   if (!items) return std::unexpected(items.error());

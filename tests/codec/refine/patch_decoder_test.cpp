@@ -130,12 +130,12 @@ struct Patch {
   Bytes body;
 };
 
-Patch encoded(Piece piece) {
+Patch encoded(const Piece& piece) {
   Patch out{piece.coarse, {}, {}};
   RecordWriter writer(piece.history, CodecId::kDraco, appendTo(out.body), {});
   LogWriterOptions options;
   options.chunkBytes = 30;
-  EXPECT_TRUE(writer.patch(std::move(piece.coarse), piece.cells, piece.vertices));
+  EXPECT_TRUE(writer.patch(piece.coarse, piece.cells, piece.vertices));
   const Status written = writeLevelRuns(writer, piece.history.levels, options);
   EXPECT_TRUE(written) << written.error().text();
   EXPECT_TRUE(writer.closeChunk(piece.history.levels, kLevelEnd));
@@ -145,7 +145,7 @@ Patch encoded(Piece piece) {
 
 /// Decodes all blocks but the first, which is empty: its reader has the coarse part.
 void decode(const Patch& patch, PatchDecoder& decoder) {
-  decoder.start(CoarsePart(patch.coarse));
+  decoder.start(patch.coarse);
   std::size_t at = 0;
   Slots end = decoder.mesh().next();
   std::uint64_t records = 0;
