@@ -54,6 +54,7 @@ struct ReadReport {
   bool joinedByIds = false;        ///< they were found by ids that hold for all pieces
   std::uint64_t weldedPoints = 0;  ///< joined with an earlier one
   std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
+  std::string motion{};            ///< of moving points: the series that has how far (joinSteps)
   std::vector<std::string> notes;  ///< also VTK's warnings
 };
 
