@@ -183,7 +183,7 @@ std::string shortText(double x) {
   return {text.data(), end.ptr};
 }
 
-/// What becomes of points that move over the steps of a file.
+/// Makes fields of points that move over the steps of a file.
 class Motion {
  public:
   /// REQUIRES: steps of the same cells.
@@ -227,9 +227,9 @@ class Motion {
     report.notes.push_back(
         moves + "the mesh is that of time " + restTime + ", and the point field " + name_ +
         " has how far they are from there, at most " + shortText(largest_) +
-        (name_ == kDisplacementField
+        (name_ == kDisplacement
              ? ""
-             : "; the file has a field " + std::string(kDisplacementField) + " of its own"));
+             : "; the file has a field " + std::string(kDisplacement) + " of its own"));
   }
 
  private:

@@ -40,7 +40,7 @@ bool areSamePoints(std::span<const Position> a, std::span<const Position> b) {
 }
 
 std::string displacementName(const CellMesh& step) {
-  std::string name(kDisplacementField);
+  std::string name(kDisplacement);
   for (int again = 1; hasField(step, name); ++again)
     name = std::string(kMotionField) + (again == 1 ? "" : "-" + std::to_string(again));
   return name;

@@ -5,19 +5,18 @@
 #include <string>
 #include <string_view>
 
+#include "simplify/mesh/moved_place.h"
 #include "simplify/split/cell_mesh.h"
 
 namespace qtet {
 
-/// What moving points become: this point field of 3 components, in the points' unit.
-inline constexpr std::string_view kDisplacementField = "Displacement";
-/// The same where the file has a field of that name.
+/// The name of displacements where the file has a field kDisplacement (moved_place.h) of its own.
 inline constexpr std::string_view kMotionField = "Motion";
 
 /// Whether both lists have the same places; two that are NaN are one place.
 [[nodiscard]] bool areSamePoints(std::span<const Position> a, std::span<const Position> b);
 
-/// kDisplacementField, or if `step` has a field of that name kMotionField, Motion-2 and so on.
+/// kDisplacement, or if `step` has a field of that name kMotionField, Motion-2 and so on.
 /// Fields that were not read count, too; a time behind a name does not.
 [[nodiscard]] std::string displacementName(const CellMesh& step);
 
