@@ -22,8 +22,8 @@ namespace qtet {
 /// The first step's mesh with every step's fields, called NAME@TIME. If the points of a later step
 /// lie elsewhere, every step gets the point field displacementName (moving_points.h). It says how
 /// far they are from those of the first step. It is left out unless `names` means it. The report's
-/// notes and its `motion` say so. Errors: bad-input where a step has other cells than the first, another
-/// number of points, or a point of a cell that is not finite.
+/// notes and its `motion` say so. Errors: bad-input where a step has other cells than the first,
+/// another number of points, or a point of a cell that is not finite.
 [[nodiscard]] Result<CellMesh> joinSteps(std::vector<TimedCells> steps,
                                          const std::filesystem::path& path, const FieldNames& names,
                                          ReadReport& report);
