@@ -153,7 +153,7 @@ TetMesh beamSeries(std::uint32_t instants) {
   }
   return Solid(kBeamGrid, std::move(fields)).made([&](const Position& u, const auto& add) {
     const Position p = beamPoint(u);
-    const auto column = static_cast<std::size_t>(u[0] * kBeamColumns + 0.5);
+    const auto column = static_cast<std::size_t>(std::lround(u[0] * kBeamColumns));
     const double restX = kBeamLength / kBeamColumns * static_cast<double>(column);
     for (std::size_t i = 0; i < instants; ++i) {
       const auto& [place, along] = bent[i][column];
