@@ -240,7 +240,9 @@ Result<Made> makeInWindows(const Request& request, const std::vector<double>& ti
   const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
     std::vector<double> some;
     for (const std::size_t step : steps) some.push_back(times[step]);
-    Result<ReadMesh> window = readTimes(request.input, request.read, some);
+    // the sample begins with the first step, and so do all others if points move
+    const auto rest = report.motion.empty() ? std::nullopt : std::optional(times.front());
+    Result<ReadMesh> window = readTimes(request.input, request.read, some, rest);
     if (!window) return std::unexpected(window.error());
     addNew(report.notes, window->report.notes);
     report = std::move(window->report);
