@@ -9,7 +9,7 @@ import {warpedPoints} from '../core/picture/warp';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Manifest} from '../core/protocol/manifest';
 import {markSeries, showTime} from '../core/protocol/series';
-import {automaticScale, warpField, warpFields, warpOf} from '../viewer/settings/warp';
+import {automaticScale, largestScale, warpField, warpFields, warpOf} from '../viewer/settings/warp';
 import {readSettings} from '../viewer/settings/settings';
 import {FakeCodec} from './fakes';
 
@@ -148,6 +148,14 @@ describe('anAutomaticScale', () => {
     [0, 1],
   ])('of the largest vector %d is %d', (largest, scale) =>
     expect(automaticScale(0, mesh(largest))).toBe(scale),
+  );
+  test.each([
+    [0.1, 20],
+    [0.01, 200],
+    [2.5, 4],
+    [0, 4],
+  ])('ofTheLargestVector%dHasASliderTo%d', (largest, end) =>
+    expect(largestScale(0, mesh(largest))).toBe(end),
   );
   test('givesWayToTheAttribute', () => {
     const settings = (scale: string | null): ReturnType<typeof readSettings> =>

@@ -149,15 +149,12 @@ export const kControls = `    ${section(
       ${toggle('warp', 'Deformed shape')}
       <div class="warp sub" hidden>
         <select name="warp-field" aria-label="Vectors that move the mesh"></select>
-        <div class="field">
-          <span class="row"><span class="name">Scale</span><output></output></span>
-          <input type="range" name="warp-slider" min="0" aria-label="Scale of the deformed shape">
-        </div>
         <label class="row">
-          <span class="name">Times</span>
+          <span class="name">Scale \u00d7</span>
           <input type="text" inputmode="decimal" name="warp-scale" autocomplete="off">
         </label>
-        <div class="row buttons">
+        <input type="range" name="warp-slider" min="0" aria-label="Scale of the deformed shape">
+        <div class="buttons">
           <button type="button" class="true-size">True size</button>
           <button type="button" class="automatic">Automatic</button>
         </div>

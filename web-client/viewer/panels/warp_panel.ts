@@ -2,17 +2,15 @@
 
 import {parseNumbers, scalarText} from '../../core/layers/field_values';
 import {kMagnitude} from '../../core/picture/field_scale';
-import {find, onClick, setText} from '../page/find';
+import {find, onClick} from '../page/find';
 import {formatFactor} from '../page/format';
 import type {Attributes} from '../page/page';
 import {fillSelect} from '../page/select';
 import type {Settings} from '../settings/settings';
-import {automaticScale, warpFields, warpOf} from '../settings/warp';
+import {largestScale, warpFields, warpOf} from '../settings/warp';
 import {scalarTitle, type Panel, type Scene} from './panel';
 
 const kSteps = 400;
-/** The slider's end, in automatic scales. */
-const kMost = 4;
 
 export class WarpPanel implements Panel {
   private readonly section: HTMLElement;
@@ -23,7 +21,8 @@ export class WarpPanel implements Panel {
   private readonly number: HTMLInputElement;
   /** The keys of the fields that can move the mesh. */
   private keys: string[] = [];
-  private automatic = 1;
+  /** The scale at the slider's end. */
+  private end = 1;
 
   constructor(
     private readonly root: ShadowRoot,
@@ -41,7 +40,7 @@ export class WarpPanel implements Panel {
     );
     this.select.addEventListener('change', () => this.choose(this.select.value));
     this.slider.addEventListener('input', () =>
-      this.scale((Number(this.slider.value) / kSteps) * kMost * this.automatic),
+      this.scale((Number(this.slider.value) / kSteps) * this.end),
     );
     this.number.addEventListener('change', () => this.type());
     onClick(this.body, '.true-size', () => this.scale(1));
@@ -64,15 +63,13 @@ export class WarpPanel implements Panel {
       scalarText({field: warp.field, component: kMagnitude}, fields),
     );
     this.select.disabled = usable.length < 2;
-    this.automatic = automaticScale(warp.field, scene);
+    this.end = largestScale(warp.field, scene);
     this.showScale(warp.scale, settings.warpScale === null);
   }
 
   private showScale(scale: number, isAutomatic: boolean): void {
-    const text = formatFactor(scale);
-    setText(find(this.body, 'output'), isAutomatic ? `${text}, automatic` : text);
-    this.slider.value = String(Math.round((kSteps * scale) / (kMost * this.automatic)));
-    this.slider.setAttribute('aria-valuetext', text);
+    this.slider.value = String(Math.round((kSteps * scale) / this.end));
+    this.slider.setAttribute('aria-valuetext', formatFactor(scale));
     if (this.root.activeElement !== this.number) this.number.value = String(scale);
     find<HTMLButtonElement>(this.body, '.true-size').disabled = scale === 1;
     find<HTMLButtonElement>(this.body, '.automatic').disabled = isAutomatic;

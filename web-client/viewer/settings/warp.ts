@@ -7,7 +7,7 @@ import type {FieldInfo} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Settings} from './settings';
 
-/** What solvers call the displacement of a solid. CalculiX, Code_Aster and others shorten it. */
+/** Names of the displacement of a solid. CalculiX, Code_Aster and others shorten it. */
 const kDisplacement = /^(displacements?|displ?|u_?disp|depl)$/i;
 
 /** The largest displacement is seen at true size if it is at least this share of the diagonal. */
@@ -16,6 +16,11 @@ const kSeenShare = 0.01;
 const kFirstShare = 0.1;
 /** Vectors longer than this share of the diagonal are no displacements of this mesh. */
 const kLongestShare = 1;
+
+/** The largest displacement at the slider's end, as a share of the diagonal. */
+const kMostShare = 0.4;
+/** The slider's end, in automatic scales, is at least this. */
+const kLeastEnd = 4;
 
 /** The mesh, as far as a warp needs it. */
 export interface Warpable {
@@ -48,12 +53,25 @@ export function warpField(text: string | null, fields: readonly FieldInfo[]): nu
 
 /** True size if its displacements are seen, else a round number that makes them so. */
 export function automaticScale(field: number, {manifest, bounds}: Warpable): number {
-  if (!manifest || bounds.length === 0) return 1;
+  const share = largestShare(field, {manifest, bounds});
+  if (share === 0) return 1;
+  return share >= kSeenShare && share <= kLongestShare ? 1 : roundBelow(kFirstShare / share);
+}
+
+/** The scale at the slider's end. */
+export function largestScale(field: number, mesh: Warpable): number {
+  const share = largestShare(field, mesh);
+  const least = kLeastEnd * automaticScale(field, mesh);
+  return share > 0 ? Math.max(least, roundBelow(kMostShare / share)) : least;
+}
+
+/** The longest vector as a share of the diagonal; 0 if that is not known. */
+function largestShare(field: number, {manifest, bounds}: Warpable): number {
+  if (!manifest || bounds.length === 0) return 0;
   const sides = [0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!);
   const diagonal = manifest.lattice.step * Math.hypot(...sides);
   const share = manifest.fields[field]!.range[1] / diagonal;
-  if (!(share > 0) || !Number.isFinite(share)) return 1;
-  return share >= kSeenShare && share <= kLongestShare ? 1 : roundBelow(kFirstShare / share);
+  return Number.isFinite(share) ? share : 0;
 }
 
 /** The next of 1, 2, 5, 10, 20 ... that is not above the number. */
