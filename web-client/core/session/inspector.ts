@@ -118,8 +118,8 @@ export class Inspector {
 
   /**
    * By field its values at a lattice place of the mesh at rest, one a component. There are none if
-   * the field is not here for all of the mesh. A place beside the mesh has those of the cell next to
-   * it.
+   * the field is not here for all of the mesh. A place beside the mesh has those of the cell next
+   * to it.
    */
   values(place: Vector, fields: readonly number[]): number[][] {
     const mesh = meshArrays(this.assembler);
