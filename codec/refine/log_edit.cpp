@@ -123,12 +123,9 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
   }
   manifest->fields = std::move(fields);
   keepOpening(*manifest, kept);
-  index.manifestMinor = minorOf(*manifest);
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);
-  Result<Bytes> manifestBytes = manifestBlock(*manifest);
-  if (!manifestBytes) return std::unexpected(manifestBytes.error());
-  index.manifest = std::move(*manifestBytes);
+  if (Status s = setManifest(index, std::move(*manifest)); !s) return std::unexpected(s.error());
 
   Pieces pieces(log);
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
