@@ -12,9 +12,11 @@ namespace qtet {
 inline constexpr std::uint32_t kMaxManifestBytes = 8u << 20;
 /// Chunks of one log: at 16 KB a chunk, a 16 GB log.
 inline constexpr std::uint32_t kMaxChunks = 1u << 20;
-/// Fields of one log. Each costs some 7 bytes in every row of the chunk table, which a viewer
-/// fetches before its first picture.
-inline constexpr std::uint32_t kMaxFields = 1024;
+/// Fields of one log: two quantities at 4,096 instants. Each costs some 7 bytes in every row of the
+/// chunk table, and its number fits 16 bits.
+inline constexpr std::uint32_t kMaxFields = 8192;
+/// Fields that one request of a client names: the instants of a film are asked for in parts.
+inline constexpr std::uint32_t kMaxRequestFields = 1024;
 /// The highest number of a field that a manifest's opening can name, in a byte.
 inline constexpr std::uint32_t kMaxOpeningField = 255;
 /// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is
@@ -22,7 +24,8 @@ inline constexpr std::uint32_t kMaxOpeningField = 255;
 inline constexpr std::uint32_t kMaxNameBytes = 256;
 /// Components of one field: a 3x3 tensor has 9; 16 leaves room for a 4x4 matrix.
 inline constexpr std::uint32_t kMaxFieldComponents = 16;
-/// Blocks behind the last chunk of one log: one a field, and what else the input had.
+/// Blocks behind the last chunk of one log: one a field, and what else the input had. More fields
+/// cannot keep their exact values.
 inline constexpr std::uint32_t kMaxClosingBlocks = 1024;
 /// Levels of one log: 5 % growth a level takes a mesh from 1 to 10^9 cells in 425.
 inline constexpr std::uint32_t kMaxLevels = 4096;

@@ -31,7 +31,7 @@ OpenMessage readOpen(const JsonCursor& json) {
   OpenMessage out;
   out.mesh = readName(json["mesh"]);
   out.digest = readDigest(json.optional("digest"));
-  for (const JsonCursor& name : json.optional("fields").items(0, kMaxFields))
+  for (const JsonCursor& name : json.optional("fields").items(0, kMaxRequestFields))
     out.fields.push_back(readName(name));
   out.have = readHave(json.optional("have"));
   out.target = readTarget(json.optional("target"));

@@ -19,8 +19,8 @@ namespace qtet {
 
 /// The subprotocol that a client must offer in Sec-WebSocket-Protocol.
 inline constexpr std::string_view kStreamSubprotocol = "qtet.v1";
-/// Bytes of one JSON message: an `open` that names kMaxFields fields twice, in names of ordinary
-/// length, needs under half of it.
+/// Bytes of one JSON message: an `open` that names kMaxRequestFields fields twice, in names of
+/// ordinary length, needs under half of it.
 inline constexpr std::size_t kMaxMessageBytes = 64u << 10;
 /// Bytes of credit that one message can grant: the largest integer that JSON keeps exactly in every
 /// language (2^53 - 1).

@@ -36,7 +36,7 @@ double readError(const JsonCursor& json) {
 Have readHave(const JsonCursor& json) {
   Have out;
   out.chunks = json.optional("chunks").count32(0, kMaxChunks);
-  for (const auto& [name, field] : json.optional("fields").members(kMaxFields)) {
+  for (const auto& [name, field] : json.optional("fields").members(kMaxRequestFields)) {
     out.fields.emplace_back(name, field.count32(0, kMaxChunks));
     if (out.fields.back().second > out.chunks)
       field.fail("is above the chunks of the mesh; a field never runs ahead of its mesh");

@@ -94,7 +94,7 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.chunks == 0)
     return fail(ErrorCode::kBadValue, "a log has at least one chunk, the base mesh", 40);
   if (h.chunks > kMaxChunks) return fail(ErrorCode::kLimitExceeded, "more than 2^20 chunks", 40);
-  if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 1,024 fields", 44);
+  if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 8,192 fields", 44);
   if (h.closing > kMaxClosingBlocks)
     return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
   if (h.headBytes() > h.fileBytes)

@@ -24,7 +24,7 @@ Status checkLimits(const FusionHistory& history, const LogWriterOptions& options
                                           std::to_string(history.levels + 1u) +
                                           " levels; measure the history that is encoded");
   if (history.fields.size() > kMaxFields)
-    return fail(ErrorCode::kLimitExceeded, "more than 1,024 fields; choose some with `fields`");
+    return fail(ErrorCode::kLimitExceeded, "more than 8,192 fields; choose some with `fields`");
   if (history.points.size() > kMaxElements || history.cells.size() > kMaxElements)
     return fail(ErrorCode::kLimitExceeded, "more than 2^29 cells");
   return {};

@@ -51,12 +51,20 @@ void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uin
   }
 }
 
-/// The opening follows its field, or goes with it.
-void keepOpening(Manifest& manifest, const std::vector<std::uint32_t>& kept) {
-  if (!manifest.opening) return;
-  const auto place =
+/// The opening follows its field, or the added one of its name. Else it goes.
+void keepOpening(Manifest& manifest, const ManifestField& shown,
+                 const std::vector<std::uint32_t>& kept, const std::vector<NewField>& added) {
+  auto place =
       static_cast<std::size_t>(std::ranges::find(kept, manifest.opening->field) - kept.begin());
-  if (place < kept.size() && place <= kMaxOpeningField) {
+  if (place == kept.size())
+    place += static_cast<std::size_t>(std::ranges::find_if(added,
+                                                           [&](const NewField& field) {
+                                                             return field.info.name == shown.name &&
+                                                                    field.info.association ==
+                                                                        shown.association;
+                                                           }) -
+                                      added.begin());
+  if (place < kept.size() + added.size() && place <= kMaxOpeningField) {
     manifest.opening->field = static_cast<std::uint8_t>(place);
   } else {
     manifest.opening.reset();
@@ -90,7 +98,7 @@ Status checkFieldCount(std::size_t fields) {
   return fields <= kMaxFields
              ? Status{}
              : fail(ErrorCode::kLimitExceeded,
-                    "the log would have more than 1,024 fields; remove some first");
+                    "the log would have more than 8,192 fields; remove some first");
 }
 
 Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t>& kept,
@@ -121,8 +129,8 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
          field.info.association == "cell" ? Association::kCell : Association::kPoint,
          field.info.hasMissing, *prediction});
   }
-  manifest->fields = std::move(fields);
-  keepOpening(*manifest, kept);
+  std::swap(manifest->fields, fields);
+  if (manifest->opening) keepOpening(*manifest, fields[manifest->opening->field], kept, added);
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);
   if (Status s = setManifest(index, std::move(*manifest)); !s) return std::unexpected(s.error());
@@ -155,6 +163,10 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
 
 Status EditedLog::writeTo(const ByteSink& sink) const {
   if (Status s = sink(head_); !s) return s;
+  return writeBlocksTo(sink);
+}
+
+Status EditedLog::writeBlocksTo(const ByteSink& sink) const {
   for (const Piece& piece : blocks_) {
     if (Status s = sink(piece.bytes); !s) return s;
     if (piece.offset) log_.release(*piece.offset, piece.bytes.size());

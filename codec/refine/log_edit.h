@@ -42,6 +42,8 @@ class EditedLog {
   /// All of its bytes, in order. A block of the other log is held in memory only until the sink has
   /// taken it. Errors: the sink's.
   [[nodiscard]] Status writeTo(const ByteSink& sink) const;
+  /// The same without the head.
+  [[nodiscard]] Status writeBlocksTo(const ByteSink& sink) const;
   /// The same in memory.
   [[nodiscard]] Bytes together() const;
 

@@ -148,15 +148,19 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
 std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField& field) {
   if (scale.components != field.components || scale.type != field.type) return std::nullopt;
   const FieldExtents extents = extentsOf(field);
-  const double reach = scale.step * (std::ldexp(1.0, scale.bits) - 0.5);
-  for (std::size_t c = 0; c < scale.components; ++c)
-    if (extents.minimum[c] < scale.minimum[c] - 0.5 * scale.step ||
-        extents.maximum[c] > scale.minimum[c] + reach)
-      return std::nullopt;
+  int bits = scale.bits;
+  for (std::size_t c = 0; c < scale.components; ++c) {
+    const auto isBeyond = [&] {
+      return extents.maximum[c] - scale.minimum[c] > scale.step * (std::ldexp(1.0, bits) - 0.5);
+    };
+    while (isBeyond() && bits < kMostScaleBits) ++bits;
+    if (isBeyond() || extents.minimum[c] < scale.minimum[c] - 0.5 * scale.step) return std::nullopt;
+  }
   QuantisedField out;
   out.nonFinite = nonFiniteOf(field);
   out.exact = !isFloatType(field.type) && scale.step == 1;
   out.info = scale;
+  out.info.bits = bits;
   out.info.name = field.name, out.info.association = field.association;
   out.info.range = rangeOf(field), out.info.hasMissing = out.nonFinite > 0;
   place(field, out);

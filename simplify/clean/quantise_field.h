@@ -12,6 +12,9 @@
 
 namespace qtet {
 
+/// Fields of more bits are not predicted in time (time_differences.cpp).
+inline constexpr int kMostScaleBits = 24;
+
 struct QuantisedField {
   FieldInfo info;
   std::vector<std::int32_t> values;  ///< 0 in missing values
@@ -48,8 +51,9 @@ struct FieldExtents {
 /// Errors: bad-input (an extent above the largest double).
 [[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field,
                                                    const FieldExtents& extents, int bits);
-/// With the bits, step and minimum of `scale`; nullopt where a value lies beyond it, or where the
-/// fields differ in components or type.
+/// With step and minimum of `scale`, and its bits or as many more as values above it need. Nullopt
+/// where a value lies below it or needs more than kMostScaleBits, or where the fields differ in
+/// components or type.
 [[nodiscard]] std::optional<QuantisedField> quantiseAs(const FieldInfo& scale,
                                                        const MeshField& field);
 [[nodiscard]] inline Result<QuantisedField> quantiseField(const MeshField& field, int bits) {

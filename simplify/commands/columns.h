@@ -9,7 +9,7 @@ namespace qtet {
 
 /// The widest line of a table: terminals and mails have room for it.
 inline constexpr std::size_t kLineColumns = 100;
-/// A log may have 1,024 fields; a page has room for so many.
+/// A log may have 8,192 fields; a page has room for so many.
 inline constexpr std::size_t kShownFields = 10;
 
 /// A line a row, whose columns are as wide as their widest cell. The first column stands at the

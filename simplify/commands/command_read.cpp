@@ -54,8 +54,8 @@ void addReadOptions(boost::program_options::options_description& options, const 
       "a distance: join points within it (0: at the same place), as where an O-grid closes; none: "
       "keep pieces of a parallel result apart, which are joined at the points that they share")(
       "time", po::value<std::string>()->default_value(time),
-      "of a series: a step's time, first, last; or all, or FROM:TO:EVERY: the steps' fields, as "
-      "NAME@TIME")(
+      "of a series: a step's time, first, last; or all, FROM:TO:EVERY, or times between commas: "
+      "the steps' fields, as NAME@TIME")(
       "threshold", po::value<std::string>(),
       "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
       "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(

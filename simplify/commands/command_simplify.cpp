@@ -2,6 +2,7 @@
 #include <iomanip>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "codec/files/file_spool.h"
 #include "proto/limits.h"
@@ -15,7 +16,10 @@
 #include "simplify/commands/progress.h"
 #include "simplify/commands/written_log.h"
 #include "simplify/pipeline/pipeline.h"
+#include "simplify/pipeline/series_pipeline.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/read_times.h"
+#include "simplify/read/steps/step_reports.h"
 
 namespace qtet {
 namespace {
@@ -81,7 +85,10 @@ class Stopwatch {
   }
   /// The stages of a pipeline that has just ended.
   void lap(const PipelineReport& report) {
-    for (const auto& [stage, seconds] : report.seconds) seconds_[kStages.at(stage).name] = seconds;
+    for (const auto& [stage, seconds] : report.seconds) {
+      OrderedJson& sum = seconds_[kStages.at(stage).name];
+      sum = seconds + (sum.is_null() ? 0 : sum.get<double>());
+    }
     last_ = Clock::now();
   }
   [[nodiscard]] OrderedJson seconds() const {
@@ -207,23 +214,67 @@ OrderedJson reportOf(const Request& request, const ReadReport& read, const Pipel
   return report;
 }
 
+struct Made {
+  ReadReport read;
+  PipelineOutput output;
+};
+
+/// Steps are read so many at a time.
+constexpr std::size_t kStepsAtOnce = 8;
+
+Result<Made> makeAtOnce(const Request& request, const std::vector<double>& times,
+                        const PipelineOptions& options, Stopwatch& watch) {
+  Result<ReadMesh> read = times.size() > kStepsAtOnce
+                              ? readTimes(request.input, request.read, times, kStepsAtOnce)
+                              : readMesh(request.input, request.read);
+  if (!read) return std::unexpected(read.error());
+  watch.lap("read");
+  Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
+  if (!made) return std::unexpected(made.error());
+  return Made{std::move(read->report), std::move(*made)};
+}
+
+Result<Made> makeInWindows(const Request& request, const std::vector<double>& times,
+                           const PipelineOptions& options, Stopwatch& watch) {
+  ReadReport report;
+  const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
+    std::vector<double> some;
+    for (const std::size_t step : steps) some.push_back(times[step]);
+    Result<ReadMesh> window = readTimes(request.input, request.read, some);
+    if (!window) return std::unexpected(window.error());
+    addNew(report.notes, window->report.notes);
+    report = std::move(window->report);
+    return std::move(window->mesh);
+  };
+  Result<TetMesh> sample = read(sampledSteps(times.size()));
+  if (!sample) return std::unexpected(sample.error());
+  watch.lap("read");
+  Result<PipelineOutput> made = simplifySeries(std::move(*sample), times.size(), read, options);
+  if (!made) return std::unexpected(made.error());
+  return Made{std::move(report), std::move(*made)};
+}
+
 Result<OrderedJson> run(const Request& request, Progress& progress) {
   Stopwatch watch;
   progress.stage("reading " + request.input);
-  Result<ReadMesh> read = readMesh(request.input, request.read);
-  if (!read) return std::unexpected(read.error());
-  watch.lap("read");
   PipelineOptions options = request.pipeline;
   options.progress = shownBy(progress);
   options.spool = [&] { return fileSpoolBeside(request.output); };
-  const Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
-  if (!made) return std::unexpected(made.error());
+  const Result<ChosenTimes> chosen = chosenTimesOf(request.input, request.read);
+  if (!chosen) return std::unexpected(chosen.error());
+  const std::vector<double>& times = chosen->times;
+  const bool isLong = times.size() > kSampledInstants && !request.pipeline.keep.exact &&
+                      times.size() * chosen->valuesOfAStep > kMaxValuesAtOnce;
+  const Result<Made> all = isLong ? makeInWindows(request, times, options, watch)
+                                  : makeAtOnce(request, times, options, watch);
+  if (!all) return std::unexpected(all.error());
+  const PipelineOutput* const made = &all->output;
   watch.lap(made->report);
   const Result<WrittenLog> written =
       writeLog(request.output, [&](const ByteSink& sink) { return made->log.writeTo(sink); });
   if (!written) return std::unexpected(written.error());
   watch.lap("write");
-  return reportOf(request, read->report, made->report, *written, watch);
+  return reportOf(request, all->read, made->report, *written, watch);
 }
 
 /// A row a field: its bits a tetrahedron, and the base mesh's error where it was measured.

@@ -1,12 +1,14 @@
 #include "simplify/log/add_fields.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <span>
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/manifest_field.h"
 #include "codec/refine/log_file.h"
+#include "proto/limits.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
 #include "simplify/mesh/history_levels.h"
@@ -76,8 +78,10 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
     const auto name = instantName(info.name);
     const bool stays =
         !options_.kept || std::ranges::find(*options_.kept, f) != options_.kept->end();
-    if (!name || !stays) continue;
+    if (!name) continue;
     const SeriesKey key{info.association, std::string(name->series)};
+    if (!stays) keepScale(key, info);
+    if (!stays) continue;
     const auto at = last_.find(key);
     if (at == last_.end() || at->second.time < name->time) last_[key] = {info, name->time, f, {}};
   }
@@ -107,6 +111,25 @@ Status FieldAdder::matchTo(const TetMesh& mesh) {
   return {};
 }
 
+void FieldAdder::keepScale(const SeriesKey& key, FieldInfo info) {
+  // the step of a constant field means nothing
+  if (!options_.scalesOfOthers || !isFloatType(info.type) || info.step == 1 ||
+      info.bits >= kMaxFieldBits)
+    return;
+  for (double& minimum : info.minimum) minimum -= info.step * std::ldexp(1.0, info.bits);
+  ++info.bits;
+  scales_.try_emplace(key, std::move(info));
+}
+
+/// The scale that an instant's series has already.
+const FieldInfo* FieldAdder::scaleOf(const FieldInfo& info) {
+  if (const Last* const last = lastBefore(info)) return &last->info;
+  const auto name = instantName(info.name);
+  if (!name) return nullptr;
+  const auto at = scales_.find({info.association, std::string(name->series)});
+  return at == scales_.end() ? nullptr : &at->second;
+}
+
 /// The series' last instant, if the field is an instant behind it.
 FieldAdder::Last* FieldAdder::lastBefore(const FieldInfo& info) {
   const auto name = instantName(info.name);
@@ -122,9 +145,9 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
     const MeshField& field = mesh.fields[f];
     FieldInfo named;
     named.name = field.name, named.association = field.association;
-    const Last* const last = lastBefore(named);
+    const FieldInfo* const scale = scaleOf(named);
     std::optional<QuantisedField> quantised =
-        last != nullptr ? quantiseAs(last->info, field) : std::nullopt;
+        scale != nullptr ? quantiseAs(*scale, field) : std::nullopt;
     if (!quantised) {
       Result<QuantisedField> own = quantiseField(field, extents[f], options_.fieldBits);
       if (!own) return std::unexpected(own.error());

@@ -1,4 +1,4 @@
-// Fields of mesh files for a log that is there already (ALGORITHM.md, "Fields added later").
+// Fields of mesh files for a log that is there already (SERIES.md, "Fields added later").
 #pragma once
 
 #include <cstdint>
@@ -26,6 +26,9 @@ struct AddFieldsOptions {
   /// The log's fields that stay, as withFields takes them; all without it. Nothing is predicted
   /// from another one.
   std::optional<std::vector<std::uint32_t>> kept{};
+  /// Instants take the step of those of their series that do not stay, and have room below and
+  /// above their range.
+  bool scalesOfOthers = false;
   std::function<void(double)> progress{};  ///< fraction done, of make() and of each add()
 };
 
@@ -72,7 +75,9 @@ class FieldAdder {
   [[nodiscard]] Result<std::vector<Item>> itemsOf(const TetMesh& mesh);
   [[nodiscard]] Status measure(std::vector<Item>& items);
   [[nodiscard]] Status code(std::vector<Item> items);
+  void keepScale(const SeriesKey& key, FieldInfo info);
   [[nodiscard]] Last* lastBefore(const FieldInfo& info);
+  [[nodiscard]] const FieldInfo* scaleOf(const FieldInfo& info);
   [[nodiscard]] bool mayBeParent(const Last& last) const;
   [[nodiscard]] Status fetch(Last& last);
 
@@ -85,6 +90,7 @@ class FieldAdder {
   TetMesh matched_;                  // the mesh that `match_` is of, without fields
   MeshMatch match_;
   std::map<SeriesKey, Last> last_;
+  std::map<SeriesKey, FieldInfo> scales_;  // of series without a last instant
   std::vector<std::size_t> depths_;  // by number: how many predictions a field rests on in a row
   AddedFields added_;
 };

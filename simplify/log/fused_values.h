@@ -1,5 +1,5 @@
 // The values of a log's fused vertices, for fields that come to the log later
-// (ALGORITHM.md, "Fields added later").
+// (SERIES.md, "Fields added later").
 #pragma once
 
 #include <array>

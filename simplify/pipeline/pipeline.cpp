@@ -1,5 +1,6 @@
 #include "simplify/pipeline/pipeline.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <span>
@@ -157,9 +158,6 @@ Result<double> differInTime(FusionHistory& history, Run& run) {
   const Result<std::size_t> count =
       toTimeDifferences(history, run.options.stop, run.stages.progress(0, kDifferencesShare));
   if (!count) return std::unexpected(count.error());
-  if (*count > 0)
-    run.note({std::to_string(*count) + " of " + std::to_string(history.fields.size()) +
-              " fields are instants that are coded as differences in time"});
   return kDifferencesShare;
 }
 
@@ -189,17 +187,6 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, double 
   return MadeLog{std::move(encoded->head), std::move(*spool)};
 }
 
-/// Reads the figures of the report from the log itself.
-Status readBack(const MadeLog& log, PipelineReport& report) {
-  Result<LogIndex> index = LogIndex::parse(log.head);
-  if (!index) return std::unexpected(index.error());
-  report.index = std::move(*index);
-  Result<Manifest> manifest = manifestOf(report.index);
-  if (!manifest) return std::unexpected(manifest.error());
-  report.manifest = std::move(*manifest);
-  return {};
-}
-
 void warn(Run& run) {
   const PipelineOptions& options = run.options;
   if (!options.measure) return;
@@ -212,6 +199,23 @@ void warn(Run& run) {
 Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }
 
 }  // namespace
+
+Status readBack(const MadeLog& log, PipelineReport& report) {
+  Result<LogIndex> index = LogIndex::parse(log.head);
+  if (!index) return std::unexpected(index.error());
+  report.index = std::move(*index);
+  Result<Manifest> manifest = manifestOf(report.index);
+  if (!manifest) return std::unexpected(manifest.error());
+  report.manifest = std::move(*manifest);
+  return {};
+}
+
+std::string differencesNote(const LogIndex& index) {
+  const auto count = std::ranges::count_if(
+      index.fields, [](const FieldShape& field) { return !field.prediction.isNone(); });
+  return std::to_string(count) + " of " + std::to_string(index.fields.size()) +
+         " fields are instants that are coded as differences in time";
+}
 
 Status checkOptions(const PipelineOptions& options) {
   const FusionOptions& fusion = options.fusion;
@@ -243,6 +247,7 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   if (!log) return std::unexpected(log.error());
   run.stages.end();
   if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());
+  if (run.report.index.hasSeries()) run.note({differencesNote(run.report.index)});
   warn(run);
   return PipelineOutput{std::move(*log), std::move(run.report)};
 }

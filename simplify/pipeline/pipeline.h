@@ -78,6 +78,13 @@ struct PipelineOutput {
   PipelineReport report;
 };
 
+/// Reads index and manifest of the report from the log itself. Errors: LogIndex::parse's,
+/// manifestOf's.
+[[nodiscard]] Status readBack(const MadeLog& log, PipelineReport& report);
+
+/// "90 of 100 fields are instants that are coded as differences in time"
+[[nodiscard]] std::string differencesNote(const LogIndex& index);
+
 /// Whether the options go together and lie in their ranges. Errors: bad-value.
 [[nodiscard]] Status checkOptions(const PipelineOptions& options);
 

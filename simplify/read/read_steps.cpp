@@ -166,6 +166,7 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, Me
   begins.push_back(entries->size());
   const auto steps = chosenSteps(times, options.time, path, report.notes);
   if (!steps) return std::unexpected(steps.error());
+  report.times = times;
   std::vector<TimedCells> out;
   for (const std::size_t s : *steps) {
     ReadReport step;

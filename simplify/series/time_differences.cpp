@@ -8,13 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "simplify/clean/quantise_field.h"
 #include "simplify/series/series.h"
 
 namespace qtet {
 namespace {
-
-// With more bits a difference of a prediction could leave what a value block holds.
-constexpr int kMostBits = 24;
 
 std::int32_t differenceOf(const FusionHistory& history, std::size_t f,
                           const TimePrediction& prediction, std::size_t i) {
@@ -63,7 +61,7 @@ std::vector<double> lagrange(std::span<const double> times, double time) {
 
 /// Equal integers of both are equal values.
 bool haveOneScale(const FieldInfo& a, const FieldInfo& b) {
-  return a.bits == b.bits && a.step == b.step && a.minimum == b.minimum;
+  return a.step == b.step && a.minimum == b.minimum;
 }
 
 class Chooser {
@@ -77,7 +75,8 @@ class Chooser {
       anchorsInARow_ = rows_[f];
       return;
     }
-    if (history_.fields[f].bits > kMostBits) return;
+    // with more a difference could leave what a value block holds
+    if (history_.fields[f].bits > kMostScaleBits) return;
     best_ = {};
     least_ = bitsOf(history_, f, best_);
     if (step.isAnchor) {

@@ -138,7 +138,7 @@ TEST(Messages, whatIsTooLongIsRefusedUnread) {
 
 TEST(Messages, oneFieldTooManyIsRefused) {
   OpenMessage open = sampleOpen();
-  open.fields.assign(kMaxFields, "f");
+  open.fields.assign(kMaxRequestFields, "f");
   EXPECT_TRUE(parseClientMessage(toJson(ClientMessage(open))));
   open.fields.push_back("f");
   EXPECT_EQ(refusal(toJson(ClientMessage(open))), ErrorCode::kBadValue);

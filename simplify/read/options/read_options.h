@@ -31,7 +31,8 @@ struct ReadOptions {
   /// does the same.
   bool originalIds = false;
   std::optional<Threshold> threshold;
-  std::string time = "last";  ///< a step's, "first", "last", "all" or FROM:TO:EVERY
+  /// A step's, "first", "last", "all", FROM:TO:EVERY, or several times between commas.
+  std::string time = "last";
   /// Fields are called NAME@TIME also where one step is read, if the file knows its time.
   bool namesTime = false;
   /// The file's kind as an ending without dot; empty: as its name says.
@@ -54,6 +55,8 @@ struct ReadReport {
   bool joinedByIds = false;        ///< they were found by ids that hold for all pieces
   std::uint64_t weldedPoints = 0;  ///< joined with an earlier one
   std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
+  /// All that the file has, ascending; empty: it has none, or its reader takes all steps at once.
+  std::vector<double> times;
   std::vector<std::string> notes;  ///< also VTK's warnings
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <expected>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -53,6 +54,25 @@ std::vector<std::size_t> stepsOf(const StepRange& range, const std::vector<doubl
   return out;
 }
 
+/// The steps of the times between commas, ascending, or the first text that is none's.
+std::expected<std::vector<std::size_t>, std::string> stepsAt(const std::string& asked,
+                                                             const std::vector<double>& times) {
+  std::vector<std::size_t> out;
+  for (std::size_t at = 0, end = 0; at <= asked.size(); at = end + 1) {
+    end = std::min(asked.find(',', at), asked.size());
+    const std::string text = asked.substr(at, end - at);
+    double wanted = 0;
+    const bool isNumber = !text.empty() && readPart(std::string_view(text), wanted);
+    const auto step = std::ranges::find_if(
+        times, [&](double time) { return isNumber && isSameTime(time, wanted); });
+    if (step == times.end()) return std::unexpected(text);
+    out.push_back(static_cast<std::size_t>(step - times.begin()));
+  }
+  std::ranges::sort(out);
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
 }  // namespace
 
 std::string timeText(double x) {
@@ -83,23 +103,20 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
                       "them may be left out");
     if (std::vector<std::size_t> steps = stepsOf(*range, times); !steps.empty()) return steps;
   }
-  double wanted = 0;
-  if (!asked.empty() && readPart(std::string_view(asked), wanted)) {
-    for (const std::size_t i : all) {
-      if (isSameTime(times[i], wanted)) return std::vector<std::size_t>{i};
-    }
-  }
   if (times.empty())
     return fail(ErrorCode::kNotFound, path.string() + " has no time step " + asked +
                                           ", for it has no times; leave out `time`");
+  const auto steps = stepsAt(asked, times);
+  if (steps) return *steps;
   constexpr std::size_t kShown = 12;
   std::string there;
   for (std::size_t i = 0; i < times.size() && i < kShown; ++i)
     there += (i ? ", " : "") + timeText(times[i]);
   return fail(ErrorCode::kNotFound,
-              path.string() + " has no time step " + asked + "; it has " + there +
+              path.string() + " has no time step " + steps.error() + "; it has " + there +
                   (times.size() > kShown ? ", ..." : "") +
-                  "; give `time` one of them, FROM:TO:EVERY, first, last or all");
+                  "; give `time` one of them, several between commas, FROM:TO:EVERY, first, last "
+                  "or all");
 }
 
 }  // namespace qtet

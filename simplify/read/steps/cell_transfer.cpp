@@ -36,7 +36,7 @@ void transferStep(Io& io, Step& step) {
 template <class Io, class Report>
 void transferReport(Io& io, Report& report) {
   io.one(report.ignoredCells), io.one(report.pieces), io.one(report.joinedPoints);
-  io.one(report.joinedByIds);
+  io.one(report.joinedByIds), io.list(report.times);
   io.each(report.ignoredFields, [&](auto& name) { io.list(name); });
   io.each(report.notes, [&](auto& note) { io.list(note); });
 }
@@ -173,7 +173,7 @@ Result<std::vector<TimedCells>> receiveCells(int file, ReadReport& report) {
     return fail(ErrorCode::kBadInput, "what its reader found did not arrive");
   report.ignoredCells += told.ignoredCells;
   report.pieces = told.pieces, report.joinedPoints = told.joinedPoints;
-  report.joinedByIds = told.joinedByIds;
+  report.joinedByIds = told.joinedByIds, report.times = std::move(told.times);
   std::ranges::move(told.ignoredFields, std::back_inserter(report.ignoredFields));
   std::ranges::move(told.notes, std::back_inserter(report.notes));
   return steps;

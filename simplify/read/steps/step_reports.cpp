@@ -37,6 +37,7 @@ void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
 
 void addPiece(ReadReport&& piece, ReadReport& report) {
   report.ignoredCells += piece.ignoredCells;
+  report.times = std::move(piece.times);
   addNew(piece.ignoredFields, report.ignoredFields);
   addNew(piece.notes, report.notes);
 }

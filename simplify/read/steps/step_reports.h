@@ -37,6 +37,7 @@ Result<std::vector<TimedCells>> readChosen(const std::vector<double>& times,
                                            const ReadStep& readStep) {
   const auto steps = chosenSteps(times, options.time, path, report.notes);
   if (!steps) return std::unexpected(steps.error());
+  report.times = times;
   std::vector<TimedCells> out;
   for (std::size_t s = 0; s < std::max<std::size_t>(1, steps->size()); ++s) {
     const bool timed = !steps->empty();

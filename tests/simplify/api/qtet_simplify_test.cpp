@@ -377,7 +377,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
           [](Arrays& a, O&) { a.input.pointCount = std::uint64_t{1} << 60; });
   refused(QTET_LIMIT_EXCEEDED, "2^29",
           [](Arrays& a, O&) { a.input.tetrahedronCount = ~std::uint64_t{0}; });
-  refused(QTET_LIMIT_EXCEEDED, "1024 fields", [](Arrays& a, O&) { a.input.fieldCount = 1025; });
+  refused(QTET_LIMIT_EXCEEDED, "8192 fields", [](Arrays& a, O&) { a.input.fieldCount = 8193; });
   refused(QTET_BAD_INPUT, "points are of type 5",
           [](Arrays& a, O&) { a.input.pointType = QTET_INT32; });
   refused(QTET_BAD_INPUT, "tetrahedra are of type 1",

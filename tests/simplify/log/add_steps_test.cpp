@@ -186,13 +186,15 @@ TEST_F(AddSteps, severalWindowsOfOneAdderAreOneLog) {
   expectAll(LogFile::fromBytes(with(file, added)).value(), kInstants);
 }
 
-TEST_F(AddSteps, valuesBeyondTheSeriesScaleGetTheirOwn) {
+TEST_F(AddSteps, valuesAboveTheSeriesScaleTakeMoreBitsAndThoseBelowTheirOwnScale) {
   const LogFile file = log();
-  TetMesh large = steps(kBefore, kBefore + 1, 3);
-  const AddedFields added = addFields(file, large).value();
-  ASSERT_EQ(added.fields.size(), 1u);
-  EXPECT_TRUE(added.fields[0].prediction.isNone());
-  EXPECT_NE(added.fields[0].info.step, 0.25);
+  const AddedFields above = addFields(file, steps(kBefore, kBefore + 1, 3)).value();
+  EXPECT_EQ(above.fields[0].info.step, 0.25);
+  EXPECT_EQ(above.fields[0].info.bits, 14);
+  const AddedFields below = addFields(file, steps(kBefore, kBefore + 1, -3)).value();
+  ASSERT_EQ(below.fields.size(), 1u);
+  EXPECT_TRUE(below.fields[0].prediction.isNone());
+  EXPECT_NE(below.fields[0].info.step, 0.25);
   const AddedFields within = addFields(file, steps(kBefore, kBefore + 1)).value();
   EXPECT_EQ(within.fields[0].info.step, 0.25);
 }

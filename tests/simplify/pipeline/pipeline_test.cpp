@@ -182,7 +182,7 @@ TEST(Arrays, whatALogCannotHoldIsNamed) {
           [](TetMesh& m) { m.fields[2].values[5] = std::numeric_limits<double>::quiet_NaN(); });
   refused("two point fields are called Swirl", [](TetMesh& m) { m.fields[0].name = "Swirl"; });
   refused(
-      "more than 1024 fields", [](TetMesh& m) { m.fields.resize(1025); },
+      "more than 8192 fields", [](TetMesh& m) { m.fields.resize(kMaxFields + 1); },
       ErrorCode::kLimitExceeded);
 }
 

@@ -34,6 +34,16 @@ TEST(TimeSteps, aRangeWithoutStepsSaysWhichThereAre) {
   EXPECT_EQ(stepsOf("0:1", {}).error().code, ErrorCode::kNotFound);
 }
 
+TEST(TimeSteps, timesBetweenCommasAreTakenInOrderAndOnce) {
+  EXPECT_EQ(stepsOf("5,0.1,-1,0.1").value(), (Steps{0, 2, 5}));
+  for (const char* asked : {"0,7", "0,,1", ",", "0,"}) {
+    const auto steps = stepsOf(asked);
+    ASSERT_FALSE(steps) << asked;
+    EXPECT_EQ(steps.error().code, ErrorCode::kNotFound) << asked;
+  }
+  EXPECT_NE(stepsOf("0,7").error().message.find("no time step 7"), std::string::npos);
+}
+
 TEST(TimeSteps, aRangeOfOtherPartsIsRefused) {
   for (const char* asked :
        {"a:", ":b", "::0", "::-1", "::1.5", "0:1:2:3", "nan:", "0 :1", "::99999999999999999999"}) {

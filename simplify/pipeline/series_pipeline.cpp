@@ -1,0 +1,125 @@
+#include "simplify/pipeline/series_pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <utility>
+
+#include "codec/log/log_manifest.h"
+#include "codec/refine/log_edit.h"
+#include "codec/refine/log_file.h"
+#include "proto/field_key.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/log/add_fields.h"
+#include "simplify/series/series.h"
+
+namespace qtet {
+namespace {
+
+/// The log's fields that are no instants.
+std::vector<std::uint32_t> fieldsWithoutTime(const Manifest& manifest) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t f = 0; f < manifest.fields.size(); ++f)
+    if (!instantName(manifest.fields[f].name)) out.push_back(f);
+  return out;
+}
+
+AddFieldsOptions addingOptions(const PipelineOptions& options) {
+  AddFieldsOptions out;
+  out.fieldBits = options.quantise.fieldBits;
+  if (options.measure) out.effort = options.measure->effort;
+  out.threads = options.fusion.threads;
+  out.scalesOfOthers = true;
+  return out;
+}
+
+Status addAll(std::size_t steps, const InstantsReader& read, const PipelineOptions& options,
+              FieldAdder& adder) {
+  // the first window has both of its ends; the others begin with the end of the one before
+  for (std::size_t begin = 0, end = kWindow + 1; begin < steps; begin = end, end += kWindow) {
+    if (options.stop.stop_requested()) return cancelled();
+    if (options.progress)
+      options.progress(Stage::kEncode, static_cast<double>(begin) / static_cast<double>(steps));
+    std::vector<std::size_t> window(std::min(end, steps) - begin);
+    std::iota(window.begin(), window.end(), begin);
+    Result<TetMesh> mesh = read(window);
+    if (!mesh) return std::unexpected(mesh.error());
+    std::erase_if(mesh->fields, [](const MeshField& field) { return !instantName(field.name); });
+    if (const auto cleaned = cleanMesh(*mesh, options.stop); !cleaned)
+      return std::unexpected(cleaned.error());
+    if (Status s = adder.add(*mesh); !s) return s;
+  }
+  return {};
+}
+
+/// Puts the new log in the place of that of the sample.
+Status replaceLog(const EditedLog& edited, const PipelineOptions& options, PipelineOutput& out) {
+  Result<std::unique_ptr<ByteSpool>> spool =
+      options.spool ? options.spool() : std::make_unique<MemorySpool>();
+  if (!spool) return std::unexpected(spool.error());
+  if (Status s = edited.writeBlocksTo([&](ByteView block) { return (*spool)->append(block); }); !s)
+    return s;
+  out.log = {edited.head(), std::move(*spool)};
+  return readBack(out.log, out.report);
+}
+
+/// The figures of the mesh are those of the sample's log. Those of the fields are counted anew.
+void countFields(PipelineReport& report) {
+  LogStatistics& statistics = report.statistics;
+  statistics.headBytes = report.index.headBytes();
+  statistics.fileBytes = report.index.fileBytes;
+  statistics.fieldBytes.assign(report.index.fields.size(), 0);
+  for (const ChunkEntry& chunk : report.index.chunks)
+    for (std::size_t f = 0; f < statistics.fieldBytes.size(); ++f)
+      statistics.fieldBytes[f] += chunk.blocks[kFirstFieldPart + f].size;
+  statistics.baseBytes = report.index.chunks.front().size();
+}
+
+}  // namespace
+
+std::vector<std::size_t> sampledSteps(std::size_t steps) {
+  const std::size_t count = std::min(steps, kSampledInstants);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < count; ++i)
+    out.push_back(count == 1 ? 0 : i * (steps - 1) / (count - 1));
+  return out;
+}
+
+Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
+                                      const InstantsReader& read, const PipelineOptions& options) {
+  if (options.keep.exact)
+    return fail(ErrorCode::kBadValue,
+                "`lossless` keeps the values of all instants in memory, which are too many; leave "
+                "it out, or choose fewer with `time`");
+  Result<PipelineOutput> out = simplifyToLog(std::move(sample), options);
+  if (!out) return out;
+  const auto start = std::chrono::steady_clock::now();
+  Result<Bytes> bytes = out->log.bytes();
+  if (!bytes) return std::unexpected(bytes.error());
+  out->log = {};
+  const Result<LogFile> log = LogFile::fromBytes(std::move(*bytes));
+  if (!log) return std::unexpected(log.error());
+  AddFieldsOptions adding = addingOptions(options);
+  adding.kept = fieldsWithoutTime(out->report.manifest);
+  Result<FieldAdder> adder = FieldAdder::make(*log, adding);
+  if (!adder) return std::unexpected(adder.error());
+  if (Status s = addAll(steps, read, options, *adder); !s) return std::unexpected(s.error());
+  const AddedFields added = adder->take();
+  const Result<EditedLog> edited = withFields(*log, *adding.kept, added.fields);
+  if (!edited) return std::unexpected(edited.error());
+  PipelineReport& report = out->report;
+  std::erase(report.notes, differencesNote(report.index));
+  if (Status s = replaceLog(*edited, options, *out); !s) return std::unexpected(s.error());
+  countFields(report);
+  if (report.index.hasSeries()) report.notes.push_back(differencesNote(report.index));
+  report.notes.push_back(
+      std::to_string(steps) + " instants are coded in windows of " + std::to_string(kWindow) +
+      "; the base mesh is that of " + std::to_string(sampledSteps(steps).size()) + " of them");
+  report.notes.insert(report.notes.end(), added.notes.begin(), added.notes.end());
+  report.seconds.emplace_back(
+      Stage::kEncode,
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,35 @@
+// Series whose steps are read a few at a time: each step holds a whole mesh while it is read.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "simplify/read/read_mesh.h"
+
+namespace qtet {
+
+/// The steps of a file that the options mean.
+struct ChosenTimes {
+  std::vector<double> times;       ///< ascending
+  std::size_t valuesOfAStep = 0;  ///< numbers in all fields of the first step
+};
+
+/// Empty if `options.time` means one step, and for formats whose reader takes all steps at once.
+/// Reads the file's first step. Errors: readMesh's.
+[[nodiscard]] Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path,
+                                                const ReadOptions& options);
+
+/// Reads the steps at these times as one mesh, whose fields are called NAME@TIME. Errors:
+/// readMesh's.
+[[nodiscard]] Result<ReadMesh> readTimes(const std::filesystem::path& path,
+                                         const ReadOptions& options, std::span<const double> times);
+
+/// The same, `atOnce` steps at a time. Errors: also bad-input (steps with different meshes).
+/// REQUIRES: one time at least.
+[[nodiscard]] Result<ReadMesh> readTimes(const std::filesystem::path& path,
+                                         const ReadOptions& options, std::span<const double> times,
+                                         std::size_t atOnce);
+
+}  // namespace qtet

@@ -1,0 +1,138 @@
+// Long series: a sample chooses the fusions, and all instants come back at the last level.
+#include "simplify/pipeline/series_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "codec/log/log_manifest.h"
+#include "codec/refine/log_file.h"
+#include "simplify/read/options/time_steps.h"
+#include "tests/support/meshes.h"
+
+namespace qtet {
+namespace {
+
+using Steps = std::vector<std::size_t>;
+
+TEST(SampledSteps, haveBothEndsAndEqualDistances) {
+  EXPECT_EQ(sampledSteps(1), (Steps{0}));
+  EXPECT_EQ(sampledSteps(kSampledInstants), (Steps{0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(sampledSteps(15), (Steps{0, 2, 4, 6, 8, 10, 12, 14}));
+  EXPECT_EQ(sampledSteps(1000).back(), 999u);
+}
+
+class SeriesPipeline : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kSteps = 30;
+
+  SeriesPipeline() {
+    const LatticeMesh grid = testing::gridMesh(5, 3);
+    for (const LatticePoint& p : grid.points) mesh_.points.push_back(grid.lattice.position(p));
+    mesh_.tetrahedra = grid.tetrahedra;
+  }
+
+  /// T travels and jumps at one instant, which is none of the sample's; C counts on cells.
+  [[nodiscard]] Result<TetMesh> read(std::span<const std::size_t> steps) const {
+    TetMesh out = mesh_;
+    for (const std::size_t step : steps) {
+      MeshField t{"T@" + timeText(0.1 * static_cast<double>(step)), 1, "float32", {}, "point"};
+      for (const Position& p : out.points)
+        t.values.push_back(static_cast<float>((step == jump_ ? factor_ : 1) *
+                                              (p[0] + std::sqrt(1.0 + p[1] * p[1]) * 0.01 *
+                                                          static_cast<double>(step))));
+      MeshField c{"C@" + timeText(0.1 * static_cast<double>(step)), 1, "int32", {}, "cell"};
+      for (std::size_t i = 0; i < out.tetrahedra.size(); ++i)
+        c.values.push_back(static_cast<double>(i % 7 + step));
+      out.fields.push_back(std::move(t)), out.fields.push_back(std::move(c));
+    }
+    return out;
+  }
+  [[nodiscard]] Result<PipelineOutput> make(const PipelineOptions& options = {}) const {
+    return simplifySeries(
+        read(sampledSteps(kSteps)).value(), kSteps,
+        [&](std::span<const std::size_t> steps) { return read(steps); }, options);
+  }
+
+  TetMesh mesh_;
+  std::size_t jump_ = kSteps;
+  double factor_ = 5;
+};
+
+TEST_F(SeriesPipeline, everyInstantComesBackAtTheLastLevel) {
+  jump_ = 5;
+  const PipelineOutput made = make().value();
+  const LogFile log = LogFile::fromBytes(made.log.bytes().value()).value();
+  ASSERT_TRUE(log.verifyChecksums());
+  const LatticeMesh finest =
+      meshAtLevel(log, log.chunks().back().lastLevel, std::nullopt).value();
+  ASSERT_EQ(finest.fields.size(), 2 * kSteps);
+  ASSERT_EQ(made.report.manifest.fields.size(), 2 * kSteps);
+  Steps all(kSteps);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const TetMesh input = read(all).value();
+  std::map<LatticePoint, std::size_t> places;
+  for (std::size_t i = 0; i < input.points.size(); ++i) {
+    LatticePoint p{};
+    for (std::size_t a = 0; a < 3; ++a)
+      p[a] = static_cast<std::int32_t>(
+          std::lround((input.points[i][a] - finest.lattice.origin[a]) / finest.lattice.step));
+    places[p] = i;
+  }
+  for (std::size_t f = 0; f < finest.fields.size(); ++f) {
+    const FieldInfo& info = finest.fields[f];
+    const auto from = std::ranges::find(input.fields, info.name, &MeshField::name);
+    ASSERT_NE(from, input.fields.end()) << info.name;
+    if (isCellField(info)) continue;
+    for (std::size_t i = 0; i < finest.points.size(); ++i)
+      ASSERT_NEAR(info.value(0, finest.values[f][i]),
+                  from->values[places.at(finest.points[i])], 0.501 * info.step)
+          << info.name << " " << i;
+  }
+}
+
+TEST_F(SeriesPipeline, allInstantsOfASeriesHaveOneStepAndMostArePredicted) {
+  jump_ = 5;
+  const PipelineOutput made = make().value();
+  std::size_t alone = 0;
+  for (std::size_t f = 0; f < made.report.manifest.fields.size(); ++f) {
+    const ManifestField& field = made.report.manifest.fields[f];
+    if (field.association != "point") continue;
+    EXPECT_EQ(field.step, made.report.manifest.fields[0].step) << field.name;
+    alone += made.report.index.fields[f].prediction.isNone();
+  }
+  EXPECT_LE(alone, 3u);
+}
+
+TEST_F(SeriesPipeline, instantsBelowTheRoomOfTheSampleHaveTheirOwnStep) {
+  jump_ = 5, factor_ = -5;
+  const PipelineOutput made = make().value();
+  const auto jump = std::ranges::find(made.report.manifest.fields, "T@0.5", &ManifestField::name);
+  ASSERT_NE(jump, made.report.manifest.fields.end());
+  EXPECT_NE(jump->step, made.report.manifest.fields[0].step);
+}
+
+TEST_F(SeriesPipeline, givesTheSameBytesTwiceAndWithTwoThreads) {
+  PipelineOptions two;
+  two.fusion.threads = 2;
+  const Bytes once = make().value().log.bytes().value();
+  EXPECT_EQ(once, make(two).value().log.bytes().value());
+}
+
+TEST_F(SeriesPipeline, refusesExactValuesAndPassesAReadersErrorOn) {
+  PipelineOptions exact;
+  exact.keep.exact = true;
+  EXPECT_EQ(make(exact).error().code, ErrorCode::kBadValue);
+  const auto broken = [](std::span<const std::size_t>) -> Result<TetMesh> {
+    return fail(ErrorCode::kIo, "gone");
+  };
+  const auto made = simplifySeries(read(sampledSteps(kSteps)).value(), kSteps, broken, {});
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kIo);
+}
+
+}  // namespace
+}  // namespace qtet
