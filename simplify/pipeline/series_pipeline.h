@@ -1,5 +1,5 @@
-// Makes the log of a series that is too large for memory (SERIES.md, "Long series"). A sample of its
-// instants chooses the fusions. Then all instants are coded in windows.
+// Makes the log of a series that is too large for memory (SERIES.md, "Long series"). A sample of
+// its instants chooses the fusions. Then all instants are coded in windows.
 #pragma once
 
 #include <cstddef>
