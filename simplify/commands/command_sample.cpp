@@ -22,13 +22,15 @@ int runSample(const Words& words, Console& console) {
       "cells", po::value<double>(),
       "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)")(
       "steps", po::value<int>(),
-      ("so many time steps of each field, 2 to " + std::to_string(kMaxSampleInstants) + " (fin)")
+      ("so many time steps of each field, 2 to " + std::to_string(kMaxSampleInstants) +
+       " (fin, beam)")
           .c_str());
   const ParsedWords parsed(
       words,
       {"sample", "sample NAME -o FILE.vtu [--cells N] [--steps N]", listOfSamples(),
        "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"
-       "  qtet sample fin --steps 40 -o run.vtu\n"},
+       "  qtet sample fin --steps 40 -o run.vtu\n"
+       "  qtet sample beam --steps 40 -o swing.vtu\n"},
       options, {"NAME"});
   if (parsed.helped(console)) return kExitOk;
 

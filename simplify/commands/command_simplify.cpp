@@ -237,11 +237,14 @@ Result<Made> makeAtOnce(const Request& request, const std::vector<double>& times
 Result<Made> makeInWindows(const Request& request, const std::vector<double>& times,
                            const PipelineOptions& options, Stopwatch& watch) {
   ReadReport report;
+  bool moves = false;  // which the sample shows; it begins with the first step
   const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
     std::vector<double> some;
     for (const std::size_t step : steps) some.push_back(times[step]);
-    Result<ReadMesh> window = readTimes(request.input, request.read, some);
+    const auto rest = moves ? std::optional(times.front()) : std::nullopt;
+    Result<ReadMesh> window = readTimes(request.input, request.read, some, rest);
     if (!window) return std::unexpected(window.error());
+    moves = moves || !window->report.motion.empty();
     addNew(report.notes, window->report.notes);
     report = std::move(window->report);
     return std::move(window->mesh);

@@ -224,6 +224,11 @@ void FusionPointFinder::count(bool isRefused) {
   refused_ += kLastShare * ((isRefused ? 1 : 0) - refused_);
 }
 
+// Asked last, as the fields' values at the point take longer than all else.
+bool FusionPointFinder::flipsMoved(const LatticePoint& p, const FusionCheck& test) {
+  return test.mayMove() && test.flipsMoved(p, moved_.at(prey_, p));
+}
+
 void FusionPointFinder::choose(std::span<const Choice> choices, const FusionCheck& test) {
   const double wanted = std::min(kGoodShape, test.oldShape());
   for (const Choice& choice : choices) {
@@ -238,6 +243,7 @@ void FusionPointFinder::choose(std::span<const Choice> choices, const FusionChec
         shape < wanted ? 1 + options_.shapeWeight * (wanted / std::max(shape, kFlat) - 1) : 1;
     if (found_ && choice.compared * factor >= least_) continue;
     if (choice.isOutside && !test.staysNear(choice.point)) continue;
+    if (flipsMoved(choice.point, test)) continue;
     least_ = choice.compared * factor;
     found_ = FusionPoint{choice.point, choice.cost * factor, choice.isOutside};
   }

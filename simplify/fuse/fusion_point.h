@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "simplify/cost/fusion_cost.h"
+#include "simplify/fuse/fused_integers.h"
 #include "simplify/fuse/placement_rule.h"
 #include "simplify/legality/fusion_check.h"
 
@@ -20,13 +22,15 @@ struct FusionPoint {
 struct FusionPointOptions {
   PlacementRule rule = PlacementRule::kAuto;
   double shapeWeight = 0.5;  ///< FusionOptions::shapeWeight
+  /// FusionLimits::displacements of the check that is asked.
+  std::span<const std::size_t> displacements{};
 };
 
 class FusionPointFinder {
  public:
   FusionPointFinder(const FusionMesh& mesh, const FusionCost& cost,
                     const FusionPointOptions& options)
-      : mesh_(mesh), cost_(cost), options_(options) {}
+      : mesh_(mesh), cost_(cost), options_(options), moved_(mesh, cost, options.displacements) {}
 
   /// The unconstrained minimum of the prey's quadric, and the cost there: by how much it is off
   /// more than its vertices are.
@@ -78,12 +82,14 @@ class FusionPointFinder {
   void offerCheap(const Prey& prey, const FusionCheck& test);
   void offerFree(const FusionCheck& test);
   [[nodiscard]] bool isFreeToCome() const { return std::isfinite(minFree_); }
+  [[nodiscard]] bool flipsMoved(const LatticePoint& p, const FusionCheck& test);
   void choose(std::span<const Choice> choices, const FusionCheck& test);
   void count(bool isRefused);
 
   const FusionMesh& mesh_;
   const FusionCost& cost_;
   FusionPointOptions options_;
+  SomeIntegers moved_;  // the displacements
   Prey prey_;
   Quadric quadric_;
   Vector3 origin_{};

@@ -45,7 +45,6 @@ class FusionState {
 
  private:
   void findIntegers(const Prey& prey, const LatticePoint& point, std::span<const double> values);
-  [[nodiscard]] VertexId nearest(const Prey& prey, const LatticePoint& point) const;
 
   FusionMesh mesh_;
   FusionCost cost_;

@@ -16,6 +16,7 @@
 #include "simplify/fuse/live_boundary.h"
 #include "simplify/fuse/open_vertices.h"
 #include "simplify/legality/allowed_space.h"
+#include "simplify/mesh/moved_place.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
@@ -45,6 +46,7 @@ class Simplifier {
       : options_(options),
         cells_(mesh.tetrahedra.size()),
         target_(baseCellsOf(options, cells_)),
+        displacements_(sampledDisplacements(mesh, options.checkedInstants)),
         workers_(options.threads, options.stop),
         state_(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost, workers_) {
     state_.keep(options.kept);
@@ -105,12 +107,12 @@ class Simplifier {
   /// Limits fusions by the worst shape of a cell, and the cosine of the largest turn of a boundary
   /// triangle.
   void limitBy(double shapeFloor, double normalCosine) {
-    const FusionLimits limits{shapeFloor, allowed_.get(), normalCosine};
+    const FusionLimits limits{shapeFloor, allowed_.get(), normalCosine, displacements_};
     proposers_.clear();
     for (std::size_t i = 0; i < workers_.count(); ++i)
       proposers_.push_back(std::make_unique<FusionProposer>(
           state_.mesh(), state_.cost(), state_.changes(), limits,
-          FusionPointOptions{options_.placement, options_.shapeWeight}));
+          FusionPointOptions{options_.placement, options_.shapeWeight, displacements_}));
   }
 
   [[nodiscard]] double progress() const {
@@ -123,6 +125,7 @@ class Simplifier {
 
   const FusionOptions& options_;
   std::size_t cells_, target_;  // tetrahedra: at first, and as few as these
+  std::vector<std::size_t> displacements_;
   Workers workers_;
   FusionState state_;
   // where fusions may go outside

@@ -25,6 +25,9 @@ inline constexpr std::size_t kMaxBaseCells = 30'000;
 /// then, and logs are smaller at equal errors (ALGORITHM.md, "The envelope's tolerance").
 inline constexpr double kEnvelopeTolerance = 0.005;
 
+/// FusionOptions::checkedInstants where nothing else is asked for.
+inline constexpr std::size_t kCheckedInstants = 8;
+
 struct FusionOptions {
   /// Stop when this fraction of the cells remains, 0..1.
   std::optional<double> targetRatio{};
@@ -38,6 +41,8 @@ struct FusionOptions {
   /// The weight of badly shaped new cells in the cost, >= 0 (ALGORITHM.md, "Shape").
   double shapeWeight = 0.5;
   PlacementRule placement = PlacementRule::kAuto;
+  /// Instants of a field Displacement at which no cell may flip, at most (moved_place.h).
+  std::size_t checkedInstants = kCheckedInstants;
   /// Vertices that no fusion takes, such as those that the patches of a mesh share.
   std::vector<VertexId> kept{};
   int threads = 1;                                ///< the result never depends on it

@@ -10,7 +10,8 @@ FusionCheck::FusionCheck(const FusionMesh& mesh, const FusionLimits& limits)
       envelope_(mesh, limits.normalCosine),
       flips_(mesh),
       star_(mesh),
-      shapes_(mesh, star_, limits.shapeFloor) {}
+      shapes_(mesh, star_, limits.shapeFloor),
+      moved_(mesh, star_, limits_.displacements) {}
 
 bool FusionCheck::gatherBoundary(const Prey& prey) {
   if (starCellsOf(mesh_, prey) > kMaxStarCells) return false;
@@ -23,6 +24,7 @@ bool FusionCheck::gatherBoundary(const Prey& prey) {
 bool FusionCheck::gatherRest() {
   if (!star_.gather(prey_)) return false;
   shapes_.measure();
+  moved_.forget();
   return true;
 }
 

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "simplify/legality/boundary_envelope.h"
 #include "simplify/legality/flip_check.h"
 #include "simplify/legality/full_link_check.h"
 #include "simplify/legality/local_star.h"
+#include "simplify/legality/moved_check.h"
 #include "simplify/legality/region_check.h"
 #include "simplify/legality/star_shapes.h"
 #include "simplify/mesh/fusion_mesh.h"
@@ -25,6 +27,8 @@ struct FusionLimits {
   /// Cosine of the largest angle by which a boundary triangle may turn in one fusion; negative:
   /// any.
   double normalCosine = -1;
+  /// The fields of displacements at whose instants no cell may flip either (sampledDisplacements).
+  std::span<const std::size_t> displacements{};
 };
 
 /// One thread's own; the mesh may be shared while nobody fuses.
@@ -69,6 +73,13 @@ class FusionCheck {
   /// where p is not legal, since a cell would flip or be squashed or a boundary triangle turn too
   /// far. Also negative where the shape is worse than `least`. REQUIRES gather, p on the lattice.
   [[nodiscard]] double shapeAt(const LatticePoint& p, double least = 0) const;
+  /// Whether instants at which the mesh has moved count, too.
+  [[nodiscard]] bool mayMove() const { return !limits_.displacements.empty(); }
+  /// Whether a cell would flip at one of them with the prey at p (moved_check.h). REQUIRES gather.
+  [[nodiscard]] bool flipsMoved(const LatticePoint& p,
+                                std::span<const std::int32_t> integers) const {
+    return moved_.flipsAt(p, integers);
+  }
   /// The worst shape in the star as it is. REQUIRES gather.
   [[nodiscard]] double oldShape() const { return shapes_.old(); }
 
@@ -85,6 +96,7 @@ class FusionCheck {
   FlipCheck flips_;
   LocalStar star_;
   StarShapes shapes_;
+  mutable MovedCheck moved_;  // remembers the star's places
   FullLinkCheck link_;
   RegionCheck regions_;
 };

@@ -135,6 +135,7 @@ class FusionMesh {
   [[nodiscard]] std::size_t boundaryTriangles() const { return planes_.size(); }
   [[nodiscard]] CellId firstGhost() const { return firstGhost_; }
   [[nodiscard]] std::size_t liveTetrahedra() const { return liveTetrahedra_; }
+  [[nodiscard]] const Lattice& lattice() const { return history_.lattice; }
   [[nodiscard]] int latticeBits() const { return history_.lattice.bits; }
   [[nodiscard]] std::span<const FieldInfo> fields() const { return history_.fields; }
   [[nodiscard]] std::span<const std::int32_t> values(std::size_t field, VertexId v) const {

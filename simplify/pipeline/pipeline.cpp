@@ -11,8 +11,10 @@
 #include "simplify/measure/focus.h"
 #include "simplify/measure/opening.h"
 #include "simplify/mesh/missing_values.h"
+#include "simplify/mesh/moved_place.h"
 #include "simplify/pipeline/fusion_choice.h"
 #include "simplify/pipeline/loss_warnings.h"
+#include "simplify/pipeline/moved_flips.h"
 #include "simplify/series/series.h"
 #include "simplify/series/time_differences.h"
 
@@ -69,6 +71,7 @@ struct Run {
   double wallThickness = 0;          ///< of the mesh before the first fusion
   std::optional<Focus> focus{};      ///< the same
   std::optional<Opening> opening{};  ///< the same
+  MovedFlips flips{};                ///< of the base mesh
 
   void note(const std::vector<std::string>& sentences) {
     report.notes.insert(report.notes.end(), sentences.begin(), sentences.end());
@@ -189,11 +192,12 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, double 
 
 void warn(Run& run) {
   const PipelineOptions& options = run.options;
-  if (!options.measure) return;
-  run.report.warnings = lossWarnings(
-      run.report.manifest,
-      {run.report.clean, run.wallThickness, options.measure->bounds.boundary.value_or(0),
-       options.fusion.targetRatio.has_value(), !options.measure->base && baseRuleOf(options)});
+  if (options.measure)
+    run.report.warnings = lossWarnings(
+        run.report.manifest,
+        {run.report.clean, run.wallThickness, options.measure->bounds.boundary.value_or(0),
+         options.fusion.targetRatio.has_value(), !options.measure->base && baseRuleOf(options)});
+  if (const auto warning = run.flips.warning()) run.report.warnings.push_back(*warning);
 }
 
 Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }
@@ -240,6 +244,10 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   if (!history) return std::unexpected(history.error());
   Result<LevelErrors> errors = measure(*history, run);
   if (!errors) return std::unexpected(errors.error());
+  run.flips = movedFlips(*history);
+  if (run.flips.instants > 1 && run.flips.flipped == 0)
+    run.note({"no cell of the base mesh is inside out at the " +
+              std::to_string(run.flips.instants) + " instants of " + std::string(kDisplacement)});
   restoreMissing(*history, quantised->missing);
   const Result<double> done = differInTime(*history, run);
   if (!done) return std::unexpected(done.error());

@@ -62,23 +62,23 @@ bool hasFaces(const std::filesystem::path& path) {
 }
 
 Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesystem::path& path,
-                        const ReadOptions& options) {
+                        const ReadOptions& options, ReadReport& report) {
   if (!steps) return std::unexpected(steps.error());
   if (steps->size() == 1 && !(options.namesTime && !steps->front().time.empty()))
     return std::move(steps->front().cells);
-  return joinSteps(std::move(*steps), path);
+  return joinSteps(std::move(*steps), path, options.fields, report);
 }
 
 Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std::string& kind,
                                    const ReadOptions& options, ReadReport& report) {
   Result<CellMesh> out = CellMesh{};
-  const Status done =
-      throughMeshio({path, kind, options.time, options.patience},
-                    [&](const std::filesystem::path& file) -> Status {
-                      out = joined(readSteps(file, formatOf(file), options, report), path, options);
-                      if (!out) return std::unexpected(out.error());
-                      return {};
-                    });
+  const Status done = throughMeshio({path, kind, options.time, options.patience},
+                                    [&](const std::filesystem::path& file) -> Status {
+                                      out = joined(readSteps(file, formatOf(file), options, report),
+                                                   path, options, report);
+                                      if (!out) return std::unexpected(out.error());
+                                      return {};
+                                    });
   if (!done) return std::unexpected(done.error());
   return out;
 }
@@ -86,7 +86,7 @@ Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std:
 Result<CellMesh> readFluent(const std::filesystem::path& path, const ReadOptions& options,
                             ReadReport& report) {
   if (!hasFaces(path)) return readThroughMeshio(path, "ansys", options, report);
-  return joined(readSteps(path, MeshFormat::kFluent, options, report), path, options);
+  return joined(readSteps(path, MeshFormat::kFluent, options, report), path, options, report);
 }
 
 Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
@@ -173,7 +173,7 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
     case MeshFormat::kOther: return readThroughMeshio(path, options.format, options, report);
     default: break;
   }
-  return joined(readSteps(path, format, options, report), path, options);
+  return joined(readSteps(path, format, options, report), path, options, report);
 }
 
 /// "of its 12 cells, 8 hexahedron and 4 wedge were split"
@@ -262,7 +262,7 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
       return std::unexpected(done.error());
   }
   if (options.weld) {
-    report.weldedPoints = weldPoints(*cells, *options.weld);
+    report.weldedPoints = weldPoints(*cells, *options.weld, report.motion);
     report.notes.push_back("points joined with an earlier one (`weld`): " +
                            std::to_string(report.weldedPoints));
   }

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <string>
 
+#include "proto/field_key.h"
+#include "proto/series.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/steps/step_reports.h"
 
@@ -27,27 +29,35 @@ Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path, const ReadO
 }
 
 Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions& options,
-                           std::span<const double> times) {
+                           std::span<const double> times, std::optional<double> rest) {
   ReadOptions some = options;
   some.namesTime = true;
-  some.time.clear();
+  const bool isOneMore = rest && std::ranges::find(times, *rest) == times.end();
+  some.time = isOneMore ? timeText(*rest) : "";
   for (const double time : times) some.time += (some.time.empty() ? "" : ",") + timeText(time);
-  return readMesh(path, some);
+  Result<ReadMesh> out = readMesh(path, some);
+  if (out && isOneMore)
+    std::erase_if(out->mesh.fields, [&](const MeshField& field) {
+      const auto name = instantName(field.name);
+      return name && isSameTime(name->time, *rest);
+    });
+  return out;
 }
 
 Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions& options,
                            std::span<const double> times, std::size_t atOnce) {
-  Result<ReadMesh> out = readTimes(path, options, times.first(std::min(atOnce, times.size())));
+  const auto part = [&](std::size_t at) {
+    return times.subspan(at, std::min(atOnce, times.size() - at));
+  };
+  Result<ReadMesh> out = readTimes(path, options, part(0));
   for (std::size_t at = atOnce; out && at < times.size(); at += atOnce) {
-    const auto next = times.subspan(at, std::min(atOnce, times.size() - at));
-    Result<ReadMesh> more = readTimes(path, options, next);
+    const bool moves = !out->report.motion.empty();
+    Result<ReadMesh> more =
+        readTimes(path, options, part(at), moves ? std::optional(times.front()) : std::nullopt);
     if (!more) return more;
-    if (more->mesh.points != out->mesh.points || more->mesh.tetrahedra != out->mesh.tetrahedra)
-      return fail(ErrorCode::kBadInput, path.string() + ": the mesh at time " +
-                                            timeText(next.front()) + " is not that of time " +
-                                            timeText(times.front()) +
-                                            "; make a log of each step, with `time` " +
-                                            timeText(next.front()) + " and so on");
+    if (more->mesh.points != out->mesh.points || more->mesh.tetrahedra != out->mesh.tetrahedra ||
+        (!moves && !more->report.motion.empty()))
+      return readTimes(path, options, times);
     std::ranges::move(more->mesh.fields, std::back_inserter(out->mesh.fields));
     addNew(more->report.notes, out->report.notes);
   }

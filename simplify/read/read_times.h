@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,13 +22,14 @@ struct ChosenTimes {
 [[nodiscard]] Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path,
                                                 const ReadOptions& options);
 
-/// Reads the steps at these times as one mesh, whose fields are called NAME@TIME. Errors:
-/// readMesh's.
+/// Reads the steps at these times as one mesh, whose fields are called NAME@TIME. Where points move,
+/// the mesh is that of the step at `rest`, else of the first one. Errors: readMesh's.
 [[nodiscard]] Result<ReadMesh> readTimes(const std::filesystem::path& path,
-                                         const ReadOptions& options, std::span<const double> times);
+                                         const ReadOptions& options, std::span<const double> times,
+                                         std::optional<double> rest = std::nullopt);
 
-/// The same, `atOnce` steps at a time. Errors: also bad-input (steps with different meshes).
-/// REQUIRES: one time at least.
+/// The same, `atOnce` steps at a time, or all at once where points begin to move behind the first
+/// so many. The first step is that of rest. REQUIRES: one time at least.
 [[nodiscard]] Result<ReadMesh> readTimes(const std::filesystem::path& path,
                                          const ReadOptions& options, std::span<const double> times,
                                          std::size_t atOnce);

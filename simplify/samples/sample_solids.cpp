@@ -68,21 +68,103 @@ MeshField vectors(const char* name) { return {name, 3, "float32", {}}; }
 
 }  // namespace
 
+namespace {
+
+constexpr double kBeamLength = 10, kBeamWidth = 1, kBeamHeight = 1.6, kBeamStiffness = 2e5;
+constexpr double kBeamInertia = kBeamWidth * kBeamHeight * kBeamHeight * kBeamHeight / 12;
+constexpr VertexId kBeamColumns = 80;
+constexpr CubeGrid kBeamGrid{{kBeamColumns, 10, 14}};
+
+Position beamPoint(const Position& u) {
+  return {kBeamLength * u[0], kBeamWidth * (u[1] - 0.5), kBeamHeight * (u[2] - 0.5)};
+}
+
+/// The von Mises stress under a load at the free end.
+double beamStress(const Position& p, double load) {
+  const double bending = load * (kBeamLength - p[0]) * p[2] / kBeamInertia;
+  const double shear = load / (2 * kBeamInertia) * (kBeamHeight * kBeamHeight / 4 - p[2] * p[2]);
+  return std::sqrt(bending * bending + 3 * shear * shear);
+}
+
+/// A column of the bent beam: where its axis is, and the unit vector along it; x and z of both.
+struct BeamColumn {
+  Pair place{}, along{};
+};
+
+/// The columns where the free end's slope is so many turns. The slope grows along the beam as Euler
+/// and Bernoulli's formula says; the axis keeps its length.
+std::vector<BeamColumn> bentBeam(double turns) {
+  const auto along = [turns](double share) {
+    const Pair v = turned(turns * share * (2 - share));
+    return Pair{v[0], -v[1]};
+  };
+  std::vector<BeamColumn> columns;
+  columns.push_back({{0, 0}, along(0)});
+  for (VertexId i = 1; i <= kBeamColumns; ++i) {
+    const BeamColumn& last = columns.back();
+    BeamColumn next{last.place, along(static_cast<double>(i) / kBeamColumns)};
+    const Pair middle = along((i - 0.5) / kBeamColumns);
+    for (std::size_t k = 0; k < 2; ++k)  // by Simpson's rule
+      next.place[k] +=
+          kBeamLength / kBeamColumns * (last.along[k] + 4 * middle[k] + next.along[k]) / 6;
+    columns.push_back(next);
+  }
+  return columns;
+}
+
+/// The load's share `time` (0..1) after it was put on at once: the beam goes beyond its place,
+/// swings twice, and comes to rest.
+double swingAt(double time) {
+  const double left = 1 - time;
+  return 1 - left * left * turned(2 * time)[0];
+}
+
+}  // namespace
+
 TetMesh beamSample() {
-  constexpr double kLength = 10, kWidth = 1, kHeight = 1.6, kLoad = 40, kStiffness = 2e5;
-  const double inertia = kWidth * kHeight * kHeight * kHeight / 12;
-  return Solid({{80, 10, 14}}, {scalars("VonMises"), vectors("Displacement")})
+  constexpr double kLoad = 40;
+  return Solid(kBeamGrid, {scalars("VonMises"), vectors("Displacement")})
       .made([&](const Position& u, const auto& add) {
-        const Position p{kLength * u[0], kWidth * (u[1] - 0.5), kHeight * (u[2] - 0.5)};
-        const double left = kLength - p[0];
-        const double bending = kLoad * left * p[2] / inertia;
-        const double shear = kLoad / (2 * inertia) * (kHeight * kHeight / 4 - p[2] * p[2]);
-        const double slope = -kLoad * p[0] * (2 * kLength - p[0]) / (2 * kStiffness * inertia);
-        const double sag = -kLoad * p[0] * p[0] * (3 * kLength - p[0]) / (6 * kStiffness * inertia);
-        add(0, std::sqrt(bending * bending + 3 * shear * shear));
+        const Position p = beamPoint(u);
+        const double slope =
+            -kLoad * p[0] * (2 * kBeamLength - p[0]) / (2 * kBeamStiffness * kBeamInertia);
+        const double sag =
+            -kLoad * p[0] * p[0] * (3 * kBeamLength - p[0]) / (6 * kBeamStiffness * kBeamInertia);
+        add(0, beamStress(p, kLoad));
         for (const double d : {-slope * p[2], 0.0, sag}) add(1, d);
         return p;
       });
+}
+
+TetMesh beamSeries(std::uint32_t instants) {
+  // the load whose slope at the free end is one radian
+  constexpr double kLoad = 2 * kBeamStiffness * kBeamInertia / (kBeamLength * kBeamLength);
+  constexpr double kTurns = 0.15915494309189535;
+  std::vector<MeshField> fields;
+  std::vector<double> shares;
+  std::vector<std::vector<BeamColumn>> bent;
+  for (std::uint32_t i = 0; i < instants; ++i) {
+    for (MeshField field : {scalars("VonMises"), vectors("Displacement")}) {
+      field.name += "@" + std::to_string(i);
+      fields.push_back(std::move(field));
+    }
+    shares.push_back(swingAt(static_cast<double>(i) / (instants - 1)));
+    bent.push_back(bentBeam(kTurns * shares.back()));
+  }
+  return Solid(kBeamGrid, std::move(fields)).made([&](const Position& u, const auto& add) {
+    const Position p = beamPoint(u);
+    const auto column = static_cast<std::size_t>(std::lround(u[0] * kBeamColumns));
+    const double restX = kBeamLength / kBeamColumns * static_cast<double>(column);
+    for (std::size_t i = 0; i < instants; ++i) {
+      const auto& [place, along] = bent[i][column];
+      add(2 * i, beamStress(p, kLoad * shares[i]));
+      // sections stay plain, and upright on the axis
+      for (const double d :
+           {place[0] - restX - p[2] * along[1], 0.0, place[1] + p[2] * (along[0] - 1)})
+        add(2 * i + 1, d);
+    }
+    return p;
+  });
 }
 
 TetMesh springSample() {

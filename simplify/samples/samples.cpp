@@ -14,7 +14,8 @@ constexpr std::array<Sample, 6> kSamples{{
      "velocity",
      finSample, kFinCells, kMaxSampleCells, finSeries},
     {"beam", "a loaded cantilever, 67,200 tetrahedra, stress and displacement",
-     [](std::uint64_t) { return beamSample(); }, kBeamCells, kBeamCells},
+     [](std::uint64_t) { return beamSample(); }, kBeamCells, kBeamCells,
+     [](std::uint64_t, std::uint32_t instants) { return beamSeries(instants); }},
     {"spring", "a coil spring, 107,520 tetrahedra, stress and displacement",
      [](std::uint64_t) { return springSample(); }, kSpringCells, kSpringCells},
     {"ball", "a planet's core, mantle and crust, 82,944 tetrahedra, temperature and layers",
@@ -43,7 +44,7 @@ Result<TetMesh> makeSample(std::string_view name, std::optional<std::uint64_t> c
       if (instants == 0) return sample.make(count);
       if (sample.makeSeries == nullptr)
         return fail(ErrorCode::kBadValue,
-                    "the sample " + std::string(name) + " is steady; fin comes with steps");
+                    "the sample " + std::string(name) + " is steady; fin and beam come with steps");
       return sample.makeSeries(count, instants);
     }
     known += (known.empty() ? "" : ", ") + std::string(sample.name);

@@ -58,6 +58,9 @@ inline constexpr std::uint32_t kMaxSampleInstants = kMaxFields / 3;
 /// A cantilever of 10 x 1 x 1.6, loaded at its free end, by Euler and Bernoulli's formulas: 67,200
 /// tetrahedra; fields VonMises, Displacement.
 [[nodiscard]] TetMesh beamSample();
+/// The same while it swings under a load that bends it by a radian in the end, and by up to 1.6
+/// meanwhile. The mesh is the straight beam; Displacement@0 is 0.
+[[nodiscard]] TetMesh beamSeries(std::uint32_t instants);
 
 /// Three and a half coils of a round wire under load: 107,520 tetrahedra; fields ShearStress,
 /// Displacement.

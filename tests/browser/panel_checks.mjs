@@ -46,7 +46,7 @@ async function showsItsActionsAtOnce(context) {
 const openFolds = (viewer) =>
   viewer.page.evaluate(() =>
     [...window.qtetViewer.shadowRoot.querySelectorAll('details')]
-      .filter(({open}) => open)
+      .filter(({open, hidden}) => open && !hidden)
       .map((its) => its.dataset.fold),
   );
 

@@ -26,6 +26,7 @@ import {recoveryChecks} from './recovery_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
 import {undoChecks} from './undo_checks.mjs';
 import {volumeChecks} from './volume_checks.mjs';
+import {warpChecks} from './warp_checks.mjs';
 import {makeLog, Server} from './programs.mjs';
 
 const {values: options} = parseArgs({
@@ -51,7 +52,7 @@ const lists = {
   transport: {...transportChecks, ...movieChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
-  edge: edgeChecks,
+  edge: {...edgeChecks, ...warpChecks},
   legend: {
     ...legendChecks,
     ...panelChecks,

@@ -38,7 +38,7 @@ export function linearBox(n, others = {}, keeps = null) {
     `format="ascii">${values.join(' ')}</DataArray>`;
   const fields = Object.entries({x: (x) => x, ...others}).map(([name, value]) => {
     const values = points.map((place) => value(...place));
-    return array('Float32', name, values);
+    return array('Float32', name, values.flat(), [values[0]].flat().length);
   });
   const which = cells.map((_, i) => (7 * i) % 12);
   const offsets = cells.map((_, i) => 4 * i + 4);

@@ -17,6 +17,7 @@ const pickOf = (...fields: [number, number[]][]): Pick => ({
   corners: [0, 1, 2, 3],
   position: [0, 0, 0],
   lattice: [0, 0, 0],
+  rest: null,
   fields: fields.map(([its, values]) => ({field: its, values})),
 });
 

@@ -326,3 +326,49 @@ test('aComponentOfASeriesHasOneRangeForAllInstants', () => {
     });
   }
 });
+
+test('colourAndWarpOfTwoSeriesChangeTogether', () => {
+  const names = ['T@0', 'T@1', 'u@0', 'u@1'];
+  const fields = names.map((name, field): FieldInfo => {
+    const components = field < 2 ? 1 : 3;
+    const minimum = Array<number>(components).fill(0);
+    return {name, components, association: 'point', step: 1, bits: 3, minimum, range: [0, 8]};
+  });
+  markSeries(fields);
+  const codec = new FakeCodec({fields: names, chunks: 1});
+  codec.open();
+  codec.chunksApplied = 1;
+  const assembler = {
+    codec,
+    manifest: {fields, lattice: {step: 1}},
+    statistics: () => kNoStatistics,
+    receivedOfField: () => 1,
+  };
+  publisher = new Publisher(
+    assembler as unknown as Assembler,
+    (snapshot) => void pictures.push(snapshot),
+  );
+  const seen = (): (number | undefined)[] => {
+    publisher.changed(true);
+    untilNext(1500);
+    publisher.shown();
+    const {color, warp} = pictures.at(-1)!;
+    return [color?.field, warp?.field, warp?.scale];
+  };
+  const show = (instant: number, scale: number): void =>
+    publisher.show({
+      ...kPlainDisplay,
+      color: {field: instant, component: -1},
+      warp: {field: 2 + instant, scale},
+    });
+  show(0, 5);
+  codec.applyField(0, 0);
+  expect(seen()).toEqual([0, undefined, undefined]);
+  codec.applyField(2, 0);
+  expect(seen()).toEqual([0, 2, 5]);
+  show(1, 6);
+  codec.applyField(1, 0);
+  expect([seen(), publisher.now.warp]).toEqual([[0, 2, 6], {field: 2, scale: 6}]);
+  codec.applyField(3, 0);
+  expect(seen()).toEqual([1, 3, 6]);
+});

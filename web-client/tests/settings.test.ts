@@ -102,6 +102,8 @@ describe('settings', () => {
       limit: {kind: 'full'},
       parallel: false,
       camera: null,
+      warp: null,
+      warpScale: null,
       time: null,
       volume: null,
       hasFirstOpacities: false,

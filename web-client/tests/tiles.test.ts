@@ -41,7 +41,7 @@ function meshCamera(): MeshCamera {
   const camera = new MeshCamera(canvas, () => undefined);
   camera.setInsets(kInsets);
   camera.resize(1280, 800);
-  camera.growTo([0, 0, 0, 200, 100, 50], undefined);
+  camera.growTo({bounds: [0, 0, 0, 200, 100, 50]});
   return camera;
 }
 

@@ -142,6 +142,25 @@ export const kControls = `    ${section(
         surface and its cells' edges.</p>`,
     )}
     ${section(
+      'deform',
+      'Deform',
+      true,
+      `
+      ${toggle('warp', 'Deformed shape')}
+      <div class="warp sub" hidden>
+        <select name="warp-field" aria-label="Vectors that move the mesh"></select>
+        <label class="row">
+          <span class="name">Scale \u00d7</span>
+          <input type="text" inputmode="decimal" name="warp-scale" autocomplete="off">
+        </label>
+        <input type="range" name="warp-slider" min="0" aria-label="Scale of the deformed shape">
+        <div class="buttons">
+          <button type="button" class="true-size">True size</button>
+          <button type="button" class="automatic">Automatic</button>
+        </div>
+      </div>`,
+    )}
+    ${section(
       'inside',
       'Inside',
       true,

@@ -7,6 +7,7 @@ import type {Plane} from '../core/protocol/geometry';
 import type {Client} from '../core/session/client';
 import type {ShownMesh} from './page/shown_mesh';
 import {planeOf} from './settings/clip_plane';
+import {warpOf} from './settings/warp';
 import {shownScalar, type Settings, type ViewAttribute} from './settings/settings';
 
 export class Requests {
@@ -47,6 +48,7 @@ export function displayOf(
     body: settings.surface && settings.volume === null,
     mode: settings.planes.length > 0 ? settings.mode : 'cut',
     planes: planesOf(settings, mesh),
+    warp: warpOf(settings, mesh),
     volume: settings.volume !== null,
     ...(mesh.ahead.length > 0 && {ahead: mesh.ahead}),
   };

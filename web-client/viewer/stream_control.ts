@@ -26,6 +26,8 @@ const kOfOneMesh = [
   'field',
   'range',
   ...fieldLayers().map(({name}) => name),
+  'warp',
+  'warp-scale',
   'camera',
   'quality',
 ] as const;
@@ -196,7 +198,8 @@ export class StreamControl {
   }
 
   /**
-   * The keys of the fields to begin with: the colours', and those of layers. Null: the opening's.
+   * The keys of the fields to begin with: the colours', the warp's, and those of layers. Null: the
+   * opening's.
    */
   private firstFields(mesh: string): string[] | null {
     const {page} = this;
@@ -209,7 +212,7 @@ export class StreamControl {
     const time = this.listeners.time();
     const series = instantName(firstField)?.series;
     const first = (series && instantKey(keys, series, time)) ?? firstField;
-    const named = [page.read('field') ?? first, ...ofLayers]
+    const named = [page.read('field') ?? first, page.read('warp'), ...ofLayers]
       .filter((text) => text !== null && text !== '')
       .map((text) => keyToAsk(text!, keys, time));
     return named.length > 0 ? [...new Set(named)] : null;

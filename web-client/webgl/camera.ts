@@ -20,7 +20,7 @@ const kFill = 0.88;
 const kMinDistance = 0.05;
 /** The least distance of the near plane from the eye, in radii. */
 export const kMinNear = 0.01;
-/** The largest distance of anything from the middle, in radii. */
+/** The least of OrbitCamera.depth, in radii. */
 const kDepth = 2.5;
 /** So near to straight above or below an eye may get, in radians: it must know where up is. */
 const kLeastTilt = 1e-6;
@@ -41,6 +41,8 @@ export class OrbitCamera {
   fitted = true;
   /** From the mesh to the eye of a fitted view: the first one's, or a standard view's. */
   direction = kFirstDirection;
+  /** The largest distance of anything from the middle, in radii. */
+  private depth = kDepth;
 
   constructor() {
     this.moveTo(scaled(kFirstDirection, 4));
@@ -170,14 +172,19 @@ export class OrbitCamera {
     return {distance, target};
   }
 
+  /** Everything lies within this distance of the middle. */
+  reachTo(radius: number): void {
+    this.depth = Math.max(kDepth, radius);
+  }
+
   /**
    * Must be called before every frame, and for a camera of another picture. Tight depths keep the
    * digits of a parallel view.
    */
   setDepths(lens = this.lens): void {
     const distance = lengthOf(lens.eye);
-    lens.near = Math.max(kMinNear, distance - kDepth);
-    lens.far = distance + kDepth;
+    lens.near = Math.max(kMinNear, distance - this.depth);
+    lens.far = distance + this.depth;
   }
 
   private get offset(): Vector {

@@ -1,13 +1,13 @@
 // The camera of one mesh: where the mesh lies, and from where it is seen.
 
-import type {TriangleSoup} from '../core/picture/triangle_soup';
 import type {Vector} from '../core/protocol/geometry';
+import type {Snapshot} from '../core/session/worker_messages';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
 import type {Eye, Lens} from './lens';
 import {difference, inverse, lengthOf, product, scaled, sum, type Matrix} from './matrix';
 import {OrbitControls} from './orbit_controls';
-import {cornersOf, outlineOf} from './outline';
+import {cornersOf, farthestOf, outlineOf} from './outline';
 import {checkedCamera, type Pose} from './pose';
 import type {Part} from './tiles';
 import type {Frame, Insets} from './view';
@@ -22,15 +22,21 @@ export interface Sight {
   diagonal: number;
 }
 
+type Seen = Pick<Snapshot, 'bounds' | 'surface' | 'warp'>;
+
+const kNoReach = {bounds: [] as number[], scale: 0};
+
 export class MeshCamera {
   readonly orbit = new OrbitCamera();
   private readonly controls: OrbitControls;
   /** Lattice coordinates, scaled and moved, lie in a ball of radius 1 round the origin. */
   private scale = 1;
   private offset: Vector = [0, 0, 0];
-  /** Bounds of the largest mesh so far, in lattice coordinates; empty: there is no mesh. */
+  /** Those of the largest mesh at rest so far, in lattice coordinates; empty: there is no mesh. */
   bounds: number[] = [];
   focus: number[] | null = null;
+  /** Bounds of all that was seen under the present warp, and its factor; 0: there is none. */
+  private reach = kNoReach;
   /** Lattice points that the mesh lies between. */
   private outline: Vector[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
@@ -49,18 +55,23 @@ export class MeshCamera {
   }
 
   /**
-   * A camera's state is relative to the largest mesh so far. A coarse mesh is a little smaller, and
-   * the line decides which one comes first. So only the whole mesh gives a state, or a link, the
-   * same picture everywhere.
+   * A camera's state is relative to the largest mesh so far, without its warp. A coarse mesh is a
+   * little smaller, and the line decides which one comes first. So only the whole mesh gives a
+   * state, or a link, the same picture everywhere.
    */
-  growTo(seen: number[], surface: TriangleSoup | undefined): void {
+  growTo({bounds: seen, surface, warp}: Seen): void {
     const isFirst = !this.hasMesh;
-    const bounds = isFirst
-      ? seen
-      : this.bounds.map((end, i) => (i < 3 ? Math.min : Math.max)(end, seen[i]!));
-    if (!isFirst && bounds.every((end, i) => end === this.bounds[i])) return;
+    const bounds = union(this.bounds, warp?.restBounds ?? seen);
+    const scale = warp?.scale ?? 0;
+    // A series that moves the mesh keeps the picture wide enough for all that was seen.
+    const isSameWarp = scale === this.reach.scale;
+    const reach = union(isSameWarp ? this.reach.bounds : [], seen);
+    if (isSame(bounds, this.bounds) && isSameWarp && isSame(reach, this.reach.bounds)) return;
+    const outline = outlineOf(surface, reach);
+    const isMoving = isSameWarp && scale !== 0 && !isFirst;
+    this.outline = isMoving ? farthestOf([...this.outline, ...outline]) : outline;
     this.bounds = bounds;
-    this.outline = outlineOf(surface, bounds);
+    this.reach = {bounds: reach, scale};
     this.placeLattice();
     if (!isFirst) {
       this.refit();
@@ -74,6 +85,7 @@ export class MeshCamera {
   /** Forgets the mesh; the next one is fitted again. */
   clear(): void {
     this.bounds = [];
+    this.reach = kNoReach;
   }
 
   /** Returns false if they are the same as before. */
@@ -204,6 +216,8 @@ export class MeshCamera {
     const high = this.bounds.slice(3, 6) as Vector;
     this.scale = 2 / Math.max(lengthOf(difference(high, low)), 1);
     this.offset = scaled(sum(low, high), -this.scale / 2);
+    const corners = cornersOf(this.reach.bounds).map((corner) => this.placed(corner));
+    this.orbit.reachTo(Math.max(...corners.map(lengthOf)));
   }
 
   /** A lattice point's place in the scene. */
@@ -219,13 +233,22 @@ export class MeshCamera {
     {left, right, top, bottom} = this.insets,
     aspect = this.orbit.lens.aspect,
   ): Framing {
-    const isWhole = !this.focus || this.orbit.isStandard;
+    const isWhole = !this.focus || this.orbit.isStandard || this.reach.scale !== 0;
     const seen = isWhole ? null : seenPart(this.focus!, this.bounds, this.orbit.direction);
     const points = (seen ? cornersOf(seen) : this.outline).map((corner) => this.placed(corner));
     const wider = aspect / this.orbit.lens.aspect;
     return this.orbit.framing(points, (1 - left - right) * wider, 1 - top - bottom);
   }
 }
+
+/** The bounds round both; the first may be empty. */
+function union(a: readonly number[], b: readonly number[]): number[] {
+  if (a.length === 0) return [...b];
+  return a.map((end, i) => (i < 3 ? Math.min : Math.max)(end, b[i]!));
+}
+
+const isSame = (a: readonly number[], b: readonly number[]): boolean =>
+  a.length === b.length && a.every((end, i) => end === b[i]);
 
 /**
  * The part of the focus that is seen from outside: its side at a face of the bounds that faces the

@@ -75,7 +75,7 @@ export class MeshView implements View {
     this.volume?.setClip(snapshot.planes);
     // A cap would hide the volume behind it. A slice is drawn inside it.
     this.parts.show(snapshot, !this.hasVolume || snapshot.planes.length === 0);
-    if (snapshot.bounds.length > 0) this.camera.growTo(snapshot.bounds, snapshot.surface);
+    if (snapshot.bounds.length > 0) this.camera.growTo(snapshot);
   }
 
   /** Forgets the mesh; the next one is fitted again. */

@@ -14,9 +14,15 @@ const kMaxCorners = 20000;
  */
 export function outlineOf(surface: TriangleSoup | undefined, bounds: number[]): Vector[] {
   const positions = surface?.positions ?? new Float32Array(0);
-  if (positions.length === 0) return cornersOf(bounds);
+  return positions.length === 0 ? cornersOf(bounds) : farthest(positions);
+}
+
+/** Those of the points that are the farthest in many directions. */
+export const farthestOf = (points: Vector[]): Vector[] => farthest(points.flat());
+
+function farthest(positions: ArrayLike<number>): Vector[] {
   const stride = 3 * Math.ceil(positions.length / 3 / kMaxCorners);
-  const farthest = new Map<number, Vector>();
+  const found = new Map<number, Vector>();
   for (const [x, y, z] of directions()) {
     let best = -Infinity;
     let at = 0;
@@ -24,9 +30,9 @@ export function outlineOf(surface: TriangleSoup | undefined, bounds: number[]): 
       const height = x * positions[i]! + y * positions[i + 1]! + z * positions[i + 2]!;
       if (height > best) [best, at] = [height, i];
     }
-    farthest.set(at, [positions[at]!, positions[at + 1]!, positions[at + 2]!]);
+    found.set(at, [positions[at]!, positions[at + 1]!, positions[at + 2]!]);
   }
-  return [...farthest.values()];
+  return [...found.values()];
 }
 
 export function cornersOf(bounds: number[]): Vector[] {

@@ -57,6 +57,7 @@ struct ReadReport {
   std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
   /// All that the file has, ascending; empty: it has none, or its reader takes all steps at once.
   std::vector<double> times;
+  std::string motion{};            ///< of moving points: the series that has how far (joinSteps)
   std::vector<std::string> notes;  ///< also VTK's warnings
 };
 

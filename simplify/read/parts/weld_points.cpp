@@ -1,11 +1,14 @@
 #include "simplify/read/parts/weld_points.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <numeric>
 #include <unordered_map>
+
+#include "proto/field_key.h"
 
 namespace qtet {
 namespace {
@@ -32,20 +35,25 @@ class KeptPoints {
   };
 
  public:
-  KeptPoints(const std::vector<Position>& points, double distance)
-      : points_(points), distance_(distance), next_(points.size(), kGhost) {
-    first_.reserve(points.size());
+  KeptPoints(const CellMesh& mesh, double distance, std::string_view motion)
+      : points_(mesh.points), distance_(distance), next_(mesh.points.size(), kGhost) {
+    first_.reserve(points_.size());
+    if (motion.empty()) return;
+    for (const MeshField& field : mesh.fields)
+      if (!isCellField(field) && nameWithoutStep(field.name) == motion)
+        displacements_.push_back(&field);
   }
 
-  /// The smallest id of a kept point within the distance; kGhost: none.
-  [[nodiscard]] VertexId near(const Position& p) const {
-    if (distance_ == 0) return nearIn(boxOf(p), p);
+  /// The smallest id of a kept point within the distance of v; kGhost: none.
+  [[nodiscard]] VertexId near(VertexId v) const {
+    const Position& p = points_[v];
+    if (distance_ == 0) return nearIn(boxOf(p), v);
     VertexId found = kGhost;
     const std::array<Boxes, 3> boxes{boxesRound(p[0]), boxesRound(p[1]), boxesRound(p[2])};
     for (std::size_t i = 0; i < boxes[0].count; ++i) {
       for (std::size_t j = 0; j < boxes[1].count; ++j) {
         for (std::size_t k = 0; k < boxes[2].count; ++k)
-          found = std::min(found, nearIn({boxes[0].box[i], boxes[1].box[j], boxes[2].box[k]}, p));
+          found = std::min(found, nearIn({boxes[0].box[i], boxes[1].box[j], boxes[2].box[k]}, v));
       }
     }
     return found;
@@ -77,32 +85,46 @@ class KeptPoints {
     }
     return out;
   }
-  [[nodiscard]] VertexId nearIn(const Box& box, const Position& p) const {
+  [[nodiscard]] VertexId nearIn(const Box& box, VertexId v) const {
     const auto at = first_.find(box);
     VertexId found = kGhost;
-    for (VertexId v = at == first_.end() ? kGhost : at->second; v != kGhost; v = next_[v]) {
-      const Position& q = points_[v];
-      const double dx = p[0] - q[0], dy = p[1] - q[1], dz = p[2] - q[2];
-      if (dx * dx + dy * dy + dz * dz <= distance_ * distance_) found = std::min(found, v);
-    }
+    for (VertexId w = at == first_.end() ? kGhost : at->second; w != kGhost; w = next_[w])
+      if (isWithin(apart(v, w)) && stayTogether(v, w)) found = std::min(found, w);
     return found;
+  }
+  [[nodiscard]] Position apart(VertexId v, VertexId w) const {
+    const Position &p = points_[v], &q = points_[w];
+    return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+  }
+  [[nodiscard]] bool isWithin(const Position& d) const {
+    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= distance_ * distance_;
+  }
+  /// Whether they are within the distance at every instant.
+  [[nodiscard]] bool stayTogether(VertexId v, VertexId w) const {
+    return std::ranges::all_of(displacements_, [&](const MeshField* field) {
+      Position d = apart(v, w);
+      for (std::size_t c = 0; c < 3; ++c)
+        d[c] += field->values[3 * std::size_t{v} + c] - field->values[3 * std::size_t{w} + c];
+      return isWithin(d);
+    });
   }
 
   const std::vector<Position>& points_;
   double distance_;
+  std::vector<const MeshField*> displacements_;  ///< one an instant
   std::unordered_map<Box, VertexId, BoxHash> first_;
   std::vector<VertexId> next_;  ///< the kept point before it in the same box
 };
 
 }  // namespace
 
-std::uint64_t weldPoints(CellMesh& mesh, double distance) {
+std::uint64_t weldPoints(CellMesh& mesh, double distance, std::string_view motion) {
   assert(distance >= 0);
-  KeptPoints kept(mesh.points, distance);
+  KeptPoints kept(mesh, distance, motion);
   std::vector<VertexId> names(mesh.points.size());
   std::uint64_t joined = 0;
   for (VertexId v = 0; v < names.size(); ++v) {
-    const VertexId earlier = kept.near(mesh.points[v]);
+    const VertexId earlier = kept.near(v);
     names[v] = earlier == kGhost ? v : earlier;
     earlier == kGhost ? kept.keep(v) : static_cast<void>(++joined);
   }

@@ -1,13 +1,17 @@
 #include "simplify/read/steps/join_blocks.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
 
 #include "codec/coding/number_type.h"
+#include "simplify/read/options/select_fields.h"
 #include "simplify/read/parts/join_pieces.h"
 #include "simplify/read/parts/near_points.h"
+#include "simplify/read/steps/moving_points.h"
 
 namespace qtet {
 namespace {
@@ -146,6 +150,95 @@ void join(CellMesh& mesh, std::span<const VertexId> ends, bool isWanted, ReadRep
                            "fit together there; `weld` D joins points within D");
 }
 
+/// "9 points and 12 cells"
+std::string sizeOf(const CellMesh& mesh) {
+  return std::to_string(mesh.points.size()) + " points and " + std::to_string(mesh.cells()) +
+         " cells";
+}
+
+/// Refuses a step whose cells are not those of the first one.
+Status checkSameCells(const TimedCells& first, const TimedCells& step,
+                      const std::filesystem::path& path, const ReadReport& report) {
+  const CellMesh &rest = first.cells, &mesh = step.cells;
+  if (mesh.points.size() == rest.points.size() && mesh.types == rest.types &&
+      mesh.vertices == rest.vertices)
+    return {};
+  const std::string there = sizeOf(mesh), here = sizeOf(rest);
+  return fail(ErrorCode::kBadInput,
+              path.string() + ": the mesh at time " + step.time + " is not that of time " +
+                  first.time +
+                  (there == here ? ": its cells have other points"
+                                 : ": it has " + there + ", not " + here) +
+                  "; make a log of each step, with `time` " + step.time + " and so on" +
+                  (report.joinedPoints > 0
+                       ? ", or keep pieces apart, which part or meet as they move, with `weld` none"
+                       : ""));
+}
+
+/// Four digits of it.
+std::string shortText(double x) {
+  std::array<char, 32> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, 4);
+  return {text.data(), end.ptr};
+}
+
+/// Makes fields of points that move over the steps of a file.
+class Motion {
+ public:
+  /// REQUIRES: steps of the same cells.
+  Motion(std::span<const TimedCells> steps, const FieldNames& names) : steps_(steps.size()) {
+    const CellMesh& rest = steps.front().cells;
+    const auto isElsewhere = [&](const TimedCells& step) {
+      return !areSamePoints(rest.points, step.cells.points);
+    };
+    moves_ = std::ranges::any_of(steps, isElsewhere);
+    if (!moves_) return;
+    name_ = displacementName(rest);
+    type_ = "float32";
+    for (const TimedCells& step : steps)
+      if (displacementType(rest, step.cells) != type_) type_ = "float64";
+    isWanted_ = std::ranges::any_of(steps, [&](const TimedCells& step) {
+      return isMeant(names, "point", name_ + "@" + step.time);
+    });
+  }
+
+  /// Adds the step's field without a time.
+  Status addTo(std::vector<MeshField>& fields, const CellMesh& rest, const CellMesh& step) {
+    if (!moves_ || !isWanted_) return {};
+    Result<MeshField> field = displacementOf(rest, step.points, type_);
+    if (!field) return std::unexpected(field.error());
+    field->name = name_;
+    largest_ = std::max(largest_, largestDisplacement(*field));
+    fields.push_back(std::move(*field));
+    return {};
+  }
+
+  void tell(const std::string& restTime, ReadReport& report) const {
+    if (!moves_) return;
+    const std::string moves = "the points move over its " + std::to_string(steps_) + " steps; ";
+    if (!isWanted_) {
+      report.notes.push_back(moves + "the mesh of time " + restTime +
+                             " stands for all of them, and `fields` " + name_ +
+                             " would say how far they move");
+      return;
+    }
+    report.motion = name_;
+    report.notes.push_back(
+        moves + "the mesh is that of time " + restTime + ", and the point field " + name_ +
+        " has how far they are from there, at most " + shortText(largest_) +
+        (name_ == kDisplacement
+             ? ""
+             : "; the file has a field " + std::string(kDisplacement) + " of its own"));
+  }
+
+ private:
+  std::size_t steps_;
+  bool moves_ = false, isWanted_ = false;
+  std::string name_, type_;
+  double largest_ = 0;
+};
+
 }  // namespace
 
 CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& report) {
@@ -190,26 +283,28 @@ CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& r
   return out;
 }
 
-Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem::path& path) {
-  CellMesh out = std::move(steps.front().cells);
+Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem::path& path,
+                           const FieldNames& names, ReadReport& report) {
+  for (const TimedCells& step : steps)
+    if (Status same = checkSameCells(steps.front(), step, path, report); !same)
+      return std::unexpected(same.error());
+  Motion motion(steps, names);
+  CellMesh& rest = steps.front().cells;
   std::vector<MeshField> fields;
-  for (std::size_t s = 0; s < steps.size(); ++s) {
-    const CellMesh& step = s == 0 ? out : steps[s].cells;
-    if (s > 0 &&
-        (step.points != out.points || step.types != out.types || step.vertices != out.vertices)) {
-      return fail(ErrorCode::kBadInput, path.string() + ": the mesh at time " + steps[s].time +
-                                            " is not that of time " + steps[0].time +
-                                            "; make a log of each step, with `time` " +
-                                            steps[s].time + " and so on");
+  for (TimedCells& step : steps) {
+    std::vector<MeshField> own = std::move(step.cells.fields);
+    if (Status added = motion.addTo(own, rest, step.cells); !added)
+      return fail(added.error().code,
+                  path.string() + ": at time " + step.time + " " + added.error().message);
+    for (MeshField& field : own) {
+      field.name += "@" + step.time;
+      fields.push_back(std::move(field));
     }
-    for (const MeshField& field : step.fields) {
-      fields.push_back(field);
-      fields.back().name += "@" + steps[s].time;
-    }
-    if (s > 0) steps[s].cells = {};
+    if (&step != &steps.front()) step.cells = {};
   }
-  out.fields = std::move(fields);
-  return out;
+  motion.tell(steps.front().time, report);
+  rest.fields = std::move(fields);
+  return std::move(rest);
 }
 
 }  // namespace qtet

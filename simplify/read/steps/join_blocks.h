@@ -19,9 +19,13 @@ namespace qtet {
 [[nodiscard]] CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared,
                                   ReadReport& report);
 
-/// The first step's mesh with every step's fields, called NAME@TIME. Errors: bad-input where a step
-/// has other points or cells than the first.
+/// The first step's mesh with every step's fields, called NAME@TIME. If the points of a later step
+/// lie elsewhere, every step gets the point field displacementName (moving_points.h). It says how
+/// far they are from those of the first step. It is left out unless `names` means it. The report's
+/// notes and its `motion` say so. Errors: bad-input where a step has other cells than the first,
+/// another number of points, or a point of a cell that is not finite.
 [[nodiscard]] Result<CellMesh> joinSteps(std::vector<TimedCells> steps,
-                                         const std::filesystem::path& path);
+                                         const std::filesystem::path& path, const FieldNames& names,
+                                         ReadReport& report);
 
 }  // namespace qtet

@@ -144,6 +144,33 @@ TEST(Samples, theFinComesInSizes) {
   EXPECT_EQ(makeSample("box", 4000).error().code, ErrorCode::kBadValue);
 }
 
+TEST(Samples, theBeamSwingsAndNoCellOfItFlips) {
+  constexpr std::uint32_t kInstants = 9;
+  const Result<TetMesh> mesh = makeSample("beam", std::nullopt, kInstants);
+  ASSERT_TRUE(mesh);
+  EXPECT_EQ(mesh->points, beamSample().points);
+  ASSERT_EQ(mesh->fields.size(), std::size_t{2} * kInstants);
+  EXPECT_EQ(mesh->fields[0].name, "VonMises@0");
+  EXPECT_EQ(mesh->fields[17].name, "Displacement@8");
+  std::size_t end = 0;  // the middle of the free end
+  while (mesh->points[end] != Position{10, 0, 0}) ++end;
+  const auto rise = [&](std::size_t i) { return mesh->fields[2 * i + 1].values[3 * end + 2]; };
+  for (const double d : mesh->fields[1].values) ASSERT_EQ(d, 0);
+  EXPECT_LT(rise(2), -7) << "beyond its place";
+  EXPECT_GT(rise(4), rise(2) + 2) << "and back";
+  EXPECT_NEAR(rise(8), -6.0, 0.3);
+  for (std::size_t i = 0; i < kInstants; ++i) {
+    std::vector<Position> points = mesh->points;
+    for (std::size_t v = 0; v < points.size(); ++v)
+      for (std::size_t c = 0; c < 3; ++c) points[v][c] += mesh->fields[2 * i + 1].values[3 * v + c];
+    for (const Tetrahedron& t : mesh->tetrahedra)
+      ASSERT_EQ(volumeSign(points[t[0]], points[t[1]], points[t[2]], points[t[3]]), 1) << i;
+  }
+  EXPECT_EQ(sha256Hex(vtuBytes(*mesh)),
+            "4b09d3d23d63ce201e7a4d2157bdad10817e7b6b2b1b109eb2e3c04a26696465");
+  EXPECT_EQ(makeSample("ball", std::nullopt, 2).error().code, ErrorCode::kBadValue);
+}
+
 TEST(Samples, anUnknownNameIsToldTheKnownOnes) {
   const Result<TetMesh> mesh = makeSample("sphere");
   ASSERT_FALSE(mesh);

@@ -18,6 +18,7 @@ export interface LayerSoups {
 export function fieldsOf(display: Display): number[] {
   const scalars = [
     display.color,
+    display.warp,
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];
   return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];

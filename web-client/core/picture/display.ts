@@ -6,6 +6,7 @@ import type {FieldScale, Scalar} from './field_scale';
 import type {Cells} from './section';
 import {slice} from './slice';
 import {boundarySoup, type CreasesOf, type TriangleSoup} from './triangle_soup';
+import type {Warp} from './warp';
 
 /**
  * cut: the part above a plane is removed, and flat caps close the hole. cells: whole cells stay or
@@ -26,6 +27,8 @@ export interface Display {
   isosurfaces: {scalar: Scalar; values: number[]} | null;
   /** Hides cells outside [low, high]. Both are in [0, 1] over the scalarRange. */
   threshold: {scalar: Scalar; low: number; high: number} | null;
+  /** Moves the vertices. Everything else is made of the moved mesh; null: it is at rest. */
+  warp: Warp | null;
   /** Shows the cells themselves, translucent, coloured by `color`. */
   volume: boolean;
   /** Fields that may be shown soon: they are fetched and decoded behind all else. */
@@ -41,6 +44,7 @@ export const kPlainDisplay: Display = {
   planes: [],
   isosurfaces: null,
   threshold: null,
+  warp: null,
   volume: false,
 };
 

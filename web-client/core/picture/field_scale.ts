@@ -4,7 +4,7 @@
 import type {FieldInfo} from '../protocol/fields';
 
 /** The integer that marks a missing value (codec/mesh.h). */
-const kMissing = -2147483648;
+export const kMissing = -2147483648;
 /** The component that means the magnitude of a vector, or the value of a scalar. */
 export const kMagnitude = -1;
 

@@ -1,14 +1,29 @@
 // The codec's mesh in the form that display.ts needs.
 
 import type {Assembler} from '../decode/assembler';
+import type {Manifest} from '../protocol/manifest';
 import type {MeshArrays} from './display';
 import {FieldScale} from './field_scale';
+import {warpedPoints, type Warp} from './warp';
 
-/** Views into the codec's memory, valid until the next step; null while there is no mesh. */
-export function meshArrays({codec, manifest}: Assembler): MeshArrays | null {
+/** The last moved vertices of a mesh, and what they were made of. */
+interface Moved {
+  manifest: Manifest;
+  key: string;
+  points: Int32Array;
+}
+
+const kept = new WeakMap<Assembler, Moved>();
+
+/**
+ * Views into the codec's memory, valid until the next step; null while there is no mesh. `warp`
+ * moves the vertices. They rest while its field has no values.
+ */
+export function meshArrays(assembler: Assembler, warp: Warp | null = null): MeshArrays | null {
+  const {codec, manifest} = assembler;
   if (!manifest || codec.chunksApplied === 0) return null;
   return {
-    points: codec.points(),
+    points: (warp && movedPoints(assembler, manifest, warp)) ?? codec.points(),
     tetrahedra: codec.tetrahedra(),
     boundary: codec.boundary(),
     scale: ({field, component}) => {
@@ -17,4 +32,24 @@ export function meshArrays({codec, manifest}: Assembler): MeshArrays | null {
       return info && values ? new FieldScale(values, info, component) : null;
     },
   };
+}
+
+/** Pictures and questions about them share the result. Null: there are no vectors. */
+function movedPoints(
+  assembler: Assembler,
+  manifest: Manifest,
+  {field, scale}: Warp,
+): Int32Array | null {
+  const {codec} = assembler;
+  const info = manifest.fields[field];
+  const values = info?.components === 3 && info.association === 'point' && codec.field(field, 3);
+  if (!values || scale === 0) return null;
+  const state = [codec.chunksApplied, codec.fieldChunksApplied(field), codec.vertexCount];
+  const key = [field, scale, ...state].join();
+  const last = kept.get(assembler);
+  if (last?.key === key && last.manifest === manifest) return last.points;
+  const mesh = {points: codec.points(), tetrahedra: codec.tetrahedra()};
+  const points = warpedPoints(mesh, values, info, scale / manifest.lattice.step);
+  kept.set(assembler, {manifest, key, points});
+  return points;
 }

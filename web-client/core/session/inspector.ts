@@ -37,6 +37,8 @@ export interface Pick {
   /** In the mesh's own coordinates; `lattice` is the same place on the lattice. */
   position: Vector;
   lattice: Vector;
+  /** The same places of the mesh without its warp; null if it has none. */
+  rest: {position: Vector; lattice: Vector} | null;
   /** Only fields that are here. */
   fields: FieldValue[];
 }
@@ -67,7 +69,7 @@ export class Inspector {
 
   /** The first visible thing that `ray` (lattice coordinates) meets; null if there is none. */
   pick(ray: Ray, display: Display): Pick | null {
-    const mesh = meshArrays(this.assembler);
+    const mesh = meshArrays(this.assembler, display.warp);
     if (!mesh) return null;
     const cells: Cells = {...mesh, kept: keptCells(mesh, display)};
     let best: {cell: number; t: number} | null = null;
@@ -75,12 +77,12 @@ export class Inspector {
       const t = firstSeen(mesh, ray, stretch, display);
       if (t < (best?.t ?? Infinity)) best = {cell: stretch.cell, t};
     }
-    return best && this.pickAt(cells, best.cell, along(ray, best.t));
+    return best && this.pickAt(cells, best.cell, along(ray, best.t), display.warp !== null);
   }
 
   /** The coloured field from one lattice point to another; null while there is none. */
   probe(from: Vector, to: Vector, display: Display): Probe | null {
-    const mesh = meshArrays(this.assembler);
+    const mesh = meshArrays(this.assembler, display.warp);
     if (!mesh) return null;
     const ray = rayBetween(from, to);
     const length = this.lengthOf(ray);
@@ -102,7 +104,7 @@ export class Inspector {
 
   /** All fields that are here from one lattice point to another, each place once. */
   line(from: Vector, to: Vector, display: Display): LineValues[] {
-    const mesh = meshArrays(this.assembler);
+    const mesh = meshArrays(this.assembler, display.warp);
     if (!mesh) return [];
     const ray = rayBetween(from, to);
     const cells: Cells = {...mesh, kept: keptCells(mesh, display)};
@@ -115,8 +117,9 @@ export class Inspector {
   }
 
   /**
-   * By field its values at a lattice place, one a component; none if the field is not here for all
-   * of the mesh. A place beside the mesh has those of the cell next to it.
+   * By field its values at a lattice place of the mesh at rest, one a component. There are none if
+   * the field is not here for all of the mesh. A place beside the mesh has those of the cell next
+   * to it.
    */
   values(place: Vector, fields: readonly number[]): number[][] {
     const mesh = meshArrays(this.assembler);
@@ -154,14 +157,26 @@ export class Inspector {
     return {...probe, values: probe.values.map((value) => low + value * (high - low))};
   }
 
-  private pickAt(cells: Cells, cell: number, lattice: Vector): Pick {
+  private pickAt(cells: Cells, cell: number, lattice: Vector, isMoved: boolean): Pick {
+    const rest = isMoved ? this.restOf(cells, cell, lattice) : null;
     return {
       cell,
       corners: cornersOf(cells, cell),
       lattice,
       position: this.positionOf(lattice),
+      rest: rest && {lattice: rest, position: this.positionOf(rest)},
       fields: this.fieldsAt(cells, cell, lattice),
     };
+  }
+
+  /** Where a place of a moved cell was before. */
+  private restOf(cells: Cells, cell: number, place: Vector): Vector {
+    const points = this.assembler.codec.points();
+    const shares = barycentric(cells, cell, place);
+    const corners = cornersOf(cells, cell);
+    return [0, 1, 2].map((axis) =>
+      corners.reduce((sum, corner, i) => sum + shares[i]! * points[3 * corner + axis]!, 0),
+    ) as Vector;
   }
 
   /** In the mesh's own coordinates. */

@@ -15,6 +15,7 @@ import {meshArrays} from '../picture/mesh_arrays';
 import {amountsOf, middleOf} from '../picture/spread';
 import {noSoup, pointBounds, type CreasesOf} from '../picture/triangle_soup';
 import {volumeCells, type VolumeCells} from '../picture/volume';
+import type {Warp} from '../picture/warp';
 import type {FieldInfo} from '../protocol/fields';
 import {PicturePace} from './picture_pace';
 import type {Snapshot} from './worker_messages';
@@ -32,6 +33,8 @@ export class Publisher {
   private creases: {of: string; creases: Uint8Array} | null = null;
   /** The colour of the last picture; null: it had none. */
   private drawnColor: Scalar | null = null;
+  /** The warp of the last picture; null: the mesh was at rest. */
+  private drawnWarp: Warp | null = null;
   /** The chunks of the last picture's mesh. */
   private drawnChunks = 0;
   /** The display of the last picture or wish, as it could be drawn then. */
@@ -43,6 +46,8 @@ export class Publisher {
   /** The page has said what to draw. */
   private isRequested = false;
   private bounds: number[] = [];
+  /** The same without a warp. */
+  private restBounds: number[] = [];
   /** middleOf by colour, from the mesh with which it was first drawn. */
   private readonly middles = new Map<string, [number, number]>();
   /** amountsOf by colour, from the mesh whose volume was first drawn. */
@@ -94,29 +99,58 @@ export class Publisher {
     this.schedule();
   }
 
-  /** As it can be drawn now: an instant leaves the last one on the screen until it has values. */
+  /**
+   * The display as it can be drawn now. An instant leaves the last one on the screen until it has
+   * values. If both the colour and the warp are series, they change together.
+   */
+  get now(): Display {
+    return this.drawn(this.display);
+  }
+
   private drawn(display: Display): Display {
-    return this.isWaiting ? {...display, color: this.drawnColor} : display;
+    if (!this.isWaiting) return display;
+    return {
+      ...display,
+      color: this.held(display.color, this.drawnColor),
+      warp: this.held(display.warp, this.drawnWarp),
+    };
+  }
+
+  /** The instant that was drawn last, instead of another one of its series. */
+  private held<T extends {field: number}>(
+    wanted: T | null,
+    before: Warp | Scalar | null,
+  ): T | null {
+    const isHeld = wanted && before && this.isOfSeries(wanted, before);
+    return isHeld ? {...wanted, field: before.field} : wanted;
+  }
+
+  private get isWaiting(): boolean {
+    const {color, warp} = this.display;
+    const {drawnColor, drawnWarp} = this;
+    const waitsForColor =
+      color?.component === drawnColor?.component && this.waitsFor(color, drawnColor);
+    return waitsForColor || this.waitsFor(warp, drawnWarp);
   }
 
   /**
    * The last picture shows another instant of the same series, and the wanted one has no values, or
    * more of them are decoded soon.
    */
-  private get isWaiting(): boolean {
-    const {color} = this.display;
-    const before = this.drawnColor;
-    const {codec, manifest} = this.assembler;
-    if (!color || !before || isSameScalar(color, before) || !manifest) return false;
-    const seriesOf = ({field}: Scalar): string | undefined =>
-      manifest.fields[field]?.instant?.series;
-    const series = seriesOf(color);
-    if (series === undefined || series !== seriesOf(before)) return false;
-    if (color.component !== before.component || codec.fieldChunksApplied(before.field) === 0)
-      return false;
-    const applied = codec.fieldChunksApplied(color.field);
+  private waitsFor(wanted: {field: number} | null, before: {field: number} | null): boolean {
+    const {codec} = this.assembler;
+    if (!wanted || !before || !this.isOfSeries(wanted, before)) return false;
+    if (wanted.field === before.field || codec.fieldChunksApplied(before.field) === 0) return false;
+    const applied = codec.fieldChunksApplied(wanted.field);
     const mayGrow = applied < codec.chunksApplied;
-    return applied === 0 || (mayGrow && this.assembler.receivedOfField(color.field) > applied);
+    return applied === 0 || (mayGrow && this.assembler.receivedOfField(wanted.field) > applied);
+  }
+
+  /** Both are instants of one series. */
+  private isOfSeries(a: {field: number}, b: {field: number}): boolean {
+    const fields = this.assembler.manifest?.fields;
+    const series = fields?.[a.field]?.instant?.series;
+    return series !== undefined && series === fields?.[b.field]?.instant?.series;
   }
 
   /** The page has drawn the last picture in `drawingMs`; 0 if unknown. */
@@ -143,7 +177,7 @@ export class Publisher {
     this.bounds = [];
     this.middles.clear();
     this.amounts.clear();
-    this.creases = this.drawnColor = null;
+    this.creases = this.drawnColor = this.drawnWarp = null;
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -175,10 +209,10 @@ export class Publisher {
   }
 
   private publish(): void {
-    const mesh = meshArrays(this.assembler);
-    if (!mesh) return;
+    const display = this.now;
     const start = performance.now();
-    const display = this.drawn(this.display);
+    const mesh = meshArrays(this.assembler, display.warp);
+    if (!mesh) return;
     const kept = keptCells(mesh, display);
     // A finer mesh has another cut. Both travel together, so that they always match.
     const snapshot: Snapshot = {
@@ -195,6 +229,7 @@ export class Publisher {
       snapshot.volume = this.volumeOf(mesh, display, kept);
     }
     this.drawnColor = snapshot.color;
+    this.drawnWarp = snapshot.warp ?? null;
     this.drawnChunks = this.assembler.codec.chunksApplied;
     this.seen = textOf(display);
     this.meshChanged = this.cutChanged = this.isLast = false;
@@ -206,11 +241,15 @@ export class Publisher {
     this.onFirst();
   }
 
-  /** Instants of a series share a surface, and its creases take longer than its values. */
-  private readonly keptCreases: CreasesOf = (points, triangles) => {
+  /**
+   * Instants of a series share a surface, and its creases take longer than its values. They are
+   * those of the mesh at rest, so that no line comes or goes while it moves.
+   */
+  private readonly keptCreases: CreasesOf = (_, triangles) => {
     const {assembler, creases} = this;
     const of = [assembler.codec.chunksApplied, triangles.length, triangles[0]].join();
-    const its = creases?.of === of ? creases.creases : this.creasesOf!(points, triangles);
+    const its =
+      creases?.of === of ? creases.creases : this.creasesOf!(assembler.codec.points(), triangles);
     this.creases = {of, creases: its};
     return its.slice(); // it is transferred
   };
@@ -228,15 +267,30 @@ export class Publisher {
     return keptOf(this.middles, color, () => middleOf(scale, tetrahedra));
   }
 
-  private frame(mesh: MeshArrays, {color, volume}: Display): Omit<Snapshot, 'cuts' | 'planes'> {
+  /** The warp's field has values, so that it moves the mesh. */
+  private isWarped(warp: Warp | null): warp is Warp {
+    return warp !== null && this.assembler.codec.fieldChunksApplied(warp.field) > 0;
+  }
+
+  private measure({points, boundary}: MeshArrays, warp: Warp | null): void {
+    this.bounds = pointBounds(points, boundary);
+    this.restBounds = this.isWarped(warp)
+      ? pointBounds(this.assembler.codec.points(), boundary)
+      : this.bounds;
+  }
+
+  private frame(
+    mesh: MeshArrays,
+    {color, volume, warp}: Display,
+  ): Omit<Snapshot, 'cuts' | 'planes'> {
     const scale = color && mesh.scale(color);
     const info = color && this.assembler.manifest!.fields[color.field];
     const isComponent = info && info.components > 1 && color.component >= 0;
     const ofSeries = isComponent ? seriesExtent(info, color.component) : null;
-    if (this.meshChanged || this.bounds.length === 0)
-      this.bounds = pointBounds(mesh.points, mesh.boundary);
+    if (this.meshChanged || this.bounds.length === 0) this.measure(mesh, warp);
     return {
       bounds: this.bounds,
+      ...(this.isWarped(warp) && {warp: {...warp, restBounds: this.restBounds}}),
       color: scale ? color : null,
       statistics: this.assembler.statistics(fieldsOf(this.display)),
       costMs: 0,
@@ -264,10 +318,6 @@ function seriesExtent(info: FieldInfo, component: number): [number, number] | nu
 /** Fields ahead are not seen. */
 function textOf(display: Display): string {
   return JSON.stringify({...display, ahead: []});
-}
-
-function isSameScalar(a: Scalar | null, b: Scalar | null): boolean {
-  return a?.field === b?.field && a?.component === b?.component;
 }
 
 /** The value of a colour: as it was when it was first asked for. */

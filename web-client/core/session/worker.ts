@@ -131,7 +131,7 @@ function obey(
     case 'histogram':
       return void its
         .inspector()
-        .then((inspector) => answered(inspector, publisher.display, message))
+        .then((inspector) => answered(inspector, publisher.now, message))
         .then((answer) => post({type: 'answer', id: message.id, answer}), fail);
     case 'coarse': {
       const {id, have} = message;
@@ -139,7 +139,7 @@ function obey(
         self.postMessage({type: 'answer', id, answer} satisfies FromWorker, {
           transfer: answer?.cells ? buffersOfVolume(answer.cells) : [],
         });
-      return void coarse.cells(have, publisher.display).then(reply, () => reply(null));
+      return void coarse.cells(have, publisher.now).then(reply, () => reply(null));
     }
   }
 }

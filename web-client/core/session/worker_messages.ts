@@ -11,6 +11,7 @@ import type {Scalar} from '../picture/field_scale';
 import type {Axis, Histogram} from '../picture/histogram';
 import type {TriangleSoup} from '../picture/triangle_soup';
 import type {CoarseCells, VolumeCells} from '../picture/volume';
+import type {Warp} from '../picture/warp';
 import type {Vector, Plane} from '../protocol/geometry';
 import type {Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
@@ -72,6 +73,8 @@ export interface Snapshot extends LayerSoups {
   planes: Plane[];
   /** Bounds of the surface in lattice coordinates: [x0, y0, z0, x1, y1, z1]. */
   bounds: number[];
+  /** How the vertices are moved, and the surface's bounds without that; absent: they rest. */
+  warp?: Warp & {restBounds: number[]};
   /** The quantity that the soups' values show; null if there are none yet. */
   color: Scalar | null;
   /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */

@@ -88,6 +88,10 @@ export function formatValue(value: number): string {
   return formatTo(value, magnitude > 0 ? 10 ** (Math.floor(Math.log10(magnitude)) - 4) : 1);
 }
 
+/** "× 50": how many times something is enlarged. */
+export const formatFactor = (factor: number): string =>
+  `\u00d7\u202f${Number(factor.toPrecision(3))}`.replace('-', '\u2212');
+
 /** A coordinate on an axis of length `span`, to a thousandth of it. */
 export function formatCoordinate(value: number, span: number): string {
   return formatTo(value, span / 1000);

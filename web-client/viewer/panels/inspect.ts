@@ -57,7 +57,7 @@ export class Inspect {
       (text) => host.announce(text),
       () => this.clear(),
       () => void this.saveTable(),
-      () => void this.overTime.begin(this.points[0]!.lattice),
+      () => void this.overTime.begin(materialPlace(this.points[0]!)),
     );
     this.overTime = new OverTime(host, {
       open: (choose, isWanted) => this.openTimePlot(choose, isWanted),
@@ -183,6 +183,7 @@ export class Inspect {
   private showPick(pick: Pick): void {
     const fields = this.host.manifest!.fields;
     const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
+    if (pick.rest) rows.push(['Position at rest', this.placeText(pick.rest.position)]);
     for (const {field, values} of pick.fields) {
       const info = fields[field]!;
       if (info.instant && !info.instant.isShown) continue; // there may be a thousand
@@ -195,7 +196,7 @@ export class Inspect {
     this.card.show(`Cell ${formatCount(pick.cell)}`, rows, isOpen);
     this.card.offerOverTime(this.offersOverTime);
     this.placeCard();
-    if (isOpen) void this.overTime.begin(pick.lattice);
+    if (isOpen) void this.overTime.begin(materialPlace(pick));
   }
 
   private get offersOverTime(): boolean {
@@ -280,6 +281,9 @@ export class Inspect {
     hint.textContent = text;
   }
 }
+
+/** A place of the mesh at rest: a point that moves keeps it. */
+const materialPlace = ({lattice, rest}: Pick): Vector => rest?.lattice ?? lattice;
 
 function shape(name: string, attributes: Record<string, number>): SVGElement {
   const element = document.createElementNS('http://www.w3.org/2000/svg', name);

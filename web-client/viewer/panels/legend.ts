@@ -6,7 +6,7 @@ import {linearPart, placeOn} from '../../core/picture/log_scale';
 import {labelTicks, logTicks, niceTicks, type Ticks} from '../../core/picture/ticks';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {setAttribute, setText} from '../page/find';
-import {formatValue} from '../page/format';
+import {formatFactor, formatValue} from '../page/format';
 import type {Settings, ShownRange} from '../settings/settings';
 import {scalarTitle} from './panel';
 
@@ -59,6 +59,13 @@ export class Legend {
     this.part('.legend-ticks').replaceChildren(
       ...ticks.map(({at, label}) => placed('span', at, label)),
     );
+  }
+
+  /** The factor by which the vectors move the mesh; 0: it rests. */
+  showWarp(scale: number): void {
+    const note = this.part('.legend-warp');
+    note.hidden = scale === 0;
+    setText(note, scale === 0 ? '' : `Deformed shape ${formatFactor(scale)}`);
   }
 
   private part(selector: string): HTMLElement {

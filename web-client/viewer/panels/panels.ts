@@ -25,6 +25,7 @@ import {StatisticsPanel} from './statistics_panel';
 import {ValuePanel} from './value_panel';
 import {ViewPanel} from './view_panel';
 import {VolumePanel} from './volume_panel';
+import {WarpPanel} from './warp_panel';
 
 export interface PanelsHost {
   readonly client: Client;
@@ -73,6 +74,7 @@ export class Panels {
       this.clip,
       ...fieldLayers().map((layer) => new ValuePanel(root, page, layer)),
       new VolumePanel(root, page),
+      new WarpPanel(root, page),
       level,
       this.view,
     ];

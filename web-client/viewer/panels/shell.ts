@@ -34,6 +34,7 @@ export class Shell {
     if (range && snapshot?.color && manifest) {
       const marked = markedValues(snapshot.color, (name) => this.page.read(name), manifest.fields);
       this.legend.show(snapshot.color, manifest.fields, range, settings, marked);
+      this.legend.showWarp(snapshot.warp?.scale ?? 0);
     } else {
       this.legend.hide();
     }

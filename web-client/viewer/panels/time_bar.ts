@@ -7,6 +7,7 @@ import type {Attributes} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import {setMarkup} from '../page/trusted';
 import {shownScalar, type Settings} from '../settings/settings';
+import {warpField} from '../settings/warp';
 
 /** Between two instants at speed 1. */
 const kStepMs = 100;
@@ -45,10 +46,10 @@ export interface TimeHost {
 export class TimeBar {
   private readonly bar: HTMLElement;
   private times: readonly {time: number; text: string}[] = [];
-  /** The key of the shown series; null: none, or another mesh's. */
+  /** The keys of the series that colour and move the mesh, as text; null: another mesh's. */
   private series: string | null = null;
-  /** By time: its field, -1 for none. */
-  private fields: number[] = [];
+  /** For each of them, by time: its field, -1 for none. */
+  private tracks: number[][] = [];
   private at = 0;
   private timer: ReturnType<typeof setInterval> | undefined;
   private waitingSince = 0;
@@ -95,17 +96,19 @@ export class TimeBar {
       this.known = manifest;
       this.end();
       this.times = manifest ? timesOf(manifest.fields) : [];
-      this.choose(null, []);
+      this.series = null;
+      this.tracks = [];
     }
     const isSeries = this.times.length > 1;
     this.bar.hidden = !isSeries;
     if (!isSeries || !manifest) return;
     const {fields} = manifest;
     const color = shownScalar(this.attributes.read('field'), fields, firstField);
-    this.choose((color && fields[color.field]!.instant?.series) ?? null, fields);
+    this.choose([color?.field ?? -1, warpField(settings.warp, fields)], fields);
     const wanted = settings.time ?? this.times[0]!.time;
     this.at = nearestTo(this.times, wanted);
-    mesh.playing = this.isPlaying ? fieldsAhead(this.fields, this.at) : [];
+    const ahead = (track: number[]): number[] => fieldsAhead(track, this.at);
+    mesh.playing = this.isPlaying ? this.tracks.flatMap(ahead) : [];
     const {slider} = this;
     slider.max = String(this.times.length - 1);
     slider.value = String(this.at);
@@ -127,23 +130,27 @@ export class TimeBar {
   }
 
   /** A mesh may have thousands of instants: they are looked up once. */
-  private choose(series: string | null, fields: readonly FieldInfo[]): void {
-    if (series !== null && series === this.series) return;
-    this.series = series;
-    const byTime = new Map<number, number>();
-    fields.forEach(({instant}, field) => {
-      if (instant?.series === series) byTime.set(instant.time, field);
+  private choose(shown: readonly number[], fields: readonly FieldInfo[]): void {
+    const keys = shown.map((field) => fields[field]?.instant?.series);
+    const series = [...new Set(keys.filter((key) => key !== undefined))];
+    const text = JSON.stringify(series);
+    if (text === this.series) return;
+    this.series = text;
+    this.tracks = series.map((key) => {
+      const byTime = new Map<number, number>();
+      fields.forEach(({instant}, field) => {
+        if (instant?.series === key) byTime.set(instant.time, field);
+      });
+      return this.times.map(({time}) => byTime.get(time) ?? -1);
     });
-    this.fields = this.times.map(({time}) => byTime.get(time) ?? -1);
   }
 
   /** Must be called when more is here, or on the screen. */
   follow(): void {
     if (this.bar.hidden) return;
-    const {here} = this.host.mesh;
     const last = this.times.length - 1;
-    const shares = this.fields.flatMap((field, i) => {
-      if (!here.includes(field)) return [];
+    const shares = this.times.flatMap((_, i) => {
+      if (!this.isHere(i)) return [];
       const [from, to] = [i - 0.5, i + 0.5].map(
         (place) => `${(100 * Math.min(Math.max(place, 0), last)) / last}%`,
       );
@@ -218,8 +225,11 @@ export class TimeBar {
     return Math.max(1, by);
   }
 
+  /** False without a series. */
   private isHere(at: number): boolean {
-    return this.host.mesh.here.includes(this.fields[at % this.times.length]!);
+    const {here} = this.host.mesh;
+    const fields = this.tracks.map((track) => track[at % this.times.length]!);
+    return fields.length > 0 && fields.every((field) => here.includes(field));
   }
 
   private get stepMs(): number {
@@ -227,10 +237,12 @@ export class TimeBar {
   }
 
   private get isOnScreen(): boolean {
-    const {mesh} = this.host;
-    const field = this.fields[this.at] ?? -1;
-    if (!mesh.manifest || field < 0) return true;
-    return mesh.snapshot?.color?.field === shownInstant(mesh.manifest.fields, field);
+    const {manifest, snapshot} = this.host.mesh;
+    const seen = [snapshot?.color?.field, snapshot?.warp?.field];
+    return this.tracks.every((track) => {
+      const field = track[this.at] ?? -1;
+      return !manifest || field < 0 || seen.includes(shownInstant(manifest.fields, field));
+    });
   }
 
   private show(at: number): void {

@@ -78,6 +78,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   const notes = [
     time.hidden ? '' : (time.querySelector('output')?.textContent ?? ''),
     text('note'),
+    text('warp'),
     text('missing').trim(),
   ];
   return {
@@ -90,7 +91,9 @@ export function legendOf(root: ParentNode): LegendTexts | null {
     })),
     marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
     notes: notes.filter(Boolean),
-    missing: notes[2] ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor : '',
+    missing: notes.at(-1)
+      ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor
+      : '',
   };
 }
 

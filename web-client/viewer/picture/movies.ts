@@ -7,7 +7,7 @@ import {refusalOf, type Figure} from './figure';
 import {film, type Filming, type Sink} from './film';
 import {openSink} from './movie_sinks';
 import {drawPage, pageFrame} from './page_figure';
-import {SeriesStage, type StageHost} from './series_stage';
+import {seriesIn, SeriesStage, type StageHost} from './series_stage';
 
 const kFramesPerSecond = 10;
 const kMaxFramesPerSecond = 60;
@@ -39,7 +39,7 @@ export class Movies {
   /** A series is shown. */
   get isOffered(): boolean {
     const {manifest, snapshot} = this.host.mesh;
-    return Boolean(snapshot?.color && manifest?.fields[snapshot.color.field]?.instant);
+    return seriesIn(snapshot, manifest?.fields ?? []) !== undefined;
   }
 
   get name(): string {

@@ -1,8 +1,9 @@
 // The instants of the shown series, one after the other, each wholly on the screen. The attribute
 // `time` stays as it is, so that neither the address nor the steps of undo change.
 
+import type {FieldInfo} from '../../core/protocol/fields';
 import {instantsOf} from '../../core/protocol/series';
-import type {StreamState} from '../../core/session/worker_messages';
+import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import type {View} from '../../webgl/view';
 import type {ShownMesh} from '../page/shown_mesh';
 import {fieldsAhead} from '../panels/time_bar';
@@ -22,6 +23,16 @@ const kPatienceMs = 60000;
 /** The stream asks for nothing more by itself. */
 const kRest: readonly StreamState[] = ['complete', 'held', 'paused', 'failed'];
 
+/** The key of the series that colours the mesh, or else moves it. */
+export function seriesIn(
+  snapshot: Snapshot | null,
+  fields: readonly FieldInfo[],
+): string | undefined {
+  const ofField = (its: {field: number} | null | undefined): string | undefined =>
+    its ? fields[its.field]?.instant?.series : undefined;
+  return ofField(snapshot?.color) ?? ofField(snapshot?.warp);
+}
+
 export class SeriesStage implements Stage {
   readonly instants: readonly number[];
   private readonly mesh: ShownMesh;
@@ -35,8 +46,9 @@ export class SeriesStage implements Stage {
   ) {
     const {manifest, snapshot, here} = (this.mesh = host.mesh);
     const fields = manifest?.fields ?? [];
-    const series = snapshot?.color && fields[snapshot.color.field]?.instant?.series;
-    if (series == null) throw new Error('No series is shown. A movie shows the instants of one.');
+    const series = seriesIn(snapshot, fields);
+    if (series === undefined)
+      throw new Error('No series is shown. A movie shows the instants of one.');
     this.series = series;
     const all = instantsOf(fields, series);
     this.instants = onlyLoaded ? all.filter((field) => here.includes(field)) : all;
@@ -73,10 +85,10 @@ export class SeriesStage implements Stage {
   /** Throws if the instant cannot come any more. */
   private check(field: number): void {
     const {host, mesh} = this;
-    const {color} = mesh.snapshot ?? {};
+    const {fields} = mesh.manifest!;
     if (host.mesh !== mesh) throw new Error('Another mesh was opened.');
     if (!host.view) throw new Error('The graphics have stopped.');
-    if (!color || mesh.manifest!.fields[color.field]!.instant?.series !== this.series)
+    if (seriesIn(mesh.snapshot, fields) !== this.series)
       throw new Error('Another field was chosen.');
     if (mesh.here.includes(field)) return;
     const {state} = host.stream;
@@ -92,8 +104,19 @@ export class SeriesStage implements Stage {
   /** No other picture of the instant follows by itself. */
   private isWhole(field: number): boolean {
     const {snapshot, drawn, here, statistics} = this.mesh;
-    if (snapshot?.color?.field !== field || drawn !== snapshot.statistics) return false;
+    if (drawn === null || drawn !== snapshot?.statistics) return false;
+    if (!this.isSeen(field, snapshot)) return false;
     if (!here.includes(field) || !kRest.includes(this.host.stream.state)) return false;
     return drawn.bytes >= Math.min(drawn.bytesNeeded, statistics.bytes);
+  }
+
+  /** The instant colours or moves the mesh. Another series that moves it shows the same time. */
+  private isSeen(field: number, {color, warp}: Snapshot): boolean {
+    const {here, manifest} = this.mesh;
+    if (!warp) return color?.field === field;
+    const isOfTime = manifest!.fields[warp.field]!.instant?.isShown !== false;
+    return (
+      (color?.field === field || warp.field === field) && isOfTime && here.includes(warp.field)
+    );
   }
 }

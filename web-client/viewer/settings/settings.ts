@@ -27,7 +27,7 @@ const kBeforeLayers = [
   'surface',
   'opacity',
 ] as const;
-const kAfterLayers = ['quality', 'projection', 'camera'] as const;
+const kAfterLayers = ['warp', 'warp-scale', 'quality', 'projection', 'camera'] as const;
 export type ViewAttribute =
   (typeof kBeforeLayers)[number] | LayerAttribute | (typeof kAfterLayers)[number];
 
@@ -61,6 +61,10 @@ export interface Settings {
   limit: Limit;
   parallel: boolean;
   camera: CameraState | null;
+  /** The field whose vectors move the mesh; null: it rests. */
+  warp: string | null;
+  /** The factor of the vectors; null: it is for the mesh to choose. */
+  warpScale: number | null;
   /** The time that is shown of series; null: the first. */
   time: number | null;
 }
@@ -85,7 +89,9 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     limit: parseLimit(get('quality')) ?? kFull,
     parallel: get('projection') === 'parallel',
     camera: parseCamera(get('camera')),
-    time: parseTime(get('time')),
+    warp: get('warp'),
+    warpScale: parseNumber(get('warp-scale')),
+    time: parseNumber(get('time')),
   };
 }
 
@@ -100,7 +106,7 @@ function parseCamera(text: string | null): CameraState | null {
   return numbers.length === 6 ? (numbers as CameraState) : null;
 }
 
-function parseTime(text: string | null): number | null {
+function parseNumber(text: string | null): number | null {
   const numbers = parseNumbers(text ?? '');
   return numbers.length === 1 ? numbers[0]! : null;
 }

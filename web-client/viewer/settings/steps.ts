@@ -74,6 +74,8 @@ const kTitles: Record<string, string> = {
   colormap: 'colour map',
   edges: 'cell edges',
   'clip-mode': 'clip',
+  warp: 'deformed shape',
+  'warp-scale': 'deformed shape',
   iso: 'isosurfaces',
   quality: 'level of detail',
 };

@@ -10,6 +10,7 @@ import type {Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
 import {hint} from './nearest';
 import {kViewAttributes, type ViewAttribute} from './settings';
+import {warpField} from './warp';
 
 type Name = ViewAttribute | 'transport';
 type Read = (name: Name) => string | null;
@@ -52,6 +53,7 @@ const kRules: Partial<Record<Name, Rule>> = {
   edges: oneOf('on', 'off'),
   creases: oneOf('on', 'off'),
   surface: oneOf('on', 'off'),
+  'warp-scale': [(text) => parseNumbers(text).length === 1, 'a number; 1 is the true size'],
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
     kLayers
@@ -96,6 +98,13 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
     sentences.push(
       `The mesh has no field "${field}".${hint(field, keys)} The first field is shown instead. ` +
         has,
+    );
+  const warp = read('warp');
+  if (warp !== null && warpField(warp, fields) < 0)
+    sentences.push(
+      parseScalar(warp, fields)
+        ? `warp="${warp}" moves nothing: it takes a field of points with three components.`
+        : `warp="${warp}" moves nothing: the mesh has no such field.${hint(warp, keys)} ${has}`,
     );
   for (const layer of fieldLayers()) {
     const text = read(layer.name);

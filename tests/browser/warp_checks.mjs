@@ -1,0 +1,138 @@
+// The deformed shape: a field of vectors moves the mesh, and everything that is made of it.
+
+import assert from 'node:assert/strict';
+import {join} from 'node:path';
+import {differingShare, readPng} from './png.mjs';
+import {makeLog, serveMesh} from './programs.mjs';
+import {linearBox} from './volume_checks.mjs';
+
+async function opened({server, browser}, query) {
+  const viewer = await browser.open(query.startsWith('http') ? query : `${server.url}?${query}`);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  await viewer.waitForLines();
+  return viewer;
+}
+
+/** The picture left of the panel. */
+const pictureOf = async ({page, out}, name) =>
+  readPng(
+    await page.screenshot({
+      path: join(out, `${name}.png`),
+      clip: {x: 0, y: 0, width: 950, height: 800},
+    }),
+  );
+
+/** The note in the legend takes room when it comes. */
+async function refit(viewer) {
+  await viewer.page.evaluate(() => window.qtetViewer.resetView());
+  await viewer.settle();
+}
+
+const parameter = ({page}, name) => new URL(page.url()).searchParams.get(name);
+
+/** The picture's bounds and those at rest, in the mesh's own unit, and the warp. */
+const shapeOf = ({page}) =>
+  page.evaluate(() => {
+    const {manifest, snapshot} = window.qtetViewer.viewing.mesh;
+    const {origin, step} = manifest.lattice;
+    const placed = (bounds) => bounds?.map((end, i) => origin[i % 3] + step * end);
+    const {bounds, warp} = snapshot;
+    const field = warp && manifest.fields[warp.field].name;
+    return {bounds: placed(bounds), rest: placed(warp?.restBounds), field, scale: warp?.scale};
+  });
+
+/** The way from rest and the displacement of the place in the middle of the picture. */
+const middleOf = ({page}) =>
+  page.evaluate(async () => {
+    const {meshView, viewing} = window.qtetViewer;
+    const {fields} = viewing.mesh.manifest;
+    const {clientWidth, clientHeight} = meshView.canvas;
+    // cards cover the right
+    const pick = await viewing.client.pick(meshView.rayAt(0.38 * clientWidth, clientHeight / 2));
+    return {
+      way: pick.rest.position.map((x, i) => pick.position[i] - x),
+      vector: pick.fields.find(({field}) => fields[field].name === 'Displacement').values,
+    };
+  });
+
+/** A switch and a number deform a beam. A link shows the same, and undo goes back. */
+async function deformsABeam(context) {
+  const {server, bin, out} = context;
+  makeLog(bin, 'beam', out);
+  server.kill();
+  await server.start();
+  const viewer = await opened(context, 'mesh=beam&field=VonMises');
+  const {page} = viewer;
+  const plain = await pictureOf(viewer, 'warp-off');
+  await page.getByRole('switch', {name: 'Deformed shape'}).click();
+  await viewer.settle();
+  assert.equal(parameter(viewer, 'warp'), 'Displacement');
+  assert.equal(await viewer.text('.legend-warp'), 'Deformed shape ×\u202f1');
+  const number = page.getByRole('textbox', {name: 'Scale ×'});
+  await number.fill('8');
+  await number.press('Enter');
+  await viewer.settle();
+  assert.equal(parameter(viewer, 'warp-scale'), '8');
+  await refit(viewer);
+  const moved = await pictureOf(viewer, 'warp-on');
+  assert.ok(differingShare(plain, moved) > 0.05, 'the shape does not change');
+
+  const {bounds, rest, field, scale} = await shapeOf(viewer);
+  assert.deepEqual([field, scale], ['Displacement', 8]);
+  const sag = rest[2] - bounds[2];
+  assert.ok(Math.abs(sag - 8 * 0.1952) < 0.01, `the beam sags by ${sag}`);
+  const {way, vector} = await middleOf(viewer);
+  way.forEach((x, i) =>
+    assert.ok(Math.abs(x - 8 * vector[i]) < 0.002, `${way} is not 8 times ${vector}`),
+  );
+  assert.ok(Math.hypot(...way) > 0.1, `the middle moves by ${way}`);
+
+  const again = await opened(context, page.url());
+  assert.ok(differingShare(moved, await pictureOf(again, 'warp-link')) < 0.002, 'a link differs');
+  await page.locator('qtet-viewer .scene').focus();
+  for (let i = 0; i < 2; ++i) await page.keyboard.press('Control+z');
+  await viewer.settle();
+  await refit(viewer);
+  assert.deepEqual([parameter(viewer, 'warp'), parameter(viewer, 'warp-scale')], [null, null]);
+  assert.ok(differingShare(plain, await pictureOf(viewer, 'warp-undone')) < 0.002, 'undo differs');
+  assert.deepEqual([...viewer.problems, ...again.problems], []);
+}
+
+/** The instant of the time bar moves the mesh: cuts and isosurfaces as well as the surface. */
+async function playsAMotion(context) {
+  const pull = (far) => (x, y, z) => [far * z, 0, 0];
+  await serveMesh(
+    context,
+    'pulled',
+    linearBox(3, {'Displacement@0': pull(0), 'Displacement@1': pull(0.5)}),
+  );
+  const viewer = await opened(context, 'mesh=pulled&field=x&warp=Displacement&clip=y:0.5');
+  const {page} = viewer;
+  const shapes = [await shapeOf(viewer)];
+  await page.evaluate(() => window.qtetViewer.setAttribute('time', '1'));
+  await page.waitForFunction(() => window.qtetViewer.viewing.mesh.snapshot.warp.field === 2, null);
+  await viewer.settle();
+  await pictureOf(viewer, 'warp-series');
+  shapes.push(await shapeOf(viewer));
+  assert.deepEqual(
+    shapes.map(({field, bounds}) => [field, Number(bounds[3].toFixed(2))]),
+    [
+      ['Displacement@0', 1],
+      ['Displacement@1', 2.5],
+    ],
+  );
+  await page.getByRole('button', {name: 'Play'}).click();
+  for (const time of [0, 1])
+    await page.waitForFunction(
+      (its) => {
+        const {manifest, snapshot} = window.qtetViewer.viewing.mesh;
+        return manifest.fields[snapshot.warp.field].instant.time === its;
+      },
+      time,
+      {polling: 10},
+    );
+  assert.deepEqual(viewer.problems, []);
+}
+
+export const warpChecks = {deformsABeam, playsAMotion};

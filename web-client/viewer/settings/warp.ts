@@ -1,0 +1,88 @@
+// The deformed shape: which field of vectors moves the mesh, and how far.
+
+import {parseScalar} from '../../core/layers/field_values';
+import {kMagnitude} from '../../core/picture/field_scale';
+import type {Warp} from '../../core/picture/warp';
+import type {FieldInfo} from '../../core/protocol/fields';
+import type {Manifest} from '../../core/protocol/manifest';
+import type {Settings} from './settings';
+
+/** Names of the displacement of a solid. CalculiX, Code_Aster and others shorten it. */
+const kDisplacement = /^(displacements?|displ?|u_?disp|depl)$/i;
+
+/** The largest displacement is seen at true size if it is at least this share of the diagonal. */
+const kSeenShare = 0.01;
+/** An automatic scale enlarges it to at most this share. */
+const kFirstShare = 0.1;
+/** Vectors longer than this share of the diagonal are no displacements of this mesh. */
+const kLongestShare = 1;
+
+/** The largest displacement at the slider's end, as a share of the diagonal. */
+const kMostShare = 0.4;
+/** The slider's end, in automatic scales, is at least this. */
+const kLeastEnd = 4;
+
+/** The mesh, as far as a warp needs it. */
+export interface Warpable {
+  manifest: Manifest | null;
+  /** In lattice coordinates; empty: not known yet. */
+  bounds: number[];
+}
+
+const isVectors = ({association, components}: FieldInfo): boolean =>
+  association === 'point' && components === 3;
+
+const isDisplacement = ({name, instant}: FieldInfo): boolean =>
+  kDisplacement.test(instant?.series ?? name);
+
+/** The fields that can move the mesh: displacements first. Series have their shown instant. */
+export function warpFields(fields: readonly FieldInfo[]): number[] {
+  const usable = [...fields.keys()].filter(
+    (field) => isVectors(fields[field]!) && fields[field]!.instant?.isShown !== false,
+  );
+  const rank = (field: number): number => (isDisplacement(fields[field]!) ? 0 : 1);
+  return usable.sort((a, b) => rank(a) - rank(b));
+}
+
+/** The field that the attribute's text names; -1 if it names none, or none of vectors of points. */
+export function warpField(text: string | null, fields: readonly FieldInfo[]): number {
+  const scalar = parseScalar(text, fields);
+  const fits = scalar?.component === kMagnitude && isVectors(fields[scalar.field]!);
+  return fits ? scalar.field : -1;
+}
+
+/** True size if its displacements are seen, else a round number that makes them so. */
+export function automaticScale(field: number, {manifest, bounds}: Warpable): number {
+  const share = largestShare(field, {manifest, bounds});
+  if (share === 0) return 1;
+  return share >= kSeenShare && share <= kLongestShare ? 1 : roundBelow(kFirstShare / share);
+}
+
+/** The scale at the slider's end. */
+export function largestScale(field: number, mesh: Warpable): number {
+  const share = largestShare(field, mesh);
+  const least = kLeastEnd * automaticScale(field, mesh);
+  return share > 0 ? Math.max(least, roundBelow(kMostShare / share)) : least;
+}
+
+/** The longest vector as a share of the diagonal; 0 if that is not known. */
+function largestShare(field: number, {manifest, bounds}: Warpable): number {
+  if (!manifest || bounds.length === 0) return 0;
+  const sides = [0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!);
+  const diagonal = manifest.lattice.step * Math.hypot(...sides);
+  const share = manifest.fields[field]!.range[1] / diagonal;
+  return Number.isFinite(share) ? share : 0;
+}
+
+/** The next of 1, 2, 5, 10, 20 ... that is not above the number. */
+function roundBelow(number: number): number {
+  const decade = 10 ** Math.floor(Math.log10(number));
+  const digit = [5, 2, 1].find((times) => times * decade <= number * (1 + 1e-9)) ?? 1;
+  return Number((digit * decade).toPrecision(1));
+}
+
+/** The warp of the settings; null if the mesh stays at rest. */
+export function warpOf({warp, warpScale}: Settings, mesh: Warpable): Warp | null {
+  const field = warpField(warp, mesh.manifest?.fields ?? []);
+  return field < 0 ? null : {field, scale: warpScale ?? automaticScale(field, mesh)};
+}
