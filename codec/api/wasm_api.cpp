@@ -12,6 +12,7 @@
 #include "codec/log/log_index.h"
 #include "codec/refine/refiner.h"
 #include "proto/crc32c.h"
+#include "proto/limits.h"
 
 using qtet::ByteView;
 using qtet::Error;
@@ -50,6 +51,13 @@ qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::ui
 
 int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
 
+int open(qtet::Result<LogIndex> index) {
+  refiner.reset();
+  if (!index) return report(index.error());
+  refiner.emplace(std::move(*index));
+  return 0;
+}
+
 bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
   return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
 }
@@ -63,11 +71,20 @@ void* qtet_alloc(std::uint32_t bytes) { return std::malloc(bytes); }
 void qtet_free(void* memory) { std::free(memory); }
 
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
-  refiner.reset();
-  auto index = LogIndex::parse(ByteView(head, bytes));
-  if (!index) return report(index.error());
-  refiner.emplace(std::move(*index));
-  return 0;
+  return open(LogIndex::parse(ByteView(head, bytes)));
+}
+
+int qtet_open_front(const std::uint8_t* front, std::uint32_t bytes) {
+  return open(LogIndex::parseFront(ByteView(front, bytes)));
+}
+
+std::uint32_t qtet_later_bytes() { return refiner ? refiner->index().unreadBytes() : 0; }
+
+int qtet_read_later(const std::uint8_t* part, std::uint32_t bytes) {
+  if (qtet_later_bytes() == 0)
+    return report({ErrorCode::kBadOrder, "the open log has no later instants to be read"});
+  const qtet::Status read = refiner->readLater(ByteView(part, bytes));
+  return read ? 0 : report(read.error());
 }
 
 const char* qtet_error() { return lastError.c_str(); }
@@ -80,11 +97,13 @@ std::uint32_t qtet_level_count() {
   return refiner ? refiner->index().chunks.back().lastLevel + 1 : 0;
 }
 
-int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors) {
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors,
+                       std::uint32_t fields) {
   if (!refiner) return noLog();
+  if (fields > qtet::kMaxFields)
+    return report({ErrorCode::kLimitExceeded, "more fields than a log may have"});
   if (errors > static_cast<std::uint32_t>(qtet::KnownErrors::kSome))
     return report({ErrorCode::kBadValue, std::to_string(errors) + " is no kind of known errors"});
-  const auto fields = static_cast<std::uint32_t>(refiner->index().fields.size());
   auto numbers = qtet::decodeLevelColumns(ByteView(bytes, size), qtet_level_count(), fields,
                                           static_cast<qtet::KnownErrors>(errors));
   if (!numbers) return report(numbers.error());

@@ -16,15 +16,22 @@ void qtet_free(void* memory);
 /// their size). A coarser level is made by a new instance that is given the same blocks up to it:
 /// an instance's memory never shrinks.
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
+/// The same without the later instants: `front` is header, manifest and table
+/// (LogIndex::frontBytesOf). Their blocks can be read once qtet_read_later has brought the fields.
+int qtet_open_front(const std::uint8_t* front, std::uint32_t bytes);
+/// Bytes of the part of later instants, behind the front; 0 if there is none, or once it is read.
+std::uint32_t qtet_later_bytes();
+int qtet_read_later(const std::uint8_t* part, std::uint32_t bytes);
 /// NUL-terminated text of the last failure.
 const char* qtet_error();
 
 std::uint32_t qtet_chunk_count();
 std::uint32_t qtet_level_count();
-/// Decodes the end of the manifest, the figures of all levels (codec/coding/level_columns.h);
-/// `errors` is a KnownErrors, 0 to 2. qtet_level_numbers() then gives them until the next such
-/// call.
-int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors);
+/// Decodes the end of a manifest, the figures of all levels and of `fields` fields
+/// (codec/coding/level_columns.h); `errors` is a KnownErrors, 0 to 2. qtet_level_numbers() then
+/// gives them until the next such call.
+int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors,
+                       std::uint32_t fields);
 const std::uint32_t* qtet_level_numbers();
 /// File offset (a double: exact up to 2^53), size and tuples of a block; part 0 structure, 1
 /// positions, 2 + f field f.

@@ -38,9 +38,11 @@ struct ChunkEntry {
   CodecId structureCodec = CodecId::kRange;
   CodecId valueCodec = CodecId::kDraco;
   std::vector<BlockEntry> blocks;  ///< 2 + fields
+  /// Of its last blocks, those of later fields, while their sizes are not read.
+  std::uint64_t laterBytes = 0;
 
   [[nodiscard]] std::uint64_t size() const {
-    return blocks.empty() ? 0 : blocks.back().offset + blocks.back().size - offset;
+    return laterBytes + (blocks.empty() ? 0 : blocks.back().offset + blocks.back().size - offset);
   }
 };
 

@@ -1,6 +1,7 @@
 #include "codec/log/chunk_table.h"
 
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include "proto/limits.h"
@@ -16,6 +17,16 @@ std::uint32_t firstLevelOf(std::span<const ChunkEntry> chunks, std::size_t chunk
   return before.lastLevel + (before.endSlot == kLevelEnd);
 }
 
+/// Bytes of many blocks, as two varints: the high 32 bits and the low ones.
+std::uint64_t readLong(ByteReader& r) {
+  const std::uint64_t high = r.readVarint();
+  return high << 32 | r.readVarint();
+}
+void writeLong(ByteWriter& w, std::uint64_t number) {
+  w.writeVarint(static_cast<std::uint32_t>(number >> 32));
+  w.writeVarint(static_cast<std::uint32_t>(number));
+}
+
 void readLevels(ByteReader& r, std::span<const ChunkEntry> before, ChunkEntry& e) {
   const std::uint64_t first = firstLevelOf(before, before.size());
   const std::uint64_t last = first + r.readVarint();
@@ -29,7 +40,7 @@ void readLevels(ByteReader& r, std::span<const ChunkEntry> before, ChunkEntry& e
 
 }  // namespace
 
-std::vector<ChunkEntry> readChunkRows(ByteReader& r, std::uint32_t chunks, std::uint32_t parts,
+std::vector<ChunkEntry> readChunkRows(ByteReader& r, std::uint32_t chunks, RowParts parts,
                                       std::uint64_t offset) {
   assert(r.failed() || chunks * minRowBytes(parts) <= r.remaining());
   std::vector<ChunkEntry> out;
@@ -44,19 +55,20 @@ std::vector<ChunkEntry> readChunkRows(ByteReader& r, std::uint32_t chunks, std::
     const auto codecs = r.read<std::uint8_t>();
     e.structureCodec = static_cast<CodecId>(codecs & 15u);
     e.valueCodec = static_cast<CodecId>(codecs >> 4);
-    e.blocks.resize(parts);
+    e.blocks.resize(parts.count);
     for (BlockEntry& b : e.blocks) {
       b.offset = offset;
       b.size = r.readVarint();
       offset += b.size;
     }
+    if (parts.endsWithLater) offset += e.laterBytes = readLong(r);
     for (BlockEntry& b : e.blocks) b.crc = r.read<std::uint32_t>();
     out.push_back(std::move(e));
   }
   return out;
 }
 
-void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks) {
+void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks, RowParts parts) {
   for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
     const ChunkEntry& e = chunks[chunk];
     w.writeVarint(e.lastLevel - firstLevelOf(chunks, chunk));
@@ -65,8 +77,39 @@ void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks) {
       w.writeVarint(value);
     w.write(static_cast<std::uint8_t>(static_cast<unsigned>(e.structureCodec) |
                                       static_cast<unsigned>(e.valueCodec) << 4));
-    for (const BlockEntry& b : e.blocks) w.writeVarint(b.size);
-    for (const BlockEntry& b : e.blocks) w.write(b.crc);
+    const std::span known = std::span(e.blocks).first(parts.count);
+    for (const BlockEntry& b : known) w.writeVarint(b.size);
+    if (parts.endsWithLater)
+      writeLong(w, std::accumulate(
+                       e.blocks.begin() + parts.count, e.blocks.end(), std::uint64_t{0},
+                       [](std::uint64_t sum, const BlockEntry& b) { return sum + b.size; }));
+    for (const BlockEntry& b : known) w.write(b.crc);
+  }
+}
+
+void readLaterBlocks(ByteReader& r, std::uint32_t count, std::span<ChunkEntry> chunks) {
+  for (ChunkEntry& e : chunks) {
+    std::uint64_t offset = e.offset + e.size() - e.laterBytes, bytes = 0;
+    const std::size_t first = e.blocks.size();
+    e.blocks.resize(first + count);
+    for (BlockEntry& b : std::span(e.blocks).subspan(first)) {
+      b.offset = offset + bytes;
+      b.size = r.readVarint();
+      bytes += b.size;
+    }
+    for (BlockEntry& b : std::span(e.blocks).subspan(first)) b.crc = r.read<std::uint32_t>();
+    if (bytes != e.laterBytes && !r.failed())
+      r.fail(ErrorCode::kBadValue,
+             "the blocks of later instants have other sizes than the chunk table says; fetch or "
+             "build the log again");
+    e.laterBytes = 0;
+  }
+}
+
+void writeLaterBlocks(ByteWriter& w, std::uint32_t count, std::span<const ChunkEntry> chunks) {
+  for (const ChunkEntry& e : chunks) {
+    for (const BlockEntry& b : std::span(e.blocks).last(count)) w.writeVarint(b.size);
+    for (const BlockEntry& b : std::span(e.blocks).last(count)) w.write(b.crc);
   }
 }
 

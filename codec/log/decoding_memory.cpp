@@ -75,7 +75,7 @@ std::uint64_t decodingBytes(const LogIndex& index) {
                      kMaxElementsPerByte * all.structureBytes;
   const std::uint64_t table =
       index.chunks.size() * (sizeof(ChunkEntry) + kChunk + index.parts() * sizeof(BlockEntry)) +
-      index.manifest.size();
+      index.manifest.size() + index.laterManifest.size();
   return kFixed + table + (roomy ? 1 : kDoubling) * mesh +
          kBaseTetrahedron * index.chunks.front().newTetrahedra + fieldBytes(index, all.slots) +
          kBlockInteger * all.blockIntegers;

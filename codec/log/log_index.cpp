@@ -22,14 +22,16 @@ constexpr std::uint32_t kPredictedFlag = 0x40;
 
 struct Header {
   std::uint32_t manifestBytes = 0, tableBytes = 0, manifestCrc = 0, tableCrc = 0;
-  std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0;
+  std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0, laterBytes = 0;
   std::uint64_t fileBytes = 0;
   std::uint8_t positionBits = 0;
   std::uint16_t major = 0, minor = 0;
 
-  [[nodiscard]] std::uint64_t headBytes() const {
+  [[nodiscard]] std::uint64_t frontBytes() const {
     return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes;
   }
+  [[nodiscard]] std::uint64_t headBytes() const { return frontBytes() + laterBytes; }
+  [[nodiscard]] bool hasLaterPart() const { return major == LogIndex::kVersionOfSeries; }
 };
 
 Result<Header> readHeader(ByteView bytes) {
@@ -67,7 +69,8 @@ Result<Header> readHeader(ByteView bytes) {
   h.fields = r.read<std::uint32_t>();
   h.dependencies = r.read<std::uint32_t>();
   h.closing = r.read<std::uint32_t>();
-  reservedAreZero &= r.read<std::uint32_t>() == 0;
+  h.laterBytes = r.read<std::uint32_t>();
+  reservedAreZero &= h.laterBytes == 0 || h.hasLaterPart();
   if (r.read<std::uint32_t>() != crc32c(bytes.first(LogIndex::kHeaderBytes - 4)))
     return fail(ErrorCode::kBadChecksum,
                 "the header's CRC-32C does not match; fetch the file again",
@@ -100,8 +103,9 @@ Result<Header> readHeader(ByteView bytes) {
 }
 
 // The reason why a closing row contradicts the others, or nullptr.
-const char* brokenClosing(const LogIndex& index, const ClosingBlock& closing) {
-  if (closing.kind == ClosingKind::kExactField && closing.field >= index.fields.size())
+const char* brokenClosing(const LogIndex& index, std::uint32_t fields,
+                          const ClosingBlock& closing) {
+  if (closing.kind == ClosingKind::kExactField && closing.field >= fields)
     return "a closing block of a field that the log does not have; build the log again";
   const bool ofMesh =
       closing.kind == ClosingKind::kPointOrder || closing.kind == ClosingKind::kCellOrder ||
@@ -120,21 +124,21 @@ const char* brokenClosing(const LogIndex& index, const ClosingBlock& closing) {
 }
 
 // Blocks back to back from `offset` to the file's end, each kind once.
-Status checkClosing(const LogIndex& index, std::uint64_t offset, std::uint64_t fileBytes) {
+Status checkClosing(const LogIndex& index, std::uint64_t offset, const Header& header) {
   for (const ClosingBlock& closing : index.closing) {
     if (closing.block.size > kMaxBlockBytes)
       return fail(ErrorCode::kLimitExceeded, "a closing block above 256 MiB", offset);
-    if (const char* what = brokenClosing(index, closing))
+    if (const char* what = brokenClosing(index, header.fields, closing))
       return fail(ErrorCode::kBadValue, what, offset);
     offset += closing.block.size;
   }
-  if (offset != fileBytes)
+  if (offset != header.fileBytes)
     return fail(ErrorCode::kBadValue, "the blocks do not end where the file ends", offset);
   return {};
 }
 
 // A field's association and flags, and its prediction in time. Missing bytes stay in `r`.
-Status readShape(ByteReader& r, const Header& header, std::uint32_t field, FieldShape& out) {
+Status readShape(ByteReader& r, bool mayBePredicted, std::uint32_t field, FieldShape& out) {
   const auto bad = [&](std::uint64_t before, const std::string& what) {
     return fail(ErrorCode::kBadValue, "field " + std::to_string(field) + what, r.offset() - before);
   };
@@ -142,8 +146,7 @@ Status readShape(ByteReader& r, const Header& header, std::uint32_t field, Field
   const auto association = r.read<std::uint8_t>();
   if (components == 0 || components > kMaxFieldComponents)
     return bad(2, " has a number of components outside 1..16");
-  const bool isPredicted =
-      header.major == LogIndex::kVersionOfSeries && (association & kPredictedFlag) != 0;
+  const bool isPredicted = mayBePredicted && (association & kPredictedFlag) != 0;
   const std::uint32_t kind = association & ~(kMissingFlag | (isPredicted ? kPredictedFlag : 0u));
   if (kind > static_cast<std::uint32_t>(Association::kCell))
     return bad(1, " has the association " + std::to_string(association) +
@@ -169,8 +172,8 @@ Status readShape(ByteReader& r, const Header& header, std::uint32_t field, Field
 }
 
 // A field is predicted from fields of its own kind.
-Status checkPredictions(const LogIndex& index) {
-  for (std::size_t f = 0; f < index.fields.size(); ++f)
+Status checkPredictions(const LogIndex& index, std::size_t first = 0) {
+  for (std::size_t f = first; f < index.fields.size(); ++f)
     for (const TimePrediction::Parent& parent : index.fields[f].prediction.all())
       if (const FieldShape& of = index.fields[parent.field];
           of.components != index.fields[f].components ||
@@ -178,6 +181,55 @@ Status checkPredictions(const LogIndex& index) {
         return fail(ErrorCode::kBadValue, "field " + std::to_string(f) +
                                               " is predicted from a field of another kind; fetch "
                                               "or build the log again");
+  return {};
+}
+
+void writeShapes(ByteWriter& w, std::span<const FieldShape> fields) {
+  for (const FieldShape& field : fields) {
+    w.write(static_cast<std::uint8_t>(field.components));
+    w.write(static_cast<std::uint8_t>(static_cast<std::uint32_t>(field.association) |
+                                      (field.hasMissing ? kMissingFlag : 0) |
+                                      (field.prediction.isNone() ? 0 : kPredictedFlag)));
+    if (field.prediction.isNone()) continue;
+    w.write(field.prediction.count);
+    for (const TimePrediction::Parent& parent : field.prediction.all()) {
+      w.writeVarint(parent.field);
+      w.write(static_cast<std::uint8_t>(parent.weight));
+    }
+  }
+}
+
+// Fields, bytes and checksum of the part of later instants. A field takes two bytes at least.
+LogIndex::Unread readLaterSummary(ByteReader& r, const Header& header) {
+  LogIndex::Unread out;
+  out.bytes = header.laterBytes;
+  out.fields = r.readVarint();
+  out.crc = r.read<std::uint32_t>();
+  if (!r.failed() && (out.fields > header.fields || (out.fields > 0) != (out.bytes > 0) ||
+                      2 * std::uint64_t{out.fields} > out.bytes))
+    r.fail(ErrorCode::kBadValue,
+           "the table has another number of later instants than the header; fetch or build the log "
+           "again");
+  if (r.failed()) out = {};
+  return out;
+}
+
+// As check(), for the blocks that readLater has brought.
+Status checkLaterBlocks(const LogIndex& index) {
+  for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
+    const ChunkEntry& e = index.chunks[chunk];
+    for (const BlockEntry& b : std::span(e.blocks).last(index.laterFields)) {
+      if (b.size > kMaxBlockBytes)
+        return fail(ErrorCode::kLimitExceeded,
+                    "a block of chunk " + std::to_string(chunk) + " above 256 MiB", b.offset);
+      if (b.size > 0 && e.valueCodec == CodecId::kEmpty)
+        return fail(ErrorCode::kBadCodec,
+                    "chunk " + std::to_string(chunk) +
+                        " has value blocks of the codec 'no bytes' that have bytes; fetch or build "
+                        "the log again",
+                    b.offset);
+    }
+  }
   return {};
 }
 
@@ -198,6 +250,9 @@ Status check(const LogIndex& index, const Header& header) {
       if (b.size > kMaxBlockBytes) return bad(ErrorCode::kLimitExceeded, "a block above 256 MiB");
       offset += b.size;
     }
+    if (e.laterBytes > header.fileBytes)
+      return bad(ErrorCode::kBadValue, "blocks of later instants that are larger than the file");
+    offset += e.laterBytes;
     vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
     if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements)
       return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells or triangles");
@@ -229,7 +284,7 @@ Status check(const LogIndex& index, const Header& header) {
                 "the table has another number of dependencies than the header says; fetch or build "
                 "the log again",
                 48);
-  return checkClosing(index, offset, header.fileBytes);
+  return checkClosing(index, offset, header);
 }
 
 }  // namespace
@@ -268,12 +323,26 @@ Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
   return header->headBytes();
 }
 
+Result<std::uint64_t> LogIndex::frontBytesOf(ByteView firstBytes) {
+  const Result<Header> header = readHeader(firstBytes);
+  if (!header) return std::unexpected(header.error());
+  return header->frontBytes();
+}
+
 Result<LogIndex> LogIndex::parse(ByteView bytes) {
+  Result<LogIndex> index = parseFront(bytes);
+  if (!index || index->unreadBytes() == 0) return index;
+  const auto front = static_cast<std::size_t>(index->headBytes() - index->unreadBytes());
+  if (Status s = index->readLater(bytes.subspan(front)); !s) return std::unexpected(s.error());
+  return index;
+}
+
+Result<LogIndex> LogIndex::parseFront(ByteView bytes) {
   const Result<Header> header = readHeader(bytes);
   if (!header) return std::unexpected(header.error());
-  if (bytes.size() < header->headBytes())
+  if (bytes.size() < header->frontBytes())
     return fail(ErrorCode::kTruncated,
-                "the front of the log is " + std::to_string(header->headBytes()) +
+                "the front of the log is " + std::to_string(header->frontBytes()) +
                     " bytes long, these are " + std::to_string(bytes.size()),
                 bytes.size());
   const ByteView manifest = bytes.subspan(kHeaderBytes, header->manifestBytes);
@@ -292,19 +361,23 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   index.fileBytes = header->fileBytes;
   index.manifest.assign(manifest.begin(), manifest.end());
   ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
-  for (std::uint32_t f = 0; f < header->fields; ++f) {
-    if (Status s = readShape(r, *header, f, index.fields.emplace_back()); !s || r.failed())
+  if (header->hasLaterPart()) index.unread = readLaterSummary(r, *header);
+  for (std::uint32_t f = 0; f < header->fields - index.unread.fields; ++f) {
+    if (Status s = readShape(r, header->hasLaterPart(), f, index.fields.emplace_back());
+        !s || r.failed())
       return std::unexpected(r.failed() ? r.error() : s.error());
   }
+  if (r.failed()) return std::unexpected(r.error());
   if (Status s = checkPredictions(index); !s) return std::unexpected(s.error());
+  const RowParts parts{index.parts(), header->hasLaterPart()};
   // before rows are allocated
-  if (r.remaining() < header->chunks * minRowBytes(index.parts()) +
+  if (r.remaining() < header->chunks * minRowBytes(parts) +
                           std::uint64_t{header->closing} * kMinClosingRowBytes)
     return fail(ErrorCode::kBadValue,
                 "the chunk table is too short for the counts of chunks, fields and closing blocks; "
                 "fetch the file again",
                 28);
-  index.chunks = readChunkRows(r, header->chunks, index.parts(), header->headBytes());
+  index.chunks = readChunkRows(r, header->chunks, parts, header->headBytes());
   if (!r.failed()) {
     const ChunkEntry& last = index.chunks.back();
     index.closing = readClosingRows(r, header->closing, last.offset + last.size());
@@ -317,26 +390,63 @@ Result<LogIndex> LogIndex::parse(ByteView bytes) {
   return index;
 }
 
-Bytes LogIndex::encode() const {
-  ByteWriter table;
-  for (const FieldShape& field : fields) {
-    table.write(static_cast<std::uint8_t>(field.components));
-    table.write(static_cast<std::uint8_t>(static_cast<std::uint32_t>(field.association) |
-                                          (field.hasMissing ? kMissingFlag : 0) |
-                                          (field.prediction.isNone() ? 0 : kPredictedFlag)));
-    if (field.prediction.isNone()) continue;
-    table.write(field.prediction.count);
-    for (const TimePrediction::Parent& parent : field.prediction.all()) {
-      table.writeVarint(parent.field);
-      table.write(static_cast<std::uint8_t>(parent.weight));
-    }
+Status LogIndex::readLater(ByteView part) {
+  const std::uint64_t at = headBytes() - unread.bytes;
+  if (part.size() < unread.bytes)
+    return fail(ErrorCode::kTruncated,
+                "the later instants take " + std::to_string(unread.bytes) + " bytes, these are " +
+                    std::to_string(part.size()),
+                at + part.size());
+  const ByteView bytes = part.first(unread.bytes);
+  if (crc32c(bytes) != unread.crc)
+    return fail(ErrorCode::kBadChecksum,
+                "the CRC-32C of the later instants does not match; fetch the file again", at);
+  ByteReader r(bytes, at);
+  const auto before = static_cast<std::uint32_t>(fields.size());
+  for (std::uint32_t f = before; f < before + unread.fields; ++f) {
+    if (Status s = readShape(r, true, f, fields.emplace_back()); !s || r.failed())
+      return r.failed() ? std::unexpected(r.error()) : s;
   }
-  writeChunkRows(table, chunks);
+  if (Status s = checkPredictions(*this, before); !s) return s;
+  const std::uint32_t manifestBytes = r.readVarint();
+  const ByteView manifestOfLater = r.take(manifestBytes);
+  laterManifest.assign(manifestOfLater.begin(), manifestOfLater.end());
+  if (!r.failed() && r.remaining() < std::uint64_t{unread.fields} * chunks.size() * 5)
+    r.fail(ErrorCode::kBadValue,
+           "the part of later instants is too short for its fields; fetch the file again");
+  if (!r.failed()) readLaterBlocks(r, unread.fields, chunks);
+  if (!r.failed() && r.remaining() > 0)
+    r.fail(ErrorCode::kBadValue, "bytes behind the later instants; fetch or build the log again");
+  if (r.failed()) return std::unexpected(r.error());
+  laterFields = unread.fields;
+  unread = {};
+  return checkLaterBlocks(*this);
+}
+
+Bytes LogIndex::encode() const {
+  assert(unread.bytes == 0 && laterFields <= fields.size());
+  const bool isThree = hasSeries() || laterFields > 0;
+  const std::span front = std::span(fields).first(fields.size() - laterFields);
+  ByteWriter later;
+  if (laterFields > 0) {
+    writeShapes(later, std::span(fields).last(laterFields));
+    later.writeVarint(static_cast<std::uint32_t>(laterManifest.size()));
+    later.append(laterManifest);
+    writeLaterBlocks(later, laterFields, chunks);
+  }
+  ByteWriter table;
+  if (isThree) {
+    table.writeVarint(laterFields);
+    table.write(crc32c(later.bytes()));
+  }
+  writeShapes(table, front);
+  writeChunkRows(table, chunks,
+                 {kFirstFieldPart + static_cast<std::uint32_t>(front.size()), isThree});
   writeClosingRows(table, closing);
 
   ByteWriter w;
   w.append(kMagic);
-  w.write(hasSeries() ? kVersionOfSeries : kVersionMajor);
+  w.write(isThree ? kVersionOfSeries : kVersionMajor);
   const bool hasCells = closingBlock(ClosingKind::kOriginalCells) != nullptr;
   w.write(std::max(manifestMinor, hasCells ? kMinorOfOriginalCells : std::uint16_t{0}));
   w.write(std::uint8_t{0});  // layout
@@ -351,10 +461,11 @@ Bytes LogIndex::encode() const {
   w.write(static_cast<std::uint32_t>(fields.size()));
   w.write(static_cast<std::uint32_t>(chunks.size() - 1));  // dependencies
   w.write(static_cast<std::uint32_t>(closing.size()));
-  w.write(std::uint32_t{0});
+  w.write(static_cast<std::uint32_t>(later.bytes().size()));
   w.write(crc32c(w.bytes()));
   w.append(manifest);
   w.append(table.bytes());
+  w.append(later.bytes());
   return w.take();
 }
 

@@ -33,12 +33,16 @@ struct LogIndex {
   /// The least minor version that has what the manifest holds; when read, the header's.
   std::uint16_t manifestMinor = 0;
   std::vector<FieldShape> fields;
+  /// How many of the last fields stand in the part of later instants, which a viewer fetches after
+  /// its first picture. A log of version 2 has none.
+  std::uint32_t laterFields = 0;
+  Bytes laterManifest;  ///< of these fields, as it stands in the part; log_manifest.h reads it
   std::vector<ChunkEntry> chunks;
   std::vector<ClosingBlock> closing;  ///< in file order
 
   /// The closing block of that kind (and field), or nullptr.
   [[nodiscard]] const ClosingBlock* closingBlock(ClosingKind kind, std::uint32_t field = 0) const;
-  /// Bytes of header + manifest + table: where the first block starts.
+  /// Bytes of header + manifest + table + later instants: where the first block starts.
   [[nodiscard]] std::uint64_t headBytes() const;
   [[nodiscard]] const BlockEntry& block(std::uint32_t chunk, std::uint32_t part) const {
     return chunks[chunk].blocks[part];
@@ -59,12 +63,26 @@ struct LogIndex {
   /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64
   /// bytes), bad-magic, bad-version, bad-checksum, limit-exceeded, bad-value.
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
-  /// Reads the front of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked
+  /// The same of parseFront.
+  [[nodiscard]] static Result<std::uint64_t> frontBytesOf(ByteView firstBytes);
+  /// Reads the head of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked
   /// at.
   [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
-  /// Header, manifest and table as they stand in the file. Ignores the values that the rows imply
-  /// (offsets, first levels).
+  /// The same without the later fields, which are then not among `fields`. ReadLater brings them.
+  [[nodiscard]] static Result<LogIndex> parseFront(ByteView bytes);
+  /// Bytes of the part of later instants, which lie behind the front; 0 once they are read.
+  [[nodiscard]] std::uint32_t unreadBytes() const { return unread.bytes; }
+  /// Reads this part. Errors: truncated, bad-checksum, bad-value. After one the index is of no use.
+  [[nodiscard]] Status readLater(ByteView part);
+  /// Header, manifest, table and later instants as they stand in the file. Ignores the values that
+  /// the rows imply (offsets, first levels). REQUIRES: later instants that are read.
   [[nodiscard]] Bytes encode() const;
+
+  /// The part of later instants as the front describes it, until it is read.
+  struct Unread {
+    std::uint32_t bytes = 0, crc = 0, fields = 0;
+  };
+  Unread unread;
 };
 
 }  // namespace qtet

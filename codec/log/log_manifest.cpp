@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "codec/coding/level_columns.h"
 #include "codec/log/log_index.h"
 #include "proto/limits.h"
+#include "proto/series.h"
 #include "proto/utf8.h"
 
 namespace qtet {
@@ -151,7 +154,7 @@ KnownErrors readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
            "the manifest's flags say what the header's version does not know; fetch or build the "
            "log again");
   if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
-  if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, index.fields.size());
+  if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, out.fields.size());
   if ((flags & kSomeErrorsFollow) != 0) return KnownErrors::kSome;
   return (flags & kAllErrorsFollow) != 0 ? KnownErrors::kAll : KnownErrors::kNone;
 }
@@ -193,12 +196,12 @@ std::uint32_t volumeFigure(double share) {
   return static_cast<std::uint32_t>(std::llround(share * kVolumeFigure));
 }
 
-LevelColumns columnsOf(const Manifest& manifest, KnownErrors errors) {
-  const std::size_t levels = manifest.levels.size();
-  const auto fields = static_cast<std::uint32_t>(manifest.fields.size());
-  LevelColumns out(levels * levelColumnCount(fields, errors));
+LevelColumns columnsOf(const std::vector<ManifestLevel>& all, KnownErrors errors) {
+  const std::size_t levels = all.size();
+  const std::size_t fields = all.front().error ? all.front().error->fields.size() : 0;
+  LevelColumns out(levels * levelColumnCount(static_cast<std::uint32_t>(fields), errors));
   for (std::size_t l = 0; l < levels; ++l) {
-    const ManifestLevel& level = manifest.levels[l];
+    const ManifestLevel& level = all[l];
     std::size_t at = l;
     const auto put = [&](std::uint32_t number) { out[at] = number, at += levels; };
     for (const std::uint32_t count : {level.tetrahedra, level.vertices, level.boundaryTriangles})
@@ -208,6 +211,26 @@ LevelColumns columnsOf(const Manifest& manifest, KnownErrors errors) {
     put(volumeFigure(level.error->volumeLost));
     put(volumeFigure(level.error->volumeGained));
     for (const double error : pairsOf(*level.error)) put(figureOfError(error));
+  }
+  return out;
+}
+
+/// The levels without the errors of the last `count` fields.
+std::vector<ManifestLevel> levelsOfFront(const Manifest& manifest, std::size_t count) {
+  std::vector<ManifestLevel> out = manifest.levels;
+  for (ManifestLevel& level : out)
+    if (level.error) level.error->fields.resize(manifest.fields.size() - count);
+  return out;
+}
+
+/// The errors of the last `count` fields, and nothing else of the levels.
+std::vector<ManifestLevel> levelsOfLater(const Manifest& manifest, std::size_t count) {
+  std::vector<ManifestLevel> out(manifest.levels.size());
+  for (std::size_t l = 0; l < out.size(); ++l) {
+    const std::optional<LevelError>& from = manifest.levels[l].error;
+    if (!from) continue;
+    const auto last = std::span(from->fields).last(count);
+    out[l].error.emplace().fields.assign(last.begin(), last.end());
   }
   return out;
 }
@@ -261,13 +284,55 @@ std::vector<std::uint32_t> completingChunks(const LogIndex& index) {
   return out;
 }
 
+using FieldNamesSeen = std::set<std::pair<std::string, std::string>>;
+
+Status readFields(ByteReader& r, std::span<const FieldShape> shapes, FieldNamesSeen& names,
+                  Manifest& out) {
+  for (const FieldShape& shape : shapes) {
+    const ManifestField& field = out.fields.emplace_back(readField(r, shape));
+    if (r.failed()) return std::unexpected(r.error());
+    if (!names.emplace(field.association, field.name).second)
+      return fail(ErrorCode::kBadValue,
+                  "the manifest has two " + field.association + " fields '" + field.name +
+                      "'; a field is asked for by its name",
+                  r.offset());
+  }
+  return {};
+}
+
+/// The errors of later fields, where the levels have errors.
+Status readLaterErrors(ByteReader& r, std::uint32_t fields, Manifest& out) {
+  const ByteView bytes = r.take(r.remaining());
+  const auto levels = static_cast<std::uint32_t>(out.levels.size());
+  if (!out.levels.front().error)
+    return bytes.empty() ? Status{}
+                         : fail(ErrorCode::kBadValue,
+                                "bytes behind the last later field; fetch or build the log again");
+  const Result<LevelColumns> numbers =
+      decodeLevelColumns(bytes, levels, fields, KnownErrors::kSome);
+  if (!numbers) return std::unexpected(numbers.error());
+  for (std::uint32_t l = 0; l < levels; ++l) {
+    LevelReader reader(*numbers, levels, l);
+    for (std::uint32_t c = 0; c < kCountColumns; ++c) (void)reader.next();
+    const std::optional<LevelError> error = readError(reader, fields, KnownErrors::kSome);
+    if (error.has_value() != out.levels[l].error.has_value())
+      return fail(ErrorCode::kBadValue,
+                  "the later instants have errors of other levels than the manifest; fetch or build "
+                  "the log again");
+    if (error)
+      out.levels[l].error->fields.insert(out.levels[l].error->fields.end(), error->fields.begin(),
+                                         error->fields.end());
+  }
+  return {};
+}
+
 Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
   const KnownErrors errors = readFirstView(r, index, out);
   const ByteView bytes = r.take(r.remaining());
   if (r.failed()) return std::unexpected(r.error());
   const std::vector<std::uint32_t> chunks = completingChunks(index);
   const auto levels = static_cast<std::uint32_t>(chunks.size());
-  const auto fields = static_cast<std::uint32_t>(index.fields.size());
+  const auto fields = static_cast<std::uint32_t>(out.fields.size());
   const Result<LevelColumns> numbers = decodeLevelColumns(bytes, levels, fields, errors);
   if (!numbers) return std::unexpected(numbers.error());
   for (std::uint32_t l = 0; l < levels; ++l) {
@@ -284,23 +349,53 @@ Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
 
 std::uint16_t minorOf(const Manifest& manifest) { return minorOfFlags(flagsOf(manifest)); }
 
-Result<Bytes> manifestBlock(const Manifest& manifest) {
+Result<Bytes> manifestBlock(const Manifest& manifest, std::size_t later) {
   if (Status s = checkErrors(manifest); !s) return std::unexpected(s.error());
+  assert(later <= manifest.fields.size());
   ByteWriter w;
   writeText(w, manifest.generator);
   writeText(w, soundUtf8(manifest.source));
   writeNumber(w, manifest.latticeStep);
   for (const double value : manifest.latticeOrigin) writeNumber(w, value);
-  for (const ManifestField& field : manifest.fields) writeField(w, field);
+  for (const ManifestField& field :
+       std::span(manifest.fields).first(manifest.fields.size() - later))
+    writeField(w, field);
   writeFirstView(w, manifest);
   const KnownErrors errors =
       manifest.levels.front().error ? KnownErrors::kSome : KnownErrors::kNone;
-  w.append(encodeLevelColumns(columnsOf(manifest, errors),
+  w.append(encodeLevelColumns(columnsOf(levelsOfFront(manifest, later), errors),
                               static_cast<std::uint32_t>(manifest.levels.size()), errors));
   if (w.bytes().size() > kMaxManifestBytes)
     return fail(ErrorCode::kLimitExceeded,
                 "the manifest is above 8 MiB; choose some fields with `fields`");
   return w.take();
+}
+
+Bytes laterManifestBlock(const Manifest& manifest, std::size_t later) {
+  assert(later <= manifest.fields.size());
+  ByteWriter w;
+  for (const ManifestField& field : std::span(manifest.fields).last(later)) writeField(w, field);
+  if (manifest.levels.front().error)
+    w.append(encodeLevelColumns(
+        columnsOf(levelsOfLater(manifest, later), KnownErrors::kSome),
+        static_cast<std::uint32_t>(manifest.levels.size()), KnownErrors::kSome));
+  return w.take();
+}
+
+Status setManifest(LogIndex& index, Manifest manifest) {
+  const std::vector<bool> isLater = laterInstants(std::span<const ManifestField>(manifest.fields));
+  const auto first = std::ranges::find(isLater, true);
+  index.laterFields =
+      index.hasSeries() ? static_cast<std::uint32_t>(isLater.end() - first) : 0;
+  if (manifest.opening && manifest.opening->field >= manifest.fields.size() - index.laterFields)
+    manifest.opening.reset();
+  Result<Bytes> front = manifestBlock(manifest, index.laterFields);
+  if (!front) return std::unexpected(front.error());
+  index.manifest = std::move(*front);
+  index.manifestMinor = minorOf(manifest);
+  index.laterManifest =
+      index.laterFields > 0 ? laterManifestBlock(manifest, index.laterFields) : Bytes{};
+  return {};
 }
 
 Result<Manifest> manifestOf(const LogIndex& index) {
@@ -311,17 +406,18 @@ Result<Manifest> manifestOf(const LogIndex& index) {
   out.latticeBits = index.positionBits;
   out.latticeStep = readStep(r);
   for (double& value : out.latticeOrigin) value = readNumber(r);
-  std::set<std::pair<std::string, std::string>> names;
-  for (const FieldShape& shape : index.fields) {
-    const ManifestField& field = out.fields.emplace_back(readField(r, shape));
-    if (r.failed()) return std::unexpected(r.error());
-    if (!names.emplace(field.association, field.name).second)
-      return fail(ErrorCode::kBadValue,
-                  "the manifest has two " + field.association + " fields '" + field.name +
-                      "'; a field is asked for by its name",
-                  r.offset());
-  }
+  FieldNamesSeen names;
+  const std::span shapes(index.fields);
+  const auto front = shapes.first(shapes.size() - index.laterFields);
+  if (Status s = readFields(r, front, names, out); !s) return std::unexpected(s.error());
   if (Status s = readLevels(r, index, out); !s) return std::unexpected(s.error());
+  if (index.laterFields == 0) return out;
+  // the part lies behind the table, with the shapes before the manifest
+  ByteReader later(index.laterManifest, index.headBytes() - index.laterManifest.size());
+  if (Status s = readFields(later, shapes.subspan(front.size()), names, out); !s)
+    return std::unexpected(s.error());
+  if (Status s = readLaterErrors(later, index.laterFields, out); !s)
+    return std::unexpected(s.error());
   return out;
 }
 

@@ -3,6 +3,7 @@
 // both.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "proto/bytes.h"
@@ -13,17 +14,27 @@ namespace qtet {
 
 struct LogIndex;
 
-/// The bytes of LogIndex::manifest. Errors are rounded up to three significant digits
+/// Puts the manifest into the index, in the two parts that a log has (FORMAT.md, "Later
+/// instants"). The first of the later fields is the first instant that is not its series' first. An
+/// opening that names a later field goes. Errors: manifestBlock's. REQUIRES: an index that has the
+/// shapes of these fields.
+[[nodiscard]] Status setManifest(LogIndex& index, Manifest manifest);
+
+/// The bytes of LogIndex::manifest, without the last `later` fields. Errors are rounded up to three significant digits
 /// (codec/coding/error_figure.h). If a level has one, the first and the last have one. Errors:
 /// bad-value (an error that is no number or out of range, a name too long), limit-exceeded (above
 /// kMaxManifestBytes). REQUIRES: at least one level.
-[[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest);
+[[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest, std::size_t later = 0);
+
+/// The bytes of LogIndex::laterManifest: of the last `later` fields. REQUIRES: a manifest that
+/// manifestBlock takes.
+[[nodiscard]] Bytes laterManifestBlock(const Manifest& manifest, std::size_t later);
 
 /// The least minor version of the format that has what manifestBlock writes.
 /// REQUIRES: at least one level.
 [[nodiscard]] std::uint16_t minorOf(const Manifest& manifest);
 
-/// Reads index.manifest. The rest of the index gives bits of the lattice, shapes of the
+/// Reads index.manifest and, if the index has later fields, index.laterManifest. The rest of the index gives bits of the lattice, shapes of the
 /// fields, the number of levels and each level's chunk. Errors: truncated; limit-exceeded (found
 /// before anything is allocated); bad-value with what is out of range, and for bytes left over.
 [[nodiscard]] Result<Manifest> manifestOf(const LogIndex& index);

@@ -115,14 +115,11 @@ Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& o
                          RecordWriter& writer) {
   LogIndex index;
   index.positionBits = static_cast<std::uint8_t>(history.lattice.bits);
-  const Manifest manifest = manifestFor(history, options, writer.added());
-  Result<Bytes> block = manifestBlock(manifest);
-  if (!block) return std::unexpected(block.error());
-  index.manifest = std::move(*block);
-  index.manifestMinor = minorOf(manifest);
   for (const FieldInfo& f : history.fields)
     index.fields.push_back({f.components, isCellField(f) ? Association::kCell : Association::kPoint,
                             f.hasMissing, f.prediction});
+  if (Status s = setManifest(index, manifestFor(history, options, writer.added())); !s)
+    return std::unexpected(s.error());
   index.chunks = std::move(writer.chunks().rows());
   return index;
 }

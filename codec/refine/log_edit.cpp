@@ -131,12 +131,9 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
   }
   std::swap(manifest->fields, fields);
   if (manifest->opening) keepOpening(*manifest, fields[manifest->opening->field], kept, added);
-  index.manifestMinor = minorOf(*manifest);
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);
-  Result<Bytes> manifestBytes = manifestBlock(*manifest);
-  if (!manifestBytes) return std::unexpected(manifestBytes.error());
-  index.manifest = std::move(*manifestBytes);
+  if (Status s = setManifest(index, std::move(*manifest)); !s) return std::unexpected(s.error());
 
   Pieces pieces(log);
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {

@@ -41,9 +41,10 @@ std::unexpected<Error> refuseChunk(ErrorCode code, std::uint32_t chunk, const st
 }
 
 PatchKind Refiner::State::kindOf(const LogIndex& index) {
+  const bool mayHaveMore = index.unreadBytes() > 0;
   const bool hasPointFields = std::ranges::any_of(
       index.fields, [](const FieldShape& f) { return f.association == Association::kPoint; });
-  return {index.positionBits, hasPointFields, index.hasCellField()};
+  return {index.positionBits, hasPointFields || mayHaveMore, index.hasCellField() || mayHaveMore};
 }
 
 Refiner::Refiner(const LogIndex& index) : state_(std::make_unique<State>(index)) {}
@@ -140,6 +141,14 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure,
 Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk,
                            std::span<const std::int32_t> values) {
   return state_->fields.apply(field, chunk, values);
+}
+
+Status Refiner::readLater(ByteView part) {
+  LogIndex index = state_->plan.index;
+  if (Status s = index.readLater(part); !s) return s;
+  state_->plan.index = std::move(index);
+  state_->fields.planHasGrown();
+  return {};
 }
 
 void Refiner::forgetField(std::uint32_t field) { state_->fields.forget(field); }

@@ -37,6 +37,10 @@ class Refiner {
   /// lag behind the mesh, never run ahead, and takes chunks in file order, like the mesh.
   Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
 
+  /// Brings the later fields of an index that was read without them (LogIndex::readLater). Errors:
+  /// readLater's; then nothing has changed. REQUIRES: index().unreadBytes() > 0.
+  Status readLater(ByteView part);
+
   /// Gives the memory of a field's values back, as if none of its blocks had come. REQUIRES: a
   /// field of the log.
   void forgetField(std::uint32_t field);

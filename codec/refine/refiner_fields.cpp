@@ -15,6 +15,8 @@ RefinerFields::RefinerFields(const ChunkPlan& plan, const RecordReader& records,
       added_(added),
       fields_(plan.index.fields.size()) {}
 
+void RefinerFields::planHasGrown() { fields_.resize(plan_.index.fields.size()); }
+
 // A cell stands in with its prediction, a vertex with its fused vertex's value.
 void RefinerFields::inherit(std::uint32_t chunk) {
   for (std::size_t f = 0; f < fields_.size(); ++f) {

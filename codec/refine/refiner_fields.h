@@ -30,6 +30,8 @@ class RefinerFields {
 
   /// Implements Refiner::applyField.
   Status apply(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
+  /// Takes in that the plan has more fields than before.
+  void planHasGrown();
   /// Implements Refiner::forgetField.
   void forget(std::uint32_t field) { fields_[field] = {}; }
   /// Gives a chunk's new elements stand-in values in every field, until the field's own block

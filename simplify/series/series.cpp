@@ -46,6 +46,12 @@ void orderSeries(std::vector<MeshField>& fields) {
       ordered.push_back(std::move(fields[series.fields[step.instant]]));
     for (std::size_t i = 0; i < places.size(); ++i) fields[places[i]] = std::move(ordered[i]);
   }
+  const std::vector<bool> isLater = laterInstants(std::span<const MeshField>(fields));
+  std::vector<MeshField> out;
+  for (const bool later : {false, true})
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      if (isLater[f] == later) out.push_back(std::move(fields[f]));
+  fields = std::move(out);
 }
 
 }  // namespace qtet

@@ -28,7 +28,8 @@ struct InstantStep {
 /// middle between two. Every second instant is a film of half the rate.
 [[nodiscard]] std::vector<InstantStep> decodingOrder(std::size_t instants);
 
-/// Puts each series' fields into the order of decoding; other fields keep their places.
+/// Puts each series' fields into the order of decoding. Before them come the first instant of each
+/// series and all other fields, in the order in which they are.
 void orderSeries(std::vector<MeshField>& fields);
 
 }  // namespace qtet

@@ -248,7 +248,7 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.manifest-errors-twice.qtet", errors(9, 1, 3));
 }
 
-/// Breaks what the chunk table says of predictions in time.
+/// Breaks the part of later instants, and what the table says of it.
 void writeBadSeries(const std::filesystem::path& folder, const Bytes& series) {
   const LogIndex index = LogIndex::parse(series).value();
   const auto patched = [&](std::size_t at, std::size_t value) {
@@ -257,22 +257,34 @@ void writeBadSeries(const std::filesystem::path& folder, const Bytes& series) {
     testing::mendChecksums(b);
     return b;
   };
+  const auto part = static_cast<std::size_t>(LogIndex::frontBytesOf(series).value());
   const auto first = std::ranges::find_if(
       index.fields, [](const FieldShape& f) { return !f.prediction.isNone(); });
-  // Components and association of the fields before it stand before its count of parents.
+  // Components and association of the later fields before it stand before its count of parents.
+  const std::size_t front = index.fields.size() - index.laterFields;
   const std::size_t before = static_cast<std::size_t>(first - index.fields.begin());
-  const std::size_t count = LogIndex::kHeaderBytes + index.manifest.size() + 2 * (before + 1);
+  const std::size_t count = part + 2 * (before - front + 1);
   write(folder / "bad-value.series-no-parent.qtet", patched(count, 0));
   write(folder / "bad-value.series-five-parents.qtet", patched(count, 5));
   write(folder / "bad-value.series-its-own-parent.qtet", patched(count + 1, before));
   // The last field is one of cells, the first one of points.
   write(folder / "bad-value.series-parent-of-another-kind.qtet",
         forged(series, [](LogIndex& i) { i.fields.back().prediction.parents[0].field = 0; }));
-  // As many closing rows as the table would hold without the predictions.
-  const std::size_t table = index.headBytes() - LogIndex::kHeaderBytes - index.manifest.size();
-  const std::size_t rows = index.chunks.size() * minRowBytes(index.parts());
-  write(folder / "bad-value.series-table-too-short.qtet",
-        patched(52, (table - 2 * index.fields.size() - rows) / kMinClosingRowBytes));
+  const std::size_t table = LogIndex::kHeaderBytes + index.manifest.size();
+  write(folder / "bad-value.series-more-later-fields-than-fields.qtet",
+        patched(table, index.fields.size() + 1));
+  write(folder / "bad-value.series-no-later-field-in-the-part.qtet", patched(table, 0));
+  write(folder / "bad-value.series-part-too-long.qtet",
+        forged(series, [](LogIndex& i) { i.laterManifest.push_back(0); }));
+  // The manifest of later fields takes what their blocks' rows need.
+  std::size_t shapes = 0;
+  for (const FieldShape& f : std::span(index.fields).last(index.laterFields))
+    shapes += 2 + (f.prediction.isNone() ? 0 : 1 + 2 * f.prediction.count);
+  write(folder / "bad-value.series-part-too-short.qtet",
+        patched(part + shapes, series[part + shapes] + 20));
+  Bytes flipped = series;
+  flipped[part] ^= 1;
+  write(folder / "bad-checksum.later-instants.qtet", flipped);
 }
 
 void writeBadClosing(const std::filesystem::path& folder, const Bytes& kept) {

@@ -75,11 +75,12 @@ struct TakenApart {
   return out;
 }
 
-/// Makes the checksums in the header right, of what it says are manifest and table and of itself,
-/// after bytes of them were changed.
+/// Makes the checksums of the head right after bytes of it were changed: of what the header says are
+/// manifest, table and later instants, and its own.
 inline void mendChecksums(Bytes& log) {
-  constexpr std::size_t kManifestBytesAt = 24, kTableBytesAt = 28, kManifestCrcAt = 32,
-                        kTableCrcAt = 36, kHeaderCrcAt = 60;
+  constexpr std::size_t kMajorAt = 8, kManifestBytesAt = 24, kTableBytesAt = 28,
+                        kManifestCrcAt = 32, kTableCrcAt = 36, kLaterBytesAt = 56,
+                        kHeaderCrcAt = 60;
   if (log.size() < LogIndex::kHeaderBytes) return;
   const auto get = [&](std::size_t at) {
     return std::uint64_t{ByteReader(ByteView(log).subspan(at, 4)).read<std::uint32_t>()};
@@ -88,6 +89,13 @@ inline void mendChecksums(Bytes& log) {
     for (std::size_t i = 0; i < 4; ++i) log[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
   };
   const std::uint64_t manifest = get(kManifestBytesAt), table = get(kTableBytesAt);
+  const std::uint64_t tableAt = LogIndex::kHeaderBytes + manifest, later = get(kLaterBytesAt);
+  if (log[kMajorAt] == LogIndex::kVersionOfSeries && table > 6 &&
+      tableAt + table + later <= log.size()) {
+    std::size_t at = tableAt;  // of the number of later fields
+    while (log[at] >= 0x80 && at < tableAt + 2) ++at;
+    put(at + 1, crc32c(ByteView(log).subspan(tableAt + table, later)));
+  }
   if (LogIndex::kHeaderBytes + manifest + table <= log.size()) {
     put(kManifestCrcAt, crc32c(ByteView(log).subspan(LogIndex::kHeaderBytes, manifest)));
     put(kTableCrcAt, crc32c(ByteView(log).subspan(LogIndex::kHeaderBytes + manifest, table)));

@@ -15,18 +15,23 @@ class Log:
         header = struct.unpack("<8sHHBBHQIIIIIIIIII", data[:64])
         (_, major, self.minor, layout, self.bits, _, size, manifest, table) = header[:9]
         self.chunks, self.fields = header[11], header[12]
-        closing = header[14]
+        closing, later_bytes = header[14:16]
         refuse_unless(major in (2, 3) and layout == 0, "another version")
         refuse_unless(size == len(data), "another length")
         self.manifest = data[64 : 64 + manifest]
-        self.offset = 64 + manifest + table
-        reader = Reader(data[64 + manifest : self.offset])
+        self.offset = 64 + manifest + table + later_bytes
+        part = data[64 + manifest + table : self.offset]
+        reader = Reader(data[64 + manifest : 64 + manifest + table])
+        self.later = reader.varint() if major == 3 else 0
+        if major == 3:
+            reader.take(4)
+        refuse_unless((self.later > 0) == (later_bytes > 0), "later fields without their part")
         self.shapes, self.parents = [], []
-        for _ in range(self.fields):
+        for _ in range(self.fields - self.later):
             self.read_shape(reader, major)
         self.rows = []
         for _ in range(self.chunks):
-            self.rows.append(self.read_row(reader))
+            self.rows.append(self.read_row(reader, major))
         self.closing = {}
         for _ in range(closing):
             kind, field, count = reader.varint(), reader.varint(), reader.varint()
@@ -35,6 +40,22 @@ class Log:
             self.offset += count
         refuse_unless(self.offset == len(data), "blocks do not end with the file")
         self.read_manifest()
+        if self.later:
+            self.read_later(Reader(part), len(part))
+
+    def read_later(self, reader, size):
+        """The later fields: shapes, manifest, and their blocks of each chunk."""
+        for _ in range(self.later):
+            self.read_shape(reader, 3)
+        self.read_later_manifest(Reader(reader.take(reader.varint())))
+        for row in self.rows:
+            sizes = [reader.varint() for _ in range(self.later)]
+            reader.take(4 * self.later)
+            refuse_unless(sum(sizes) == row.later, "other sizes than the row says")
+            for size_of in sizes:
+                row.blocks.append(self.data[row.end_of_blocks : row.end_of_blocks + size_of])
+                row.end_of_blocks += size_of
+        refuse_unless(reader.at == size, "bytes behind the later fields")
 
     def read_shape(self, reader, major):
         """A field's components and association, and the fields that it is predicted from."""
@@ -51,7 +72,7 @@ class Log:
         self.shapes.append((components, association & 191))
         self.parents.append(parents)
 
-    def read_row(self, reader):
+    def read_row(self, reader, major):
         row = Row()
         before = self.rows[-1] if self.rows else None
         row.first = before.last + (before.end is LEVEL_END) if before else 0
@@ -63,12 +84,15 @@ class Log:
         row.records = reader.varint()
         row.vertices, row.tetrahedra, row.triangles = (reader.varint() for _ in range(3))
         row.codec = reader.u8() >> 4
-        sizes = [reader.varint() for _ in range(2 + self.fields)]
+        sizes = [reader.varint() for _ in range(2 + self.fields - self.later)]
+        row.later = (reader.varint() << 32 | reader.varint()) if major == 3 else 0
         reader.take(4 * len(sizes))
         row.blocks = []
         for size in sizes:
             row.blocks.append(self.data[self.offset : self.offset + size])
             self.offset += size
+        row.end_of_blocks = self.offset
+        self.offset += row.later
         return row
 
     def read_manifest(self):
@@ -76,14 +100,8 @@ class Log:
         reader.text()
         reader.text()
         self.step, *self.origin = reader.unpack("4d")
-        self.infos = []
-        for components, _ in self.shapes:
-            reader.text()
-            kind, bits, step = reader.unpack("BBd")
-            minimum = reader.unpack(f"{components}d")
-            reader.unpack("2d")
-            self.infos.append((kind & 127, bits, step, minimum))
-        flags = reader.u8()
+        self.infos = [self.read_info(reader, shape) for shape in self.shapes]
+        flags = self.flags = reader.u8()
         refuse_unless(flags < 16 and flags & 9 != 9, "flags of the manifest")
         refuse_unless(flags <= 1 or self.minor >= 2, "a first view in an older version")
         refuse_unless(flags < 8 or self.minor >= 3, "errors of some levels in an older version")
@@ -95,16 +113,37 @@ class Log:
             )
         if flags & 4:
             field, cut = reader.unpack("BB")
-            refuse_unless(field < self.fields and cut <= 3, "the opening's field or axis")
-        levels = self.rows[-1].last + 1
-        stream = Stream(reader.take(len(self.manifest) - reader.at), None, self.misreading)
-        self.read_columns(stream, levels, flags)
-        refuse_unless(stream.at_end(), "level columns are too long")
+            refuse_unless(field < len(self.shapes) and cut <= 3, "the opening's field or axis")
+        self.columns = self.columns_of(reader, flags, len(self.shapes))
 
-    def read_columns(self, stream, levels, flags):
+    def read_info(self, reader, shape):
+        components = shape[0]
+        reader.text()
+        kind, bits, step = reader.unpack("BBd")
+        minimum = reader.unpack(f"{components}d")
+        reader.unpack("2d")
+        return kind & 127, bits, step, minimum
+
+    def read_later_manifest(self, reader):
+        """The columns are those of the manifest again, and 0 but for the later fields' own."""
+        self.infos += [self.read_info(reader, shape) for shape in self.shapes[-self.later :]]
+        if not self.flags & 9:
+            refuse_unless(reader.at == len(reader.data), "bytes behind the last later field")
+            return
+        columns = self.columns_of(reader, 8, self.later)
+        refuse_unless(columns[3] == self.columns[3], "errors of other levels")
+        self.columns += columns[10:]
+
+    def columns_of(self, reader, flags, fields):
+        stream = Stream(reader.take(len(reader.data) - reader.at), None, self.misreading)
+        columns = self.read_columns(stream, self.rows[-1].last + 1, flags, fields)
+        refuse_unless(stream.at_end(), "level columns are too long")
+        return columns
+
+    def read_columns(self, stream, levels, flags, fields):
         pairs = {0: 3, 1: 4, 8: 6}[flags & 9]  # the first column of a pair
-        columns = pairs + (2 * (2 + self.fields) if flags & 9 else 0)
-        self.columns = []
+        columns = pairs + (2 * (2 + fields) if flags & 9 else 0)
+        out = []
         known = [1] * levels
         for column in range(columns):
             stays = column >= pairs and (column - pairs) % 2 == 1 or flags & 8 and column == 3
@@ -128,7 +167,8 @@ class Log:
                 known = told
                 refuse_unless(all(k < 2 for k in known), "an error is known or not")
                 refuse_unless(known[0] and known[-1], "an end without a known error")
-            self.columns.append(told)
+            out.append(told)
         for column in range(pairs, columns, 2):
-            for mean, most in zip(self.columns[column], self.columns[column + 1]):
+            for mean, most in zip(out[column], out[column + 1]):
                 refuse_unless(mean <= most <= 17100, "a mean above its maximum")
+        return out

@@ -189,8 +189,8 @@ export class Assembler implements LogTable {
 
   private takeHead(head: Uint8Array): void {
     this.codec.open(head);
-    this.manifest = readManifest(head, (bytes, errors, columns) =>
-      this.codec.levelColumns(bytes, errors, columns),
+    this.manifest = readManifest(head, (bytes, errors, fields, columns) =>
+      this.codec.levelColumns(bytes, errors, fields, columns),
     );
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();

@@ -18,7 +18,12 @@ export interface Codec {
    * The numbers of all levels, column by column, from the end of the manifest. Throws
    * `limit-exceeded`, `truncated`, `bad-value`.
    */
-  levelColumns(bytes: Uint8Array, errors: KnownErrors, columns: number): Uint32Array;
+  levelColumns(
+    bytes: Uint8Array,
+    errors: KnownErrors,
+    fields: number,
+    columns: number,
+  ): Uint32Array;
   /** Byte offset in the file. */
   blockOffset(chunk: number, part: number): number;
   blockSize(chunk: number, part: number): number;
@@ -75,7 +80,7 @@ interface Exports {
   qtet_error(): number;
   qtet_chunk_count(): number;
   qtet_level_count(): number;
-  qtet_level_columns(bytes: number, size: number, errors: number): number;
+  qtet_level_columns(bytes: number, size: number, errors: number, fields: number): number;
   qtet_level_numbers(): number;
   qtet_block_offset(chunk: number, part: number): number;
   qtet_block_size(chunk: number, part: number): number;
@@ -144,9 +149,14 @@ export class WasmCodec implements Codec {
   get chunkCount(): number {
     return this.wasm.qtet_chunk_count() >>> 0;
   }
-  levelColumns(bytes: Uint8Array, errors: KnownErrors, columns: number): Uint32Array {
+  levelColumns(
+    bytes: Uint8Array,
+    errors: KnownErrors,
+    fields: number,
+    columns: number,
+  ): Uint32Array {
     this.with([bytes], ([address]) =>
-      this.wasm.qtet_level_columns(address!, bytes.length, kKnownErrors.indexOf(errors)),
+      this.wasm.qtet_level_columns(address!, bytes.length, kKnownErrors.indexOf(errors), fields),
     );
     const count = columns * (this.wasm.qtet_level_count() >>> 0);
     return new Uint32Array(

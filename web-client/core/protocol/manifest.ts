@@ -60,12 +60,17 @@ export interface Opening {
 
 /** Offsets in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
 const kHeaderBytes = 64;
+const kMajorAt = 8;
+const kMajorOfSeries = 3;
 const kMinorAt = 10;
 const kMinorOfFirstView = 2;
 const kMinorOfSomeErrors = 3;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
+const kTableBytesAt = 28;
 const kFieldsAt = 44;
+/** Behind the number of later fields in the table. */
+const kChecksumBytes = 4;
 /**
  * Added to a field's association and to its type if values may be missing. FieldScale says which
  * ones.
@@ -92,38 +97,48 @@ const kKnownColumn = 3;
 const kVolumeFigure = 1e6;
 const kErrorFigureDigits = 14;
 
-/** Each field's first two bytes of the chunk table; predictions in time lie between them. */
-function readShapes(
-  head: Uint8Array,
-  tableAt: number,
-  count: number,
-): {components: number; association: number}[] {
-  let at = tableAt;
+interface Shape {
+  components: number;
+  association: number;
+}
+
+/** Components and association of so many fields. Predictions in time lie between them. */
+function readShapes(reader: ManifestReader, count: number): Shape[] {
   return Array.from({length: count}, () => {
-    const [components, association] = [head[at]!, head[at + 1]!];
-    at += 2;
+    const [components, association] = [reader.byte(), reader.byte()];
     if ((association & kPredictedFlag) !== 0) {
-      for (let parents = head[at++]!; parents > 0; --parents) {
-        while (head[at++]! >= kMoreFollows); // the parent's number
-        ++at; // its weight
+      for (let parents = reader.byte(); parents > 0; --parents) {
+        reader.varint(); // the parent's number
+        reader.byte(); // its weight
       }
     }
     return {components, association: association & ~kPredictedFlag};
   });
 }
 
+/** Decodes the figures of all levels for so many fields, `columns` numbers a level. */
+export type LevelColumns = (
+  bytes: Uint8Array,
+  errors: KnownErrors,
+  fields: number,
+  columns: number,
+) => Uint32Array;
+
 /**
  * Reads the manifest of a head. REQUIRES: the codec has opened the head, and so has checked its
  * counts and checksums; `levelColumns` belongs to that codec. Throws `truncated`, `bad-value`, and
  * the errors of `levelColumns`.
  */
-export function readManifest(
-  head: Uint8Array,
-  levelColumns: (bytes: Uint8Array, errors: KnownErrors, columns: number) => Uint32Array,
-): Manifest {
+export function readManifest(head: Uint8Array, levelColumns: LevelColumns): Manifest {
   const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
   const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
-  const shapes = readShapes(head, tableAt, header.getUint32(kFieldsAt, true));
+  const table = new ManifestReader(head.subarray(tableAt));
+  let later = 0;
+  if (header.getUint16(kMajorAt, true) === kMajorOfSeries) {
+    later = table.varint();
+    table.bytes(kChecksumBytes);
+  }
+  const shapes = readShapes(table, header.getUint32(kFieldsAt, true) - later);
   const reader = new ManifestReader(head.subarray(kHeaderBytes, tableAt));
   reader.text(); // the program that wrote it
   const source = reader.text();
@@ -132,21 +147,52 @@ export function readManifest(
     step: reader.step(),
     origin: reader.numbers(3) as [number, number, number],
   };
-  const fields = shapes.map(({components, association}) =>
-    readField(reader, components, association),
-  );
-  if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
-    throw damaged('has a field twice');
-  markSeries(fields);
+  const fields = readFields(reader, shapes);
   const flags = reader.byte();
   const errors = knownErrorsOf(flags);
   if (minorOf(flags) > header.getUint16(kMinorAt, true))
     throw damaged('has flags that its version does not know');
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
-  const columns = errors === 'none' ? kCountColumns : firstPairOf(errors) + 2 * (2 + fields.length);
-  const levels = levelsOf(levelColumns(reader.rest(), errors, columns), columns, errors);
-  return {source, lattice, ...(focus && {focus}), ...(opening && {opening}), fields, levels};
+  const levels = readLevels(reader.rest(), errors, fields.length, levelColumns);
+  const manifest = {source, lattice, ...(focus && {focus}), ...(opening && {opening})};
+  const part = head.subarray(tableAt + header.getUint32(kTableBytesAt, true));
+  if (later > 0) readLater(new ManifestReader(part), later, fields, levels, levelColumns);
+  if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
+    throw damaged('has a field twice');
+  markSeries(fields);
+  return {...manifest, fields, levels};
+}
+
+function readFields(reader: ManifestReader, shapes: readonly Shape[]): FieldInfo[] {
+  return shapes.map(({components, association}) => readField(reader, components, association));
+}
+
+/** Adds the fields of the part of later instants (codec/FORMAT.md, "Later instants"). */
+function readLater(
+  part: ManifestReader,
+  count: number,
+  fields: FieldInfo[],
+  levels: LevelInfo[],
+  levelColumns: LevelColumns,
+): void {
+  const shapes = readShapes(part, count);
+  const reader = new ManifestReader(part.bytes(part.varint()));
+  fields.push(...readFields(reader, shapes));
+  if (!levels[0]!.error) return;
+  readLevels(reader.rest(), 'some', count, levelColumns).forEach(({error}, level) =>
+    levels[level]!.error?.fields.push(...(error?.fields ?? [])),
+  );
+}
+
+function readLevels(
+  bytes: Uint8Array,
+  errors: KnownErrors,
+  fields: number,
+  levelColumns: LevelColumns,
+): LevelInfo[] {
+  const columns = errors === 'none' ? kCountColumns : firstPairOf(errors) + 2 * (2 + fields);
+  return levelsOf(levelColumns(bytes, errors, fields, columns), columns, errors);
 }
 
 function knownErrorsOf(flags: number): KnownErrors {
@@ -254,8 +300,8 @@ class ManifestReader {
   private at = 0;
   private readonly view: DataView;
 
-  constructor(private readonly bytes: Uint8Array) {
-    this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  constructor(private readonly all: Uint8Array) {
+    this.view = new DataView(all.buffer, all.byteOffset, all.byteLength);
   }
 
   byte(): number {
@@ -267,15 +313,26 @@ class ManifestReader {
     return this.view.getUint16(this.take(kShareBytes), true) / 2 ** (8 * kShareBytes);
   }
 
+  varint(): number {
+    for (let value = 0, scale = 1; ; scale *= kMoreFollows) {
+      const byte = this.byte();
+      value += (byte % kMoreFollows) * scale;
+      if (byte >= kMoreFollows) continue;
+      if (byte === 0 && scale > 1)
+        throw damaged('has a length that is not written in its shortest form');
+      return value;
+    }
+  }
+
+  bytes(count: number): Uint8Array {
+    const from = this.take(count);
+    return this.all.subarray(from, from + count);
+  }
+
   text(): string {
-    const low = this.byte();
-    const high = low < 128 ? 0 : this.byte();
-    if (low >= 128 && high === 0)
-      throw damaged('has a length that is not written in its shortest form');
-    const size = (low & 127) + 128 * high;
+    const size = this.varint();
     if (size > kMaxNameBytes) throw damaged('has a name that is too long');
-    const from = this.take(size);
-    return new TextDecoder().decode(this.bytes.subarray(from, from + size));
+    return new TextDecoder().decode(this.bytes(size));
   }
 
   numbers(count: number): number[] {
@@ -289,7 +346,7 @@ class ManifestReader {
   }
 
   rest(): Uint8Array {
-    return this.bytes.subarray(this.at);
+    return this.all.subarray(this.at);
   }
 
   private number(): number {
@@ -299,7 +356,7 @@ class ManifestReader {
   }
 
   private take(count: number): number {
-    if (this.at + count > this.bytes.length)
+    if (this.at + count > this.all.length)
       throw new QtetError('truncated', "The mesh's description ends too early.");
     this.at += count;
     return this.at - count;
