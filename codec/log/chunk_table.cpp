@@ -80,9 +80,9 @@ void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks, RowParts 
     const std::span known = std::span(e.blocks).first(parts.count);
     for (const BlockEntry& b : known) w.writeVarint(b.size);
     if (parts.endsWithLater)
-      writeLong(w, std::accumulate(
-                       e.blocks.begin() + parts.count, e.blocks.end(), std::uint64_t{0},
-                       [](std::uint64_t sum, const BlockEntry& b) { return sum + b.size; }));
+      writeLong(
+          w, std::accumulate(e.blocks.begin() + parts.count, e.blocks.end(), std::uint64_t{0},
+                             [](std::uint64_t sum, const BlockEntry& b) { return sum + b.size; }));
     for (const BlockEntry& b : known) w.write(b.crc);
   }
 }

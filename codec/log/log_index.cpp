@@ -371,8 +371,8 @@ Result<LogIndex> LogIndex::parseFront(ByteView bytes) {
   if (Status s = checkPredictions(index); !s) return std::unexpected(s.error());
   const RowParts parts{index.parts(), header->hasLaterPart()};
   // before rows are allocated
-  if (r.remaining() < header->chunks * minRowBytes(parts) +
-                          std::uint64_t{header->closing} * kMinClosingRowBytes)
+  if (r.remaining() <
+      header->chunks * minRowBytes(parts) + std::uint64_t{header->closing} * kMinClosingRowBytes)
     return fail(ErrorCode::kBadValue,
                 "the chunk table is too short for the counts of chunks, fields and closing blocks; "
                 "fetch the file again",

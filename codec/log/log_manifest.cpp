@@ -316,9 +316,10 @@ Status readLaterErrors(ByteReader& r, std::uint32_t fields, Manifest& out) {
     for (std::uint32_t c = 0; c < kCountColumns; ++c) (void)reader.next();
     const std::optional<LevelError> error = readError(reader, fields, KnownErrors::kSome);
     if (error.has_value() != out.levels[l].error.has_value())
-      return fail(ErrorCode::kBadValue,
-                  "the later instants have errors of other levels than the manifest; fetch or build "
-                  "the log again");
+      return fail(
+          ErrorCode::kBadValue,
+          "the later instants have errors of other levels than the manifest; fetch or build "
+          "the log again");
     if (error)
       out.levels[l].error->fields.insert(out.levels[l].error->fields.end(), error->fields.begin(),
                                          error->fields.end());
@@ -376,17 +377,16 @@ Bytes laterManifestBlock(const Manifest& manifest, std::size_t later) {
   ByteWriter w;
   for (const ManifestField& field : std::span(manifest.fields).last(later)) writeField(w, field);
   if (manifest.levels.front().error)
-    w.append(encodeLevelColumns(
-        columnsOf(levelsOfLater(manifest, later), KnownErrors::kSome),
-        static_cast<std::uint32_t>(manifest.levels.size()), KnownErrors::kSome));
+    w.append(encodeLevelColumns(columnsOf(levelsOfLater(manifest, later), KnownErrors::kSome),
+                                static_cast<std::uint32_t>(manifest.levels.size()),
+                                KnownErrors::kSome));
   return w.take();
 }
 
 Status setManifest(LogIndex& index, Manifest manifest) {
   const std::vector<bool> isLater = laterInstants(std::span<const ManifestField>(manifest.fields));
   const auto first = std::ranges::find(isLater, true);
-  index.laterFields =
-      index.hasSeries() ? static_cast<std::uint32_t>(isLater.end() - first) : 0;
+  index.laterFields = index.hasSeries() ? static_cast<std::uint32_t>(isLater.end() - first) : 0;
   if (manifest.opening && manifest.opening->field >= manifest.fields.size() - index.laterFields)
     manifest.opening.reset();
   Result<Bytes> front = manifestBlock(manifest, index.laterFields);

@@ -112,9 +112,9 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
   if (Status s = replaceLog(*edited, options, *out); !s) return std::unexpected(s.error());
   countFields(report);
   if (report.index.hasSeries()) report.notes.push_back(differencesNote(report.index));
-  report.notes.push_back(
-      std::to_string(steps) + " instants are coded in windows of " + std::to_string(kWindow) +
-      "; the base mesh is that of " + std::to_string(sampledSteps(steps).size()) + " of them");
+  report.notes.push_back(std::to_string(steps) + " instants are coded in windows of " +
+                         std::to_string(kWindow) + "; the base mesh is that of " +
+                         std::to_string(sampledSteps(steps).size()) + " of them");
   report.notes.insert(report.notes.end(), added.notes.begin(), added.notes.end());
   report.seconds.emplace_back(
       Stage::kEncode,

@@ -13,7 +13,7 @@ namespace qtet {
 
 /// The steps of a file that the options mean.
 struct ChosenTimes {
-  std::vector<double> times;       ///< ascending
+  std::vector<double> times;      ///< ascending
   std::size_t valuesOfAStep = 0;  ///< numbers in all fields of the first step
 };
 

@@ -41,9 +41,9 @@ class SeriesPipeline : public ::testing::Test {
     for (const std::size_t step : steps) {
       MeshField t{"T@" + timeText(0.1 * static_cast<double>(step)), 1, "float32", {}, "point"};
       for (const Position& p : out.points)
-        t.values.push_back(static_cast<float>((step == jump_ ? factor_ : 1) *
-                                              (p[0] + std::sqrt(1.0 + p[1] * p[1]) * 0.01 *
-                                                          static_cast<double>(step))));
+        t.values.push_back(static_cast<float>(
+            (step == jump_ ? factor_ : 1) *
+            (p[0] + std::sqrt(1.0 + p[1] * p[1]) * 0.01 * static_cast<double>(step))));
       MeshField c{"C@" + timeText(0.1 * static_cast<double>(step)), 1, "int32", {}, "cell"};
       for (std::size_t i = 0; i < out.tetrahedra.size(); ++i)
         c.values.push_back(static_cast<double>(i % 7 + step));
@@ -67,8 +67,7 @@ TEST_F(SeriesPipeline, everyInstantComesBackAtTheLastLevel) {
   const PipelineOutput made = make().value();
   const LogFile log = LogFile::fromBytes(made.log.bytes().value()).value();
   ASSERT_TRUE(log.verifyChecksums());
-  const LatticeMesh finest =
-      meshAtLevel(log, log.chunks().back().lastLevel, std::nullopt).value();
+  const LatticeMesh finest = meshAtLevel(log, log.chunks().back().lastLevel, std::nullopt).value();
   ASSERT_EQ(finest.fields.size(), 2 * kSteps);
   ASSERT_EQ(made.report.manifest.fields.size(), 2 * kSteps);
   Steps all(kSteps);
@@ -88,8 +87,8 @@ TEST_F(SeriesPipeline, everyInstantComesBackAtTheLastLevel) {
     ASSERT_NE(from, input.fields.end()) << info.name;
     if (isCellField(info)) continue;
     for (std::size_t i = 0; i < finest.points.size(); ++i)
-      ASSERT_NEAR(info.value(0, finest.values[f][i]),
-                  from->values[places.at(finest.points[i])], 0.501 * info.step)
+      ASSERT_NEAR(info.value(0, finest.values[f][i]), from->values[places.at(finest.points[i])],
+                  0.501 * info.step)
           << info.name << " " << i;
   }
 }
