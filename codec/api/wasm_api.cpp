@@ -51,13 +51,6 @@ qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::ui
 
 int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
 
-int open(qtet::Result<LogIndex> index) {
-  refiner.reset();
-  if (!index) return report(index.error());
-  refiner.emplace(std::move(*index));
-  return 0;
-}
-
 bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
   return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
 }
@@ -71,11 +64,11 @@ void* qtet_alloc(std::uint32_t bytes) { return std::malloc(bytes); }
 void qtet_free(void* memory) { std::free(memory); }
 
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes) {
-  return open(LogIndex::parse(ByteView(head, bytes)));
-}
-
-int qtet_open_front(const std::uint8_t* front, std::uint32_t bytes) {
-  return open(LogIndex::parseFront(ByteView(front, bytes)));
+  refiner.reset();
+  auto index = LogIndex::parseHead(ByteView(head, bytes));
+  if (!index) return report(index.error());
+  refiner.emplace(std::move(*index));
+  return 0;
 }
 
 std::uint32_t qtet_later_bytes() { return refiner ? refiner->index().unreadBytes() : 0; }

@@ -16,11 +16,10 @@ void qtet_free(void* memory);
 /// their size). A coarser level is made by a new instance that is given the same blocks up to it:
 /// an instance's memory never shrinks.
 int qtet_open(const std::uint8_t* head, std::uint32_t bytes);
-/// The same without the later instants: `front` is header, manifest and table
-/// (LogIndex::frontBytesOf). Their blocks can be read once qtet_read_later has brought the fields.
-int qtet_open_front(const std::uint8_t* front, std::uint32_t bytes);
-/// Bytes of the part of later instants, behind the front; 0 if there is none, or once it is read.
+/// Bytes of the part of later instants, the last ones of the file; 0 if there is none, or once it
+/// is read.
 std::uint32_t qtet_later_bytes();
+/// Brings the fields of this part; before that the log is as without them.
 int qtet_read_later(const std::uint8_t* part, std::uint32_t bytes);
 /// NUL-terminated text of the last failure.
 const char* qtet_error();

@@ -27,10 +27,9 @@ struct Header {
   std::uint8_t positionBits = 0;
   std::uint16_t major = 0, minor = 0;
 
-  [[nodiscard]] std::uint64_t frontBytes() const {
+  [[nodiscard]] std::uint64_t headBytes() const {
     return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes;
   }
-  [[nodiscard]] std::uint64_t headBytes() const { return frontBytes() + laterBytes; }
   [[nodiscard]] bool hasLaterPart() const { return major == LogIndex::kVersionOfSeries; }
 };
 
@@ -97,7 +96,7 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 8,192 fields", 44);
   if (h.closing > kMaxClosingBlocks)
     return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
-  if (h.headBytes() > h.fileBytes)
+  if (h.headBytes() + h.laterBytes > h.fileBytes)
     return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
   return h;
 }
@@ -132,7 +131,7 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, const Header& h
       return fail(ErrorCode::kBadValue, what, offset);
     offset += closing.block.size;
   }
-  if (offset != header.fileBytes)
+  if (offset + header.laterBytes != header.fileBytes)
     return fail(ErrorCode::kBadValue, "the blocks do not end where the file ends", offset);
   return {};
 }
@@ -323,26 +322,28 @@ Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
   return header->headBytes();
 }
 
-Result<std::uint64_t> LogIndex::frontBytesOf(ByteView firstBytes) {
-  const Result<Header> header = readHeader(firstBytes);
-  if (!header) return std::unexpected(header.error());
-  return header->frontBytes();
-}
-
-Result<LogIndex> LogIndex::parse(ByteView bytes) {
-  Result<LogIndex> index = parseFront(bytes);
+Result<LogIndex> LogIndex::parse(ByteView file) {
+  Result<LogIndex> index = parseHead(file);
   if (!index || index->unreadBytes() == 0) return index;
-  const auto front = static_cast<std::size_t>(index->headBytes() - index->unreadBytes());
-  if (Status s = index->readLater(bytes.subspan(front)); !s) return std::unexpected(s.error());
+  const std::uint64_t at = index->fileBytes - index->unreadBytes();
+  const ByteView part = at < file.size() ? file.subspan(static_cast<std::size_t>(at)) : ByteView();
+  if (Status s = index->readLater(part); !s) return std::unexpected(s.error());
   return index;
 }
 
-Result<LogIndex> LogIndex::parseFront(ByteView bytes) {
+Result<LogIndex> LogIndex::parse(ByteView head, ByteView later) {
+  Result<LogIndex> index = parseHead(head);
+  if (!index || index->unreadBytes() == 0) return index;
+  if (Status s = index->readLater(later); !s) return std::unexpected(s.error());
+  return index;
+}
+
+Result<LogIndex> LogIndex::parseHead(ByteView bytes) {
   const Result<Header> header = readHeader(bytes);
   if (!header) return std::unexpected(header.error());
-  if (bytes.size() < header->frontBytes())
+  if (bytes.size() < header->headBytes())
     return fail(ErrorCode::kTruncated,
-                "the front of the log is " + std::to_string(header->frontBytes()) +
+                "the front of the log is " + std::to_string(header->headBytes()) +
                     " bytes long, these are " + std::to_string(bytes.size()),
                 bytes.size());
   const ByteView manifest = bytes.subspan(kHeaderBytes, header->manifestBytes);
@@ -391,7 +392,7 @@ Result<LogIndex> LogIndex::parseFront(ByteView bytes) {
 }
 
 Status LogIndex::readLater(ByteView part) {
-  const std::uint64_t at = headBytes() - unread.bytes;
+  const std::uint64_t at = fileBytes - unread.bytes;
   if (part.size() < unread.bytes)
     return fail(ErrorCode::kTruncated,
                 "the later instants take " + std::to_string(unread.bytes) + " bytes, these are " +
@@ -423,21 +424,25 @@ Status LogIndex::readLater(ByteView part) {
   return checkLaterBlocks(*this);
 }
 
-Bytes LogIndex::encode() const {
+Bytes LogIndex::encodeLater() const {
   assert(unread.bytes == 0 && laterFields <= fields.size());
+  ByteWriter out;
+  if (laterFields == 0) return out.take();
+  writeShapes(out, std::span(fields).last(laterFields));
+  out.writeVarint(static_cast<std::uint32_t>(laterManifest.size()));
+  out.append(laterManifest);
+  writeLaterBlocks(out, laterFields, chunks);
+  return out.take();
+}
+
+Bytes LogIndex::encode() const {
   const bool isThree = hasSeries() || laterFields > 0;
   const std::span front = std::span(fields).first(fields.size() - laterFields);
-  ByteWriter later;
-  if (laterFields > 0) {
-    writeShapes(later, std::span(fields).last(laterFields));
-    later.writeVarint(static_cast<std::uint32_t>(laterManifest.size()));
-    later.append(laterManifest);
-    writeLaterBlocks(later, laterFields, chunks);
-  }
+  const Bytes later = encodeLater();
   ByteWriter table;
   if (isThree) {
     table.writeVarint(laterFields);
-    table.write(crc32c(later.bytes()));
+    table.write(crc32c(later));
   }
   writeShapes(table, front);
   writeChunkRows(table, chunks,
@@ -461,11 +466,10 @@ Bytes LogIndex::encode() const {
   w.write(static_cast<std::uint32_t>(fields.size()));
   w.write(static_cast<std::uint32_t>(chunks.size() - 1));  // dependencies
   w.write(static_cast<std::uint32_t>(closing.size()));
-  w.write(static_cast<std::uint32_t>(later.bytes().size()));
+  w.write(static_cast<std::uint32_t>(later.size()));
   w.write(crc32c(w.bytes()));
   w.append(manifest);
   w.append(table.bytes());
-  w.append(later.bytes());
   return w.take();
 }
 

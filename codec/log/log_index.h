@@ -42,7 +42,7 @@ struct LogIndex {
 
   /// The closing block of that kind (and field), or nullptr.
   [[nodiscard]] const ClosingBlock* closingBlock(ClosingKind kind, std::uint32_t field = 0) const;
-  /// Bytes of header + manifest + table + later instants: where the first block starts.
+  /// Bytes of header + manifest + table: where the first block starts.
   [[nodiscard]] std::uint64_t headBytes() const;
   [[nodiscard]] const BlockEntry& block(std::uint32_t chunk, std::uint32_t part) const {
     return chunks[chunk].blocks[part];
@@ -60,25 +60,27 @@ struct LogIndex {
   [[nodiscard]] bool hasCellField() const;
   /// Some fields are predicted in time.
   [[nodiscard]] bool hasSeries() const;
-  /// Bytes of the header's promise: how much of the file `parse` needs. Errors: truncated (under 64
-  /// bytes), bad-magic, bad-version, bad-checksum, limit-exceeded, bad-value.
+  /// Bytes of the header's promise: how much of the file parseHead needs. Errors: truncated (under
+  /// 64 bytes), bad-magic, bad-version, bad-checksum, limit-exceeded, bad-value.
   [[nodiscard]] static Result<std::uint64_t> headBytesOf(ByteView firstBytes);
-  /// The same of parseFront.
-  [[nodiscard]] static Result<std::uint64_t> frontBytesOf(ByteView firstBytes);
-  /// Reads the head of a log; `bytes` holds at least headBytesOf() bytes, the rest is not looked
-  /// at.
-  [[nodiscard]] static Result<LogIndex> parse(ByteView bytes);
-  /// The same without the later fields, which are then not among `fields`. ReadLater brings them.
-  [[nodiscard]] static Result<LogIndex> parseFront(ByteView bytes);
-  /// Bytes of the part of later instants, which lie behind the front; 0 once they are read.
+  /// Reads header, manifest and table; `bytes` holds at least headBytesOf() bytes, the rest is not
+  /// looked at. Later fields are not among `fields` until readLater has brought them.
+  [[nodiscard]] static Result<LogIndex> parseHead(ByteView bytes);
+  /// Bytes of the part of later instants, the last ones of the file; 0 once they are read.
   [[nodiscard]] std::uint32_t unreadBytes() const { return unread.bytes; }
   /// Reads this part. Errors: truncated, bad-checksum, bad-value. After one the index is of no use.
   [[nodiscard]] Status readLater(ByteView part);
-  /// Header, manifest, table and later instants as they stand in the file. Ignores the values that
-  /// the rows imply (offsets, first levels). REQUIRES: later instants that are read.
+  /// Both, of a whole file. Of a log without later instants the head is enough.
+  [[nodiscard]] static Result<LogIndex> parse(ByteView file);
+  /// Both, of what encode() and encodeLater() give.
+  [[nodiscard]] static Result<LogIndex> parse(ByteView head, ByteView later);
+  /// Header, manifest and table as they stand in the file. Ignores the values that the rows imply
+  /// (offsets, first levels). REQUIRES: later instants that are read.
   [[nodiscard]] Bytes encode() const;
+  /// The part of later instants; empty without any.
+  [[nodiscard]] Bytes encodeLater() const;
 
-  /// The part of later instants as the front describes it, until it is read.
+  /// The part of later instants as the head describes it, until it is read.
   struct Unread {
     std::uint32_t bytes = 0, crc = 0, fields = 0;
   };

@@ -412,8 +412,7 @@ Result<Manifest> manifestOf(const LogIndex& index) {
   if (Status s = readFields(r, front, names, out); !s) return std::unexpected(s.error());
   if (Status s = readLevels(r, index, out); !s) return std::unexpected(s.error());
   if (index.laterFields == 0) return out;
-  // the part lies behind the table, with the shapes before the manifest
-  ByteReader later(index.laterManifest, index.headBytes() - index.laterManifest.size());
+  ByteReader later(index.laterManifest, index.fileBytes - index.encodeLater().size());
   if (Status s = readFields(later, shapes.subspan(front.size()), names, out); !s)
     return std::unexpected(s.error());
   if (Status s = readLaterErrors(later, index.laterFields, out); !s)

@@ -127,7 +127,7 @@ Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& o
 LogStatistics statisticsOf(const LogIndex& index, const FusionHistory& history,
                            std::uint64_t positionCost) {
   LogStatistics s;
-  s.headBytes = s.fileBytes = index.encode().size();
+  s.headBytes = s.fileBytes = index.encode().size() + index.encodeLater().size();
   s.fieldBytes.resize(index.fields.size());
   for (const ChunkEntry& row : index.chunks) {
     for (std::size_t part = 0; part < row.blocks.size(); ++part) {
@@ -171,6 +171,7 @@ Result<EncodedHead> encodeLog(const FusionHistory& history, const LogWriterOptio
   log.statistics.steps = writer.meter().steps();
   index->fileBytes = log.statistics.fileBytes;
   log.head = index->encode();
+  log.later = index->encodeLater();
   return log;
 }
 
@@ -180,6 +181,7 @@ Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOption
   if (!head) return std::unexpected(head.error());
   EncodedLog log{std::move(head->head), std::move(head->statistics)};
   log.bytes.insert(log.bytes.end(), body.begin(), body.end());
+  log.bytes.insert(log.bytes.end(), head->later.begin(), head->later.end());
   return log;
 }
 

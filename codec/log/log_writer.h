@@ -48,7 +48,7 @@ struct LogWriterOptions {
 };
 
 struct LogStatistics {
-  std::uint64_t headBytes = 0;       ///< header, manifest, table
+  std::uint64_t headBytes = 0;       ///< header, manifest, table, and the part of later instants
   std::uint64_t structureBytes = 0;  ///< without what positions take of them
   std::uint64_t positionBytes = 0;   ///< with that: placements, remainders, digits
   std::vector<std::uint64_t> fieldBytes;
@@ -60,9 +60,10 @@ struct LogStatistics {
   std::uint32_t levels = 0;  ///< without the base mesh
 };
 
-/// The front of a log, and the figures of all of it.
+/// A log without its blocks, and the figures of all of it.
 struct EncodedHead {
-  Bytes head;  ///< header, manifest, table: the file is these bytes and then all blocks
+  Bytes head;   ///< header, manifest, table: the file is these bytes, then all blocks, then `later`
+  Bytes later;  ///< the part of later instants; mostly empty
   LogStatistics statistics;
 };
 

@@ -157,13 +157,20 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
       index.closing.back().field = static_cast<std::uint32_t>(place - kept.begin());
     index.closing.back().block = pieces.keep(c.block);
   }
-  index.fileBytes = index.encode().size() + pieces.bytes();
-  return EditedLog(log, index.encode(), std::move(pieces.all()));
+  index.fileBytes = index.encode().size() + pieces.bytes() + index.encodeLater().size();
+  return EditedLog(log, index, std::move(pieces.all()));
 }
+
+EditedLog::EditedLog(const LogFile& log, const LogIndex& index, std::vector<Piece> blocks)
+    : log_(log),
+      head_(index.encode()),
+      later_(index.encodeLater()),
+      blocks_(std::move(blocks)) {}
 
 Status EditedLog::writeTo(const ByteSink& sink) const {
   if (Status s = sink(head_); !s) return s;
-  return writeBlocksTo(sink);
+  if (Status s = writeBlocksTo(sink); !s) return s;
+  return sink(later_);
 }
 
 Status EditedLog::writeBlocksTo(const ByteSink& sink) const {

@@ -15,6 +15,7 @@
 namespace qtet {
 
 class LogFile;
+struct LogIndex;
 
 /// A field for a log, its blocks those of encodeFieldBlocks.
 struct NewField {
@@ -34,22 +35,23 @@ class EditedLog {
     std::optional<std::uint64_t> offset;
   };
 
-  EditedLog(const LogFile& log, Bytes head, std::vector<Piece> blocks)
-      : log_(log), head_(std::move(head)), blocks_(std::move(blocks)) {}
+  EditedLog(const LogFile& log, const LogIndex& index, std::vector<Piece> blocks);
 
   /// Header, manifest and table.
   [[nodiscard]] const Bytes& head() const { return head_; }
+  /// The part of later instants, behind all blocks.
+  [[nodiscard]] const Bytes& later() const { return later_; }
   /// All of its bytes, in order. A block of the other log is held in memory only until the sink has
   /// taken it. Errors: the sink's.
   [[nodiscard]] Status writeTo(const ByteSink& sink) const;
-  /// The same without the head.
+  /// The blocks alone.
   [[nodiscard]] Status writeBlocksTo(const ByteSink& sink) const;
   /// The same in memory.
   [[nodiscard]] Bytes together() const;
 
  private:
   const LogFile& log_;
-  Bytes head_;
+  Bytes head_, later_;
   std::vector<Piece> blocks_;
 };
 

@@ -47,7 +47,7 @@ Status checkNewLog(const ParsedWords& parsed, const std::string& mesh) {
 
 Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const LogFile& before,
                                 const EditedLog& edited) {
-  const Result<LogIndex> index = LogIndex::parse(edited.head());
+  const Result<LogIndex> index = LogIndex::parse(edited.head(), edited.later());
   if (!index) return std::unexpected(index.error());
   const Result<Manifest> manifest = manifestOf(*index);
   if (!manifest) return std::unexpected(manifest.error());

@@ -11,12 +11,14 @@ namespace qtet {
 struct MadeLog {
   Bytes head;  ///< header, manifest, table
   std::unique_ptr<ByteSpool> blocks;
+  Bytes later;  ///< the part of later instants
 
-  [[nodiscard]] std::uint64_t size() const { return head.size() + blocks->size(); }
+  [[nodiscard]] std::uint64_t size() const { return head.size() + blocks->size() + later.size(); }
   /// All of its bytes, in order. Errors: io, the sink's.
   [[nodiscard]] Status writeTo(const ByteSink& sink) const {
     if (Status s = sink(head); !s) return s;
-    return blocks->writeTo(sink);
+    if (Status s = blocks->writeTo(sink); !s) return s;
+    return sink(later);
   }
   /// The same in memory. Errors: io.
   [[nodiscard]] Result<Bytes> bytes() const {

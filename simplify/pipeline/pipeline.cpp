@@ -187,7 +187,7 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, double 
       encodeLog(history, options, [&](ByteView block) { return (*spool)->append(block); });
   if (!encoded) return std::unexpected(encoded.error());
   run.report.statistics = std::move(encoded->statistics);
-  return MadeLog{std::move(encoded->head), std::move(*spool)};
+  return MadeLog{std::move(encoded->head), std::move(*spool), std::move(encoded->later)};
 }
 
 void warn(Run& run) {
@@ -205,7 +205,7 @@ Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)
 }  // namespace
 
 Status readBack(const MadeLog& log, PipelineReport& report) {
-  Result<LogIndex> index = LogIndex::parse(log.head);
+  Result<LogIndex> index = LogIndex::parse(log.head, log.later);
   if (!index) return std::unexpected(index.error());
   report.index = std::move(*index);
   Result<Manifest> manifest = manifestOf(report.index);

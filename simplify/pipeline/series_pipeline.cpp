@@ -59,14 +59,15 @@ Status replaceLog(const EditedLog& edited, const PipelineOptions& options, Pipel
   if (!spool) return std::unexpected(spool.error());
   if (Status s = edited.writeBlocksTo([&](ByteView block) { return (*spool)->append(block); }); !s)
     return s;
-  out.log = {edited.head(), std::move(*spool)};
+  out.log = {edited.head(), std::move(*spool), edited.later()};
   return readBack(out.log, out.report);
 }
 
 /// The figures of the mesh are those of the sample's log. Those of the fields are counted anew.
-void countFields(PipelineReport& report) {
+void countFields(PipelineOutput& out) {
+  PipelineReport& report = out.report;
   LogStatistics& statistics = report.statistics;
-  statistics.headBytes = report.index.headBytes();
+  statistics.headBytes = report.index.headBytes() + out.log.later.size();
   statistics.fileBytes = report.index.fileBytes;
   statistics.fieldBytes.assign(report.index.fields.size(), 0);
   for (const ChunkEntry& chunk : report.index.chunks)
@@ -110,7 +111,7 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
   PipelineReport& report = out->report;
   std::erase(report.notes, differencesNote(report.index));
   if (Status s = replaceLog(*edited, options, *out); !s) return std::unexpected(s.error());
-  countFields(report);
+  countFields(*out);
   if (report.index.hasSeries()) report.notes.push_back(differencesNote(report.index));
   report.notes.push_back(std::to_string(steps) + " instants are coded in windows of " +
                          std::to_string(kWindow) + "; the base mesh is that of " +

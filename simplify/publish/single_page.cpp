@@ -155,15 +155,17 @@ Result<std::uint32_t> cutLog(Bytes& content, const fs::path& path, std::uint64_t
   const Result<OpenedLog> log = openLog(path);
   if (!log) return std::unexpected(log.error());
   const std::span<const ChunkEntry> all = log->file.chunks();
-  const std::uint32_t chunks = chunksWithin(all, room);
+  const Bytes later = log->file.index().encodeLater();  // the end of the log, and of what is left
+  const std::uint32_t chunks = chunksWithin(all, room > later.size() ? room - later.size() : 0);
   if (chunks == 0) {
-    const std::uint64_t base = all.front().offset + all.front().size();
+    const std::uint64_t base = all.front().offset + all.front().size() + later.size();
     return fail(ErrorCode::kLimitExceeded,
                 "the smallest page of this log, with the base mesh, has " +
                     std::to_string(other + (base + 3) / 3 * 4) + " bytes; allow so many");
   }
   const ChunkEntry& last = all[chunks - 1];
   content.resize(last.offset + last.size());
+  content.insert(content.end(), later.begin(), later.end());
   list["meshes"][0]["chunks"] = chunks;
   return chunks;
 }

@@ -257,7 +257,7 @@ void writeBadSeries(const std::filesystem::path& folder, const Bytes& series) {
     testing::mendChecksums(b);
     return b;
   };
-  const auto part = static_cast<std::size_t>(LogIndex::frontBytesOf(series).value());
+  const std::size_t part = series.size() - index.encodeLater().size();
   const auto first = std::ranges::find_if(
       index.fields, [](const FieldShape& f) { return !f.prediction.isNone(); });
   // Components and association of the later fields before it stand before its count of parents.

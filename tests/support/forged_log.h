@@ -41,9 +41,11 @@ struct TakenApart {
       offset += closing[i].size();
       tail.insert(tail.end(), closing[i].begin(), closing[i].end());
     }
-    index.fileBytes = offset;
+    const Bytes later = index.encodeLater();
+    index.fileBytes = offset + later.size();
     Bytes out = index.encode();
     out.insert(out.end(), tail.begin(), tail.end());
+    out.insert(out.end(), later.begin(), later.end());
     return out;
   }
 };
@@ -51,10 +53,15 @@ struct TakenApart {
 /// `good` with another front, the blocks as they are: its length in the header becomes right,
 /// everything else is as `index` says.
 [[nodiscard]] inline Bytes withFront(ByteView good, LogIndex index) {
-  const std::uint64_t before = LogIndex::parse(good).value().headBytes();
-  index.fileBytes += index.encode().size() - before;
+  const LogIndex before = LogIndex::parse(good).value();
+  const std::size_t blocks = static_cast<std::size_t>(before.fileBytes - before.headBytes()) -
+                             before.encodeLater().size();
+  const Bytes later = index.encodeLater();
+  index.fileBytes += index.encode().size() + blocks + later.size() - good.size();
   Bytes out = index.encode();
-  out.insert(out.end(), good.begin() + static_cast<std::ptrdiff_t>(before), good.end());
+  const ByteView kept = good.subspan(static_cast<std::size_t>(before.headBytes()), blocks);
+  out.insert(out.end(), kept.begin(), kept.end());
+  out.insert(out.end(), later.begin(), later.end());
   return out;
 }
 
@@ -90,11 +97,11 @@ inline void mendChecksums(Bytes& log) {
   };
   const std::uint64_t manifest = get(kManifestBytesAt), table = get(kTableBytesAt);
   const std::uint64_t tableAt = LogIndex::kHeaderBytes + manifest, later = get(kLaterBytesAt);
-  if (log[kMajorAt] == LogIndex::kVersionOfSeries && table > 6 &&
-      tableAt + table + later <= log.size()) {
+  if (log[kMajorAt] == LogIndex::kVersionOfSeries && table > 6 && tableAt + table <= log.size() &&
+      later <= log.size()) {
     std::size_t at = tableAt;  // of the number of later fields
     while (log[at] >= 0x80 && at < tableAt + 2) ++at;
-    put(at + 1, crc32c(ByteView(log).subspan(tableAt + table, later)));
+    put(at + 1, crc32c(ByteView(log).last(later)));
   }
   if (LogIndex::kHeaderBytes + manifest + table <= log.size()) {
     put(kManifestCrcAt, crc32c(ByteView(log).subspan(LogIndex::kHeaderBytes, manifest)));

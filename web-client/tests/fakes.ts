@@ -168,6 +168,10 @@ export class FakeCodec implements Codec {
     this.chunksApplied = 0;
     this.fieldChunks = this.log.fields.map(() => 0);
   }
+  readonly laterBytes = 0;
+  readLater(): void {
+    throw new Error('a fake log has no later instants');
+  }
   get chunkCount(): number {
     return this.log.chunks;
   }

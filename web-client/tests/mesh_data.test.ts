@@ -87,6 +87,7 @@ describe('a manifest', () => {
         {level: 0, tetrahedra: 5, vertices: 4, boundaryTriangles: 3},
         {level: 1, tetrahedra: 6, vertices: 7, boundaryTriangles: 8},
       ],
+      later: 0,
     });
   });
 
@@ -105,7 +106,7 @@ describe('a manifest', () => {
   test('tellsTheErrorsWhereThereAreSome', () => {
     const bytes = fakeHead({fields: ['p'], chunks: 1});
     bytes[bytes.length - 3] = 1; // it is followed by the one field's shape in the table
-    const {levels} = readManifest(bytes, (_, errors, count) => {
+    const {levels} = readManifest(bytes, (_, errors, _fields, count) => {
       expect(errors).toBe('all');
       expect(count).toBe(10);
       return Uint32Array.from([9, 8, 7, 987654, 1, 901, 0, 0, 9024, 9924]);
@@ -133,7 +134,7 @@ describe('a manifest', () => {
         ]),
       );
     };
-    const {levels} = readManifest(bytes, (_, errors, count) => numbers(errors, count));
+    const {levels} = readManifest(bytes, (_, errors, _fields, count) => numbers(errors, count));
     expect(levels.map(({error}) => error)).toEqual([
       {
         toLevel: {mean: 1e-12, max: 1e-11},

@@ -31,16 +31,31 @@ export async function takeWholeLog(
     parts: 0,
     payload: log.subarray(0, headBytes),
   });
-  const parts = kFirstFieldPart + assembler.manifest!.fields.length;
-  for (let chunk = 0, at = headBytes; chunk < codec.chunkCount; ++chunk) {
-    const sizes = Array.from({length: parts}, (_, part) => codec.blockSize(chunk, part));
-    const end = at + sizes.reduce((sum, size) => sum + size, 0);
-    if (end > log.length)
-      throw new QtetError('truncated', `chunk ${chunk} ends at ${end} of ${log.length} bytes`);
-    assembler.take({stream: 1, chunk, firstPart: 0, parts, payload: log.subarray(at, end)});
-    at = end;
+  const takeParts = (first: number): void => {
+    const parts = kFirstFieldPart + assembler.manifest!.fields.length - first;
+    for (let chunk = 0; chunk < codec.chunkCount; ++chunk) {
+      const begin = codec.blockOffset(chunk, first);
+      let end = begin;
+      for (let part = first; part < first + parts; ++part) end += codec.blockSize(chunk, part);
+      if (end > log.length)
+        throw new QtetError('truncated', `chunk ${chunk} ends at ${end} of ${log.length} bytes`);
+      assembler.take({
+        stream: 1,
+        chunk,
+        firstPart: first,
+        parts,
+        payload: log.subarray(begin, end),
+      });
+    }
+    const fields = assembler.manifest!.fields.map((_, field) => field);
+    while (assembler.step(fields, true)) continue;
+  };
+  takeParts(0);
+  const {laterBytes} = assembler;
+  if (laterBytes > 0) {
+    const known = assembler.manifest!.fields.length;
+    assembler.takeLater(log.subarray(-laterBytes));
+    takeParts(kFirstFieldPart + known);
   }
-  const fields = assembler.manifest!.fields.map((_, field) => field);
-  while (assembler.step(fields, true)) continue;
   return assembler;
 }

@@ -20,6 +20,7 @@ const manifest: Manifest = {
   lattice: {bits: 16, step: 1, origin: [0, 0, 0]},
   fields: [field('p', 'point'), field('part', 'cell')],
   levels: [{level: 0, tetrahedra: 1, vertices: 4, boundaryTriangles: 4}],
+  later: 0,
 };
 
 const kRight: Record<string, string[]> = {

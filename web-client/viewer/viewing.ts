@@ -218,7 +218,7 @@ export class Viewing implements LaterHost {
   receive(message: Exclude<FromWorker, {type: 'answer'}>): void {
     switch (message.type) {
       case 'manifest':
-        return this.takeManifest(message.manifest);
+        return this.takeManifest(message.manifest, message.isMore === true);
       case 'plan':
         this.mesh.plan = message.plan;
         return this.shell?.progress.takePlan(message.plan);
@@ -237,9 +237,13 @@ export class Viewing implements LaterHost {
     }
   }
 
-  private takeManifest(manifest: Manifest): void {
-    if (this.mesh.manifest) this.forget(true); // another log has taken its name
+  private takeManifest(manifest: Manifest, isMore: boolean): void {
+    if (this.mesh.manifest && !isMore) this.forget(true); // another log has taken its name
     this.mesh.manifest = manifest;
+    if (isMore) {
+      this.shell?.progress.takeFields(manifest);
+      return this.apply();
+    }
     this.view?.setFocus(manifest.focus ?? null);
     this.shell?.progress.begin(manifest);
     this.apply();

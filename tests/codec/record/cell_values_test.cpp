@@ -99,7 +99,7 @@ TEST_F(CellFieldLog, theTableTellsCellFieldsFromPointFields) {
 
 TEST_F(CellFieldLog, anUnknownAssociationIsRefused) {
   index_.fields[1].association = static_cast<Association>(2);
-  const auto index = LogIndex::parse(index_.encode());
+  const auto index = LogIndex::parse(index_.encode(), index_.encodeLater());
   ASSERT_FALSE(index);
   EXPECT_EQ(index.error().code, ErrorCode::kBadValue);
   EXPECT_NE(index.error().message.find("field 1 "), std::string::npos) << index.error().text();

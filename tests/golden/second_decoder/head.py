@@ -19,9 +19,9 @@ class Log:
         refuse_unless(major in (2, 3) and layout == 0, "another version")
         refuse_unless(size == len(data), "another length")
         self.manifest = data[64 : 64 + manifest]
-        self.offset = 64 + manifest + table + later_bytes
-        part = data[64 + manifest + table : self.offset]
-        reader = Reader(data[64 + manifest : 64 + manifest + table])
+        self.offset = 64 + manifest + table
+        part = data[len(data) - later_bytes :]
+        reader = Reader(data[64 + manifest : self.offset])
         self.later = reader.varint() if major == 3 else 0
         if major == 3:
             reader.take(4)
@@ -38,7 +38,7 @@ class Log:
             reader.take(4)
             self.closing[kind, field] = data[self.offset : self.offset + count]
             self.offset += count
-        refuse_unless(self.offset == len(data), "blocks do not end with the file")
+        refuse_unless(self.offset + later_bytes == len(data), "blocks do not end with the file")
         self.read_manifest()
         if self.later:
             self.read_later(Reader(part), len(part))

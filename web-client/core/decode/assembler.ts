@@ -6,7 +6,7 @@ import {QtetError} from '../protocol/errors';
 import type {Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import {fieldKeys} from '../protocol/fields';
-import {readManifest, type Manifest} from '../protocol/manifest';
+import {addLater, readManifest, type LevelColumns, type Manifest} from '../protocol/manifest';
 import type {Frame, Target} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from '../protocol/parts';
 import type {BlockValues, Codec} from './codec';
@@ -20,6 +20,8 @@ export class Assembler implements LogTable {
   codecReady = Promise.resolve();
   private ledger: Ledger | null = null;
   private head: Uint8Array | null = null;
+  /** The part of later instants, once it is here. */
+  private later: Uint8Array | null = null;
   /** By chunk and part. */
   private blocks: (Uint8Array | undefined)[][] = [];
   private received: number[] = [];
@@ -33,7 +35,7 @@ export class Assembler implements LogTable {
   ) {}
 
   forget(): void {
-    this.manifest = this.ledger = this.head = null;
+    this.manifest = this.ledger = this.head = this.later = null;
     this.blocks = [];
     this.received = [];
     this.useParents([]);
@@ -140,6 +142,7 @@ export class Assembler implements LogTable {
   rewind(): void {
     if (!this.head) return;
     this.codec.open(this.head);
+    if (this.later) this.codec.readLater(this.later);
     this.ledger!.clear();
   }
 
@@ -189,14 +192,32 @@ export class Assembler implements LogTable {
 
   private takeHead(head: Uint8Array): void {
     this.codec.open(head);
-    this.manifest = readManifest(head, (bytes, errors, fields, columns) =>
-      this.codec.levelColumns(bytes, errors, fields, columns),
-    );
+    this.manifest = readManifest(head, this.levelColumns);
+    this.later = null;
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
     this.useParents(this.manifest.fields.map((_, field) => this.codec.parents(field)));
     this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
-    this.received = Array<number>(kFirstFieldPart + this.manifest.fields.length).fill(0);
+    this.received = [];
+  }
+
+  private readonly levelColumns: LevelColumns = (bytes, errors, fields, columns) =>
+    this.codec.levelColumns(bytes, errors, fields, columns);
+
+  /** Bytes of the log's part of later instants; 0 if there is none, or once it is here. */
+  get laterBytes(): number {
+    return this.manifest ? this.codec.laterBytes : 0;
+  }
+
+  /**
+   * Takes in the part of later instants. Their fields come behind those that are there. Throws
+   * `bad-checksum`, `truncated`, `bad-value`. REQUIRES: laterBytes > 0.
+   */
+  takeLater(part: Uint8Array): void {
+    this.codec.readLater(part);
+    this.later = part.slice();
+    addLater(this.manifest!, part, this.levelColumns);
+    this.useParents(this.manifest!.fields.map((_, field) => this.codec.parents(field)));
   }
 
   private useParents(parents: number[][]): void {

@@ -9,6 +9,10 @@ import type {KnownErrors} from '../protocol/manifest';
 /** The codec as the session needs it. Tests bring their own. */
 export interface Codec {
   open(head: Uint8Array): void;
+  /** Of the part of later instants; 0 if the log has none, or once it is read. */
+  readonly laterBytes: number;
+  /** Brings the fields of this part. Throws `bad-checksum`, `truncated`, `bad-value`. */
+  readLater(part: Uint8Array): void;
   /** False: it decodes only the base mesh, chunk 0, and gives no digest. */
   readonly isWhole: boolean;
   /** Starts again with an empty codec after `out-of-memory`; the browser gets the memory back. */
@@ -77,6 +81,8 @@ interface Exports {
   qtet_alloc(bytes: number): number;
   qtet_free(address: number): void;
   qtet_open(head: number, bytes: number): number;
+  qtet_later_bytes(): number;
+  qtet_read_later(part: number, bytes: number): number;
   qtet_error(): number;
   qtet_chunk_count(): number;
   qtet_level_count(): number;
@@ -144,6 +150,13 @@ export class WasmCodec implements Codec {
 
   open(head: Uint8Array): void {
     this.with([head], ([address]) => this.wasm.qtet_open(address!, head.length));
+  }
+
+  get laterBytes(): number {
+    return this.wasm.qtet_later_bytes() >>> 0;
+  }
+  readLater(part: Uint8Array): void {
+    this.with([part], ([address]) => this.wasm.qtet_read_later(address!, part.length));
   }
 
   get chunkCount(): number {

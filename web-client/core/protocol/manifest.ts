@@ -49,6 +49,8 @@ export interface Manifest {
   opening?: Opening;
   fields: FieldInfo[];
   levels: LevelInfo[];
+  /** How many fields are to come (addLater). */
+  later: number;
 }
 
 export interface Opening {
@@ -67,7 +69,6 @@ const kMinorOfFirstView = 2;
 const kMinorOfSomeErrors = 3;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
-const kTableBytesAt = 28;
 const kFieldsAt = 44;
 /** Behind the number of later fields in the table. */
 const kChecksumBytes = 4;
@@ -156,33 +157,38 @@ export function readManifest(head: Uint8Array, levelColumns: LevelColumns): Mani
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
   const levels = readLevels(reader.rest(), errors, fields.length, levelColumns);
   const manifest = {source, lattice, ...(focus && {focus}), ...(opening && {opening})};
-  const part = head.subarray(tableAt + header.getUint32(kTableBytesAt, true));
-  if (later > 0) readLater(new ManifestReader(part), later, fields, levels, levelColumns);
+  settle(fields, later);
+  return {...manifest, fields, levels, later};
+}
+
+/**
+ * Adds the fields of the part of later instants, which are the last ones (codec/FORMAT.md, "Later
+ * instants"). REQUIRES and throws as readManifest.
+ */
+export function addLater(manifest: Manifest, part: Uint8Array, levelColumns: LevelColumns): void {
+  const {fields, levels, later} = manifest;
+  const table = new ManifestReader(part);
+  const shapes = readShapes(table, later);
+  const reader = new ManifestReader(table.bytes(table.varint()));
+  fields.push(...readFields(reader, shapes));
+  manifest.later = 0;
+  if (!levels[0]!.error && reader.rest().length > 0) throw damaged('has bytes behind its end');
+  if (levels[0]!.error)
+    readLevels(reader.rest(), 'some', later, levelColumns).forEach(({error}, level) =>
+      levels[level]!.error?.fields.push(...(error?.fields ?? [])),
+    );
+  settle(fields, 0);
+}
+
+/** Once the fields are known, `later` more of them to come. */
+function settle(fields: FieldInfo[], later: number): void {
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
-  markSeries(fields);
-  return {...manifest, fields, levels};
+  markSeries(fields, later > 0 ? 1 : 2);
 }
 
 function readFields(reader: ManifestReader, shapes: readonly Shape[]): FieldInfo[] {
   return shapes.map(({components, association}) => readField(reader, components, association));
-}
-
-/** Adds the fields of the part of later instants (codec/FORMAT.md, "Later instants"). */
-function readLater(
-  part: ManifestReader,
-  count: number,
-  fields: FieldInfo[],
-  levels: LevelInfo[],
-  levelColumns: LevelColumns,
-): void {
-  const shapes = readShapes(part, count);
-  const reader = new ManifestReader(part.bytes(part.varint()));
-  fields.push(...readFields(reader, shapes));
-  if (!levels[0]!.error) return;
-  readLevels(reader.rest(), 'some', count, levelColumns).forEach(({error}, level) =>
-    levels[level]!.error?.fields.push(...(error?.fields ?? [])),
-  );
 }
 
 function readLevels(

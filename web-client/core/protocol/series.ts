@@ -19,10 +19,10 @@ export function instantName(name: string): ({series: string} & Time) | null {
 }
 
 /**
- * Marks the instants of all series of two and more, the first of each as shown. They get one range:
- * that of the whole series.
+ * Marks the instants of all series of `least` and more, the first of each as shown. They get one
+ * range: that of the whole series. May be called again for more fields.
  */
-export function markSeries(fields: FieldInfo[]): void {
+export function markSeries(fields: FieldInfo[], least = 2): void {
   /** By kind and time: the field. */
   const kinds = new Map<string, Map<number, number>>();
   fields.forEach(({name, association, components, type}, field) => {
@@ -35,7 +35,7 @@ export function markSeries(fields: FieldInfo[]): void {
   });
   const keys = fieldKeys(fields);
   const series = [...kinds.values()]
-    .filter(({size}) => size > 1)
+    .filter(({size}) => size >= least)
     .map((times) => [...times.values()])
     .sort(([a], [b]) => (isOfCells(fields[a!]!) ? 1 : 0) - (isOfCells(fields[b!]!) ? 1 : 0));
   const instants = new Set(series.flat());

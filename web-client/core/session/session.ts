@@ -9,6 +9,8 @@ import {kFull, type Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import type {Frame, ServerMessage} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart} from '../protocol/parts';
+import {fetchLaterPart} from '../transport/later_part';
+import {retry} from '../transport/retry';
 import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
 import type {CoarseVolume} from './coarse_volume';
@@ -41,6 +43,8 @@ const kWaysOutOfNothing: Record<string, string> = {
   'out-of-memory': ' Close other tabs and try again.',
 };
 
+const kWithoutLater = ' The first instant of the series stays. Load the page again for the others.';
+
 const kNoRoomAhead =
   'The instants of the series need more memory than the browser gives to a page.';
 const kWithoutAhead = ' What is shown stays. The others come when they are shown.';
@@ -71,6 +75,9 @@ export class Session implements TransportHandlers {
   private source = kNoSource;
   /** The page has received this log's base mesh. */
   private baseReported = false;
+  /** The part of later instants is under way, here, or has failed. */
+  private laterAsked = false;
+  private manifestSent = false;
   private readonly stream = new LogStream();
   private readonly requested: RequestedPart;
   private readonly decoding: Decoding;
@@ -82,6 +89,7 @@ export class Session implements TransportHandlers {
     private readonly publisher: Publisher,
     private readonly send: (message: FromWorker) => void,
     private readonly newTransport: TransportFactory = makeTransport,
+    private readonly fetchLater: typeof fetchLaterPart = fetchLaterPart,
   ) {
     this.requested = new RequestedPart(assembler);
     this.decoding = new Decoding(
@@ -294,6 +302,12 @@ export class Session implements TransportHandlers {
   private takeManifest(): boolean {
     const manifest = this.assembler.manifest!;
     const unknown = this.requested.findFields();
+    const mayComeLater = unknown !== undefined || this.source.time != null;
+    if (mayComeLater && this.assembler.laterBytes > 0 && !this.laterAsked) {
+      void this.bringLater();
+      return true;
+    }
+    this.manifestSent = true;
     if (unknown !== undefined) {
       const message = `The mesh has no field "${unknown}". The first one is shown instead.`;
       this.send({type: 'error', code: 'unknown-field', message});
@@ -306,6 +320,44 @@ export class Session implements TransportHandlers {
     return true;
   }
 
+  /** Fetches the later fields. If that fails, the mesh stays without. */
+  private async bringLater(): Promise<void> {
+    const {assembler, source} = this;
+    if (this.laterAsked || assembler.laterBytes === 0) return;
+    this.laterAsked = true;
+    const {laterBytes, manifest} = assembler;
+    const isOver = (): boolean => assembler.manifest !== manifest; // another log
+    try {
+      const part = await retry(
+        () => this.fetchLater(source, laterBytes),
+        Math.random,
+        (thrown) => errorCode(thrown) === 'network',
+      );
+      if (isOver()) return;
+      assembler.takeLater(part);
+      this.stream.received(part.length);
+    } catch (thrown) {
+      if (isOver()) return;
+      const message = `${errorText(thrown).replace(/\.?$/, '.')}${kWithoutLater}`;
+      this.send({type: 'error', code: errorCode(thrown), message});
+      if (this.manifestSent) return;
+    }
+    this.guarded(() => this.tellOfLater());
+  }
+
+  private tellOfLater(): void {
+    if (!this.manifestSent) return void this.takeManifest();
+    const {manifest} = this.assembler;
+    const fields = [...this.requested.fields];
+    this.send({
+      type: 'manifest',
+      manifest: manifest!,
+      digest: this.stream.digest,
+      fields,
+      isMore: true,
+    });
+  }
+
   // ---- decoding
 
   private advance(): void {
@@ -314,6 +366,7 @@ export class Session implements TransportHandlers {
       const hasChanged = this.decoding.advance(pictureFirst);
       this.tellOfBase();
       if (hasChanged) this.publisher.changed(this.requested.isDecoded);
+      if (this.publisher.hasPublished || this.requested.isSettled) void this.bringLater();
       this.progress.changed();
       if (this.state.name === 'failed') return;
       if (this.requested.isComplete) this.complete();
@@ -450,7 +503,7 @@ export class Session implements TransportHandlers {
 
   /** Must be called before another log. */
   private forget(): void {
-    this.baseReported = false;
+    this.baseReported = this.laterAsked = this.manifestSent = false;
     if (this.early) this.early = [];
     this.reopening.drop();
     this.decoding.forget();

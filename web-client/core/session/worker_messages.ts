@@ -99,7 +99,8 @@ export type Answer =
   string | Pick | Probe | LineValues[] | number[][] | Histogram | CoarseCells | null;
 
 export type FromWorker =
-  | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]}
+  /** `isMore`: the same log's once more, with its later fields. */
+  | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]; isMore?: boolean}
   /**
    * The result of planOf for the current fields. It is sent after `manifest` and whenever the
    * fields change.

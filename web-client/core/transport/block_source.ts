@@ -31,7 +31,6 @@ export interface BlockSource {
 const kHeaderBytes = 64;
 const kManifestBytesAt = 24;
 const kTableBytesAt = 28;
-const kLaterBytesAt = 56;
 /** Reading over so many unwanted bytes is cheaper than another request. */
 const kGapBytes = 4096;
 
@@ -40,9 +39,8 @@ export function headBytesOf(header: Uint8Array): number {
   if (header.length < kHeaderBytes)
     throw new QtetError('truncated', 'The file is too short for a qtet log.');
   const view = new DataView(header.buffer, header.byteOffset);
-  return [kManifestBytesAt, kTableBytesAt, kLaterBytesAt].reduce(
-    (sum, at) => sum + view.getUint32(at, true),
-    kHeaderBytes,
+  return (
+    kHeaderBytes + view.getUint32(kManifestBytesAt, true) + view.getUint32(kTableBytesAt, true)
   );
 }
 

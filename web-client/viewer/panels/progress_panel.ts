@@ -55,6 +55,11 @@ export class ProgressPanel {
     onClick(this.root, '.unfold', () => this.fold(!this.root.classList.contains('finished')));
   }
 
+  /** The same log's manifest with more fields. */
+  takeFields(manifest: Manifest): void {
+    this.manifest = manifest;
+  }
+
   begin(manifest: Manifest | null): void {
     this.manifest = manifest;
     this.statistics = null;
