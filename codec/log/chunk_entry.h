@@ -38,7 +38,7 @@ struct ChunkEntry {
   CodecId structureCodec = CodecId::kRange;
   CodecId valueCodec = CodecId::kDraco;
   std::vector<BlockEntry> blocks;  ///< 2 + fields
-  /// Of its last blocks, those of later fields, while their sizes are not read.
+  /// Bytes of the blocks of later fields, which are the last ones, while their sizes are not read.
   std::uint64_t laterBytes = 0;
 
   [[nodiscard]] std::uint64_t size() const {

@@ -70,7 +70,7 @@ struct LogIndex {
   [[nodiscard]] std::uint32_t unreadBytes() const { return unread.bytes; }
   /// Reads this part. Errors: truncated, bad-checksum, bad-value. After one the index is of no use.
   [[nodiscard]] Status readLater(ByteView part);
-  /// Both, of a whole file. Of a log without later instants the head is enough.
+  /// Both, of a whole file. The head is enough for a log without later instants.
   [[nodiscard]] static Result<LogIndex> parse(ByteView file);
   /// Both, of what encode() and encodeLater() give.
   [[nodiscard]] static Result<LogIndex> parse(ByteView head, ByteView later);

@@ -20,10 +20,10 @@ struct LogIndex;
 /// shapes of these fields.
 [[nodiscard]] Status setManifest(LogIndex& index, Manifest manifest);
 
-/// The bytes of LogIndex::manifest, without the last `later` fields. Errors are rounded up to three significant digits
-/// (codec/coding/error_figure.h). If a level has one, the first and the last have one. Errors:
-/// bad-value (an error that is no number or out of range, a name too long), limit-exceeded (above
-/// kMaxManifestBytes). REQUIRES: at least one level.
+/// The bytes of LogIndex::manifest, without the last `later` fields. Errors are rounded up to three
+/// significant digits (codec/coding/error_figure.h). If a level has one, the first and the last
+/// have one. Errors: bad-value (an error that is no number or out of range, a name too long),
+/// limit-exceeded (above kMaxManifestBytes). REQUIRES: at least one level.
 [[nodiscard]] Result<Bytes> manifestBlock(const Manifest& manifest, std::size_t later = 0);
 
 /// The bytes of LogIndex::laterManifest: of the last `later` fields. REQUIRES: a manifest that
@@ -34,9 +34,10 @@ struct LogIndex;
 /// REQUIRES: at least one level.
 [[nodiscard]] std::uint16_t minorOf(const Manifest& manifest);
 
-/// Reads index.manifest and, if the index has later fields, index.laterManifest. The rest of the index gives bits of the lattice, shapes of the
-/// fields, the number of levels and each level's chunk. Errors: truncated; limit-exceeded (found
-/// before anything is allocated); bad-value with what is out of range, and for bytes left over.
+/// Reads index.manifest and, if the index has later fields, index.laterManifest. The rest of the
+/// index gives bits of the lattice, shapes of the fields, the number of levels and each level's
+/// chunk. Errors: truncated; limit-exceeded (found before anything is allocated); bad-value with
+/// what is out of range, and for bytes left over.
 [[nodiscard]] Result<Manifest> manifestOf(const LogIndex& index);
 
 }  // namespace qtet

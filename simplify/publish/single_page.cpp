@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "codec/log/log_index.h"
 #include "codec/picture/poster_page.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"

@@ -22,8 +22,8 @@ struct ChosenTimes {
 [[nodiscard]] Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path,
                                                 const ReadOptions& options);
 
-/// Reads the steps at these times as one mesh, whose fields are called NAME@TIME. Where points move,
-/// the mesh is that of the step at `rest`, else of the first one. Errors: readMesh's.
+/// Reads the steps at these times as one mesh, whose fields are called NAME@TIME. Where points
+/// move, the mesh is that of the step at `rest`, else of the first one. Errors: readMesh's.
 [[nodiscard]] Result<ReadMesh> readTimes(const std::filesystem::path& path,
                                          const ReadOptions& options, std::span<const double> times,
                                          std::optional<double> rest = std::nullopt);

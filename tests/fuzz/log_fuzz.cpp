@@ -1,6 +1,6 @@
 // Fuzzes the front of a log: the input stands for header, manifest and table, and then the part of
-// later instants. Checksums are made right first, so that the checks behind them are reached; whatever is accepted is encoded again
-// and must give the same bytes.
+// later instants. Checksums are made right first, so that the checks behind them are reached.
+// Whatever is accepted is encoded again and must give the same bytes.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

@@ -82,8 +82,8 @@ struct TakenApart {
   return out;
 }
 
-/// Makes the checksums of the head right after bytes of it were changed: of what the header says are
-/// manifest, table and later instants, and its own.
+/// Makes the checksums of header, manifest, table and later instants right, after bytes of them
+/// were changed.
 inline void mendChecksums(Bytes& log) {
   constexpr std::size_t kMajorAt = 8, kManifestBytesAt = 24, kTableBytesAt = 28,
                         kManifestCrcAt = 32, kTableCrcAt = 36, kLaterBytesAt = 56,

@@ -37,9 +37,9 @@ describe.skipIf(kTestWasm === '')('later instants', () => {
       const range = new Headers(init.headers).get('range')!;
       asked.push(range);
       const [, from, to] = /^bytes=(\d*)-(\d*)$/.exec(range)!;
-      if (from === '' && isEndLost)
+      if (isEndLost && Number(to) === log.length - 1)
         return Promise.resolve(new Response(null, {status: 404, statusText: 'lost'}));
-      const bytes = from === '' ? log.slice(-Number(to)) : log.slice(Number(from), Number(to) + 1);
+      const bytes = log.slice(Number(from), Number(to) + 1);
       const headers = {'content-range': `bytes ${from}-${to}/${log.length}`};
       return Promise.resolve(new Response(bytes, {status: 206, headers}));
     });
@@ -73,7 +73,7 @@ describe.skipIf(kTestWasm === '')('later instants', () => {
     await until(() => manifests().length === 2);
     const [first, more] = manifests();
     expect([first!.isMore, more!.isMore]).toEqual([undefined, true]);
-    expect(asked.at(-1)).toMatch(/^bytes=-\d+$/);
+    expect(asked.some((range) => range.endsWith(`-${log.length - 1}`))).toBe(true);
     const {fields, later} = assembler.manifest!;
     expect(later).toBe(0);
     expect(timesOf(fields).length).toBeGreaterThan(5);

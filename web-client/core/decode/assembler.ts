@@ -15,6 +15,9 @@ import {targetOf, planOf, type LevelBytes} from './plan';
 import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 import {readValueBlock} from './value_block';
 
+/** In the header (codec/FORMAT.md). */
+const kFileBytesAt = 16;
+
 export class Assembler implements LogTable {
   manifest: Manifest | null = null;
   codecReady = Promise.resolve();
@@ -203,6 +206,13 @@ export class Assembler implements LogTable {
 
   private readonly levelColumns: LevelColumns = (bytes, errors, fields, columns) =>
     this.codec.levelColumns(bytes, errors, fields, columns);
+
+  /** Of the log, as its head says; 0 before that is here. */
+  get fileBytes(): number {
+    if (!this.head) return 0;
+    const header = new DataView(this.head.buffer);
+    return Number(header.getBigUint64(kFileBytesAt, true));
+  }
 
   /** Bytes of the log's part of later instants; 0 if there is none, or once it is here. */
   get laterBytes(): number {

@@ -9,7 +9,7 @@ import type {KnownErrors} from '../protocol/manifest';
 /** The codec as the session needs it. Tests bring their own. */
 export interface Codec {
   open(head: Uint8Array): void;
-  /** Of the part of later instants; 0 if the log has none, or once it is read. */
+  /** The size of the part of later instants; 0 if the log has none, or once it is read. */
   readonly laterBytes: number;
   /** Brings the fields of this part. Throws `bad-checksum`, `truncated`, `bad-value`. */
   readLater(part: Uint8Array): void;

@@ -325,11 +325,11 @@ export class Session implements TransportHandlers {
     const {assembler, source} = this;
     if (this.laterAsked || assembler.laterBytes === 0) return;
     this.laterAsked = true;
-    const {laterBytes, manifest} = assembler;
+    const {fileBytes, laterBytes, manifest} = assembler;
     const isOver = (): boolean => assembler.manifest !== manifest; // another log
     try {
       const part = await retry(
-        () => this.fetchLater(source, laterBytes),
+        () => this.fetchLater(source, laterBytes, fileBytes),
         Math.random,
         (thrown) => errorCode(thrown) === 'network',
       );

@@ -5,7 +5,7 @@ import {fetchChecked} from './ranged_file';
 import {fetchWith} from './token';
 import type {LogAddress} from './transports';
 
-/** Of a server that is known by its stream alone. */
+/** The log's address on a server that is known by its stream alone. */
 function fileOf(stream: string, mesh: string): string {
   const url = new URL(`meshes/${encodeURIComponent(mesh)}/log`, stream);
   url.protocol = url.protocol.replace('ws', 'http');
@@ -13,16 +13,20 @@ function fileOf(stream: string, mesh: string): string {
 }
 
 /**
- * The last `bytes` bytes of the log, also of one that was cut. Throws `network`, `not-found`,
- * `http`, `truncated`.
+ * The last `bytes` bytes of the log, whose head says that it has `fileBytes`. They are the last ones
+ * of a log that was cut, too. Throws `network`, `not-found`, `http`, `truncated`.
  */
 export async function fetchLaterPart(
-  {url, log, mesh, token}: Pick<LogAddress, 'url' | 'log' | 'token'> & {mesh: string},
+  {url, log, mesh, token, chunks}: LogAddress & {mesh: string},
   bytes: number,
+  fileBytes: number,
 ): Promise<Uint8Array> {
   const fetch = fetchWith(token) ?? ((address, init) => globalThis.fetch(address, init));
   const address = log || fileOf(url, mesh);
-  const response = await fetchChecked(fetch, address, {headers: {Range: `bytes=-${bytes}`}});
+  // a range from the end would need a preflight, which many hosts refuse; only pages have cut logs
+  const Range =
+    chunks === undefined ? `bytes=${fileBytes - bytes}-${fileBytes - 1}` : `bytes=-${bytes}`;
+  const response = await fetchChecked(fetch, address, {headers: {Range}});
   // a server without ranges sends all
   const part = new Uint8Array(await response.arrayBuffer()).slice(-bytes);
   if (part.length < bytes)

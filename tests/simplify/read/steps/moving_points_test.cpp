@@ -9,6 +9,7 @@
 
 #include "simplify/log/write_mesh.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/read_times.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 
 namespace qtet {
@@ -232,6 +233,27 @@ TEST(MovingPoints, pointsThatPartAreNotWelded) {
   EXPECT_EQ(read->report.weldedPoints, 1u) << "the others open like a book";
   EXPECT_EQ(read->mesh.tetrahedra[1][0], 1u);
   EXPECT_EQ(readAll(seriesOf({apart, turned, open}), std::nullopt, 0.5)->report.weldedPoints, 3u);
+}
+
+TEST(MovingPoints, aFewStepsAtATimeAreAsAllAtOnce) {
+  const std::vector<TetMesh> resting{stepOf(0, {}), stepOf(1, {}), stepOf(2, {0, 0, 1})};
+  for (const std::vector<TetMesh>& steps :
+       {movingSteps(), resting, std::vector<TetMesh>{resting[0], resting[1]}}) {
+    const fs::path path = seriesOf(steps);
+    const ReadMesh all = readAll(path).value();
+    ReadOptions options;
+    options.time = "all";
+    const ChosenTimes chosen = chosenTimesOf(path, options).value();
+    ASSERT_EQ(chosen.times.size(), steps.size());
+    EXPECT_EQ(chosen.valuesOfAStep, 5u);
+    for (std::size_t atOnce = 1; atOnce <= steps.size(); ++atOnce) {
+      const ReadMesh some = readTimes(path, options, chosen.times, atOnce).value();
+      EXPECT_EQ(some.mesh.points, all.mesh.points);
+      EXPECT_EQ(namesOf(some.mesh), namesOf(all.mesh)) << atOnce;
+      for (std::size_t f = 0; f < all.mesh.fields.size(); ++f)
+        EXPECT_EQ(some.mesh.fields[f].values, all.mesh.fields[f].values) << atOnce << " " << f;
+    }
+  }
 }
 
 }  // namespace
