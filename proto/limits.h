@@ -7,9 +7,14 @@
 
 namespace qtet {
 
-/// Bytes of the manifest in a log. Known errors of 256 fields at the most levels that there may be
-/// take 5 MB, at two bytes a figure.
+/// Bytes of the manifest in a log, and of that of its later instants. Known errors of 256 fields at
+/// the most levels that there may be take 5 MB, at two bytes a figure.
 inline constexpr std::uint32_t kMaxManifestBytes = 8u << 20;
+/// Bytes of the part of later instants: 8,192 fields in the chunks of a log of 1 GB take 60 MB.
+inline constexpr std::uint32_t kMaxLaterBytes = 256u << 20;
+/// Figures of fields in a manifest: 1,024 fields at the most levels that there may be, or 8,192 at
+/// 512. Decoded, they take 64 MB.
+inline constexpr std::uint64_t kMaxFieldFigures = std::uint64_t{4096} * 1024;
 /// Chunks of one log: at 16 KB a chunk, a 16 GB log.
 inline constexpr std::uint32_t kMaxChunks = 1u << 20;
 /// Fields of one log: two quantities at 4,096 instants. Each costs some 7 bytes in every row of the

@@ -96,6 +96,8 @@ Result<Header> readHeader(ByteView bytes) {
   if (h.fields > kMaxFields) return fail(ErrorCode::kLimitExceeded, "more than 8,192 fields", 44);
   if (h.closing > kMaxClosingBlocks)
     return fail(ErrorCode::kLimitExceeded, "more than 1,024 closing blocks", 52);
+  if (h.laterBytes > kMaxLaterBytes)
+    return fail(ErrorCode::kLimitExceeded, "the later instants take more than 256 MiB", 56);
   if (h.headBytes() + h.laterBytes > h.fileBytes)
     return fail(ErrorCode::kBadValue, "the file's size is below that of its front", 16);
   return h;
@@ -249,8 +251,8 @@ Status check(const LogIndex& index, const Header& header) {
       if (b.size > kMaxBlockBytes) return bad(ErrorCode::kLimitExceeded, "a block above 256 MiB");
       offset += b.size;
     }
-    if (e.laterBytes > header.fileBytes)
-      return bad(ErrorCode::kBadValue, "blocks of later instants that are larger than the file");
+    if (e.laterBytes > std::uint64_t{index.unread.fields} * kMaxBlockBytes)
+      return bad(ErrorCode::kLimitExceeded, "more bytes of later instants than they may have");
     offset += e.laterBytes;
     vertices += e.newVertices, cells += e.newTetrahedra, triangles += e.newBoundaryTriangles;
     if (vertices > kMaxElements || cells > kMaxElements || triangles > kMaxElements)
@@ -410,6 +412,10 @@ Status LogIndex::readLater(ByteView part) {
   }
   if (Status s = checkPredictions(*this, before); !s) return s;
   const std::uint32_t manifestBytes = r.readVarint();
+  if (manifestBytes > kMaxManifestBytes)
+    return fail(ErrorCode::kLimitExceeded, "the manifest of later instants is above 8 MiB",
+                r.offset());
+  laterOffset = r.offset();
   const ByteView manifestOfLater = r.take(manifestBytes);
   laterManifest.assign(manifestOfLater.begin(), manifestOfLater.end());
   if (!r.failed() && r.remaining() < std::uint64_t{unread.fields} * chunks.size() * 5)

@@ -37,6 +37,7 @@ struct LogIndex {
   /// its first picture. A log of version 2 has none.
   std::uint32_t laterFields = 0;
   Bytes laterManifest;  ///< of these fields, as it stands in the part; log_manifest.h reads it
+  std::uint64_t laterOffset = 0;  ///< of these bytes in the file, once they are read
   std::vector<ChunkEntry> chunks;
   std::vector<ClosingBlock> closing;  ///< in file order
 

@@ -300,6 +300,14 @@ Status readFields(ByteReader& r, std::span<const FieldShape> shapes, FieldNamesS
   return {};
 }
 
+/// Before anything is allocated for them.
+Status checkFigures(std::size_t levels, std::size_t fields) {
+  if (levels * fields <= kMaxFieldFigures) return {};
+  return fail(ErrorCode::kLimitExceeded, "errors of " + std::to_string(fields) + " fields at " +
+                                             std::to_string(levels) +
+                                             " levels; a log holds 4,194,304 of them");
+}
+
 /// The errors of later fields, where the levels have errors.
 Status readLaterErrors(ByteReader& r, std::uint32_t fields, Manifest& out) {
   const ByteView bytes = r.take(r.remaining());
@@ -308,6 +316,7 @@ Status readLaterErrors(ByteReader& r, std::uint32_t fields, Manifest& out) {
     return bytes.empty() ? Status{}
                          : fail(ErrorCode::kBadValue,
                                 "bytes behind the last later field; fetch or build the log again");
+  if (Status s = checkFigures(levels, out.fields.size()); !s) return s;
   const Result<LevelColumns> numbers =
       decodeLevelColumns(bytes, levels, fields, KnownErrors::kSome);
   if (!numbers) return std::unexpected(numbers.error());
@@ -334,6 +343,7 @@ Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
   const std::vector<std::uint32_t> chunks = completingChunks(index);
   const auto levels = static_cast<std::uint32_t>(chunks.size());
   const auto fields = static_cast<std::uint32_t>(out.fields.size());
+  if (Status s = checkFigures(levels, errors == KnownErrors::kNone ? 0 : fields); !s) return s;
   const Result<LevelColumns> numbers = decodeLevelColumns(bytes, levels, fields, errors);
   if (!numbers) return std::unexpected(numbers.error());
   for (std::uint32_t l = 0; l < levels; ++l) {
@@ -384,6 +394,8 @@ Bytes laterManifestBlock(const Manifest& manifest, std::size_t later) {
 }
 
 Status setManifest(LogIndex& index, Manifest manifest) {
+  if (manifest.levels.front().error)
+    if (Status s = checkFigures(manifest.levels.size(), manifest.fields.size()); !s) return s;
   const std::vector<bool> isLater = laterInstants(std::span<const ManifestField>(manifest.fields));
   const auto first = std::ranges::find(isLater, true);
   index.laterFields = index.hasSeries() ? static_cast<std::uint32_t>(isLater.end() - first) : 0;
@@ -395,7 +407,16 @@ Status setManifest(LogIndex& index, Manifest manifest) {
   index.manifestMinor = minorOf(manifest);
   index.laterManifest =
       index.laterFields > 0 ? laterManifestBlock(manifest, index.laterFields) : Bytes{};
+  if (index.laterManifest.size() > kMaxManifestBytes)
+    return fail(ErrorCode::kLimitExceeded,
+                "the manifest of later instants is above 8 MiB; choose some with `time`");
   return {};
+}
+
+Status checkLaterBytes(const LogIndex& index) {
+  if (index.encodeLater().size() <= kMaxLaterBytes) return {};
+  return fail(ErrorCode::kLimitExceeded,
+              "the later instants take more than 256 MiB; choose some with `time`");
 }
 
 Result<Manifest> manifestOf(const LogIndex& index) {
@@ -412,7 +433,7 @@ Result<Manifest> manifestOf(const LogIndex& index) {
   if (Status s = readFields(r, front, names, out); !s) return std::unexpected(s.error());
   if (Status s = readLevels(r, index, out); !s) return std::unexpected(s.error());
   if (index.laterFields == 0) return out;
-  ByteReader later(index.laterManifest, index.fileBytes - index.encodeLater().size());
+  ByteReader later(index.laterManifest, index.laterOffset);
   if (Status s = readFields(later, shapes.subspan(front.size()), names, out); !s)
     return std::unexpected(s.error());
   if (Status s = readLaterErrors(later, index.laterFields, out); !s)

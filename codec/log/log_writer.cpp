@@ -166,6 +166,7 @@ Result<EncodedHead> encodeLog(const FusionHistory& history, const LogWriterOptio
   Result<std::vector<ClosingBlock>> closing = writeClosing(writer, options, body);
   if (!closing) return std::unexpected(closing.error());
   index->closing = std::move(*closing);
+  if (Status s = checkLaterBytes(*index); !s) return std::unexpected(s.error());
   EncodedHead log;
   log.statistics = statisticsOf(*index, history, writer.positionCost());
   log.statistics.steps = writer.meter().steps();

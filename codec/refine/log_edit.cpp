@@ -158,6 +158,7 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
     index.closing.back().block = pieces.keep(c.block);
   }
   index.fileBytes = index.encode().size() + pieces.bytes() + index.encodeLater().size();
+  if (Status s = checkLaterBytes(index); !s) return std::unexpected(s.error());
   return EditedLog(log, index, std::move(pieces.all()));
 }
 

@@ -225,7 +225,7 @@ constexpr std::size_t kStepsAtOnce = 8;
 Result<Made> makeAtOnce(const Request& request, const std::vector<double>& times,
                         const PipelineOptions& options, Stopwatch& watch) {
   Result<ReadMesh> read = times.size() > kStepsAtOnce
-                              ? readTimes(request.input, request.read, times, kStepsAtOnce)
+                              ? readTimesInParts(request.input, request.read, times, kStepsAtOnce)
                               : readMesh(request.input, request.read);
   if (!read) return std::unexpected(read.error());
   watch.lap("read");
@@ -237,14 +237,17 @@ Result<Made> makeAtOnce(const Request& request, const std::vector<double>& times
 Result<Made> makeInWindows(const Request& request, const std::vector<double>& times,
                            const PipelineOptions& options, Stopwatch& watch) {
   ReadReport report;
-  bool moves = false;  // which the sample shows; it begins with the first step
   const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
     std::vector<double> some;
     for (const std::size_t step : steps) some.push_back(times[step]);
-    const auto rest = moves ? std::optional(times.front()) : std::nullopt;
-    Result<ReadMesh> window = readTimes(request.input, request.read, some, rest);
+    Result<ReadMesh> window = readTimes(request.input, request.read, some, times.front());
     if (!window) return std::unexpected(window.error());
-    moves = moves || !window->report.motion.empty();
+    if (request.read.weld && !window->report.motion.empty())
+      return fail(ErrorCode::kBadValue,
+                  request.input +
+                      ": its points move, and so many steps cannot be welded: which "
+                      "points stay together is known of a few steps at a time; leave "
+                      "out `weld`, or choose fewer steps with `time`");
     addNew(report.notes, window->report.notes);
     report = std::move(window->report);
     return std::move(window->mesh);

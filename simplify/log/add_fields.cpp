@@ -8,7 +8,6 @@
 #include "codec/log/log_manifest.h"
 #include "codec/log/manifest_field.h"
 #include "codec/refine/log_file.h"
-#include "proto/limits.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
 #include "simplify/mesh/history_levels.h"
@@ -114,7 +113,7 @@ Status FieldAdder::matchTo(const TetMesh& mesh) {
 void FieldAdder::keepScale(const SeriesKey& key, FieldInfo info) {
   // the step of a constant field means nothing
   if (!options_.scalesOfOthers || !isFloatType(info.type) || info.step == 1 ||
-      info.bits >= kMaxFieldBits)
+      info.bits >= kMostScaleBits)
     return;
   for (double& minimum : info.minimum) minimum -= info.step * std::ldexp(1.0, info.bits);
   ++info.bits;

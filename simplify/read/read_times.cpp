@@ -6,6 +6,7 @@
 
 #include "proto/field_key.h"
 #include "proto/series.h"
+#include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/steps/step_reports.h"
 
@@ -14,17 +15,26 @@ namespace qtet {
 Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path, const ReadOptions& options) {
   ChosenTimes out;
   if (options.time != "all" && options.time.find_first_of(",:") == std::string::npos) return out;
+  if (options.threshold) return out;
   ReadOptions first = options;
   first.time = "first";
+  first.fields.reset();
   const Result<ReadMesh> read = readMesh(path, first);
   if (!read) return std::unexpected(read.error());
   const std::vector<double>& times = read->report.times;
   if (times.empty()) return out;
+  const std::vector<MeshField>& all = read->mesh.fields;
+  // a field of some steps only, as one named with its time, or displacements
+  for (const std::string& name : options.fields.value_or(std::vector<std::string>{}))
+    if (fieldsOfKey(all, name).empty()) return out;
   std::vector<std::string> notes;
   const auto steps = chosenSteps(times, options.time, path, notes);
   if (!steps) return std::unexpected(steps.error());
   for (const std::size_t step : *steps) out.times.push_back(times[step]);
-  for (const MeshField& field : read->mesh.fields) out.valuesOfAStep += field.values.size();
+  for (const MeshField& field : all)
+    if (isMeant(options.fields, field.association, field.name))
+      out.valuesOfAStep += field.values.size();
+  if (all.empty()) out.valuesOfAStep = 3 * read->mesh.points.size();  // if the points move
   return out;
 }
 
@@ -44,8 +54,8 @@ Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions&
   return out;
 }
 
-Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions& options,
-                           std::span<const double> times, std::size_t atOnce) {
+Result<ReadMesh> readTimesInParts(const std::filesystem::path& path, const ReadOptions& options,
+                                  std::span<const double> times, std::size_t atOnce) {
   const auto part = [&](std::size_t at) {
     return times.subspan(at, std::min(atOnce, times.size() - at));
   };

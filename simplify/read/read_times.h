@@ -18,7 +18,8 @@ struct ChosenTimes {
 };
 
 /// Empty if `options.time` means one step, and for formats whose reader takes all steps at once.
-/// Reads the file's first step. Errors: readMesh's.
+/// Also empty with a threshold, and if a field is asked for that the first step does not have: such
+/// steps are read together. Reads the file's first step. Errors: readMesh's.
 [[nodiscard]] Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path,
                                                 const ReadOptions& options);
 
@@ -30,8 +31,8 @@ struct ChosenTimes {
 
 /// The same, `atOnce` steps at a time, or all at once where points begin to move behind the first
 /// so many. The first step is that of rest. REQUIRES: one time at least.
-[[nodiscard]] Result<ReadMesh> readTimes(const std::filesystem::path& path,
-                                         const ReadOptions& options, std::span<const double> times,
-                                         std::size_t atOnce);
+[[nodiscard]] Result<ReadMesh> readTimesInParts(const std::filesystem::path& path,
+                                                const ReadOptions& options,
+                                                std::span<const double> times, std::size_t atOnce);
 
 }  // namespace qtet

@@ -83,13 +83,17 @@ describe.skipIf(kTestWasm === '')('later instants', () => {
     expect(errorsOf(received)).toEqual([]);
   });
 
-  test('comeBeforeTheManifestIfTheTimeIsAskedFor', async () => {
-    start({fields: ['T'], time: 2.5});
+  test.each([
+    [{fields: ['T'], time: 2.5}, 'T@2.5'],
+    [{fields: ['T@2.5']}, 'T@2.5'],
+    [{fields: ['C@0']}, 'C@0'], // which is predicted from none
+  ])('comeBeforeTheManifestIf %o isAskedFor', async (source, key) => {
+    start(source);
     await until(() => statesOf(received).includes('complete'));
     expect(manifests()).toHaveLength(1);
     const [{manifest, fields}] = manifests() as [Sent];
     expect(manifest.later).toBe(0);
-    expect(fields.map((field) => fieldKeys(manifest.fields)[field])).toEqual(['T@2.5']);
+    expect(fields.map((field) => fieldKeys(manifest.fields)[field])).toEqual([key]);
     expect(errorsOf(received)).toEqual([]);
   });
 

@@ -12,7 +12,7 @@ import {CameraWatch} from './page/camera_watch';
 import {isOnDark, watchGround} from './page/ground';
 import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
-import {rangeOf, settingsFor, ShownMesh} from './page/shown_mesh';
+import {kMaxAhead, rangeOf, settingsFor, ShownMesh} from './page/shown_mesh';
 import {Shell} from './panels/shell';
 import {displayOf, Requests} from './requests';
 import {readSettings, type Settings, type ShownRange} from './settings/settings';
@@ -255,7 +255,9 @@ export class Viewing implements LaterHost {
   }
 
   private takeProgress({statistics, here, aheadEnded}: Progress): void {
+    const isMore = here.length !== this.mesh.here.length;
     Object.assign(this.mesh, {statistics, here, aheadEnded});
+    if (isMore && this.mesh.plotted.length > kMaxAhead) this.apply(); // asks for the next ones
     this.later?.time.follow();
     this.later?.panels.inspect.takeProgress();
     this.shell?.progress.show(statistics);

@@ -142,5 +142,14 @@ TEST_F(AddStepsTool, aSeriesThatTheLogLacksIsAddedByName) {
   EXPECT_NE(ran.out.find("point field U: 1 instant, "), std::string::npos) << ran.out;
 }
 
+TEST_F(AddStepsTool, aStepsFieldCanBeNamedAmongAllSteps) {
+  const Ran one = run("simplify run.pvd --time all --fields T@0.5 -o one.qtet --base-cells 600");
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_EQ(run("info one.qtet --json").json()["fields"].size(), 1u);
+  const Ran part =
+      run("simplify run.pvd --time all --threshold T@0.5=0: -o part.qtet --base-cells 100");
+  EXPECT_EQ(part.code, 0) << part.err;
+}
+
 }  // namespace
 }  // namespace qtet

@@ -190,7 +190,7 @@ TEST_F(AddSteps, valuesAboveTheSeriesScaleTakeMoreBitsAndThoseBelowTheirOwnScale
   const LogFile file = log();
   const AddedFields above = addFields(file, steps(kBefore, kBefore + 1, 3)).value();
   EXPECT_EQ(above.fields[0].info.step, 0.25);
-  EXPECT_EQ(above.fields[0].info.bits, 14);
+  EXPECT_EQ(above.fields[0].info.bits, 13);
   const AddedFields below = addFields(file, steps(kBefore, kBefore + 1, -3)).value();
   ASSERT_EQ(below.fields.size(), 1u);
   EXPECT_TRUE(below.fields[0].prediction.isNone());

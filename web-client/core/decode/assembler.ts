@@ -207,7 +207,7 @@ export class Assembler implements LogTable {
   private readonly levelColumns: LevelColumns = (bytes, errors, fields, columns) =>
     this.codec.levelColumns(bytes, errors, fields, columns);
 
-  /** Of the log, as its head says; 0 before that is here. */
+  /** The log's size, as its head says; 0 before that is here. */
   get fileBytes(): number {
     if (!this.head) return 0;
     const header = new DataView(this.head.buffer);

@@ -166,18 +166,20 @@ export function readManifest(head: Uint8Array, levelColumns: LevelColumns): Mani
  * instants"). REQUIRES and throws as readManifest.
  */
 export function addLater(manifest: Manifest, part: Uint8Array, levelColumns: LevelColumns): void {
-  const {fields, levels, later} = manifest;
+  const {levels, later} = manifest;
   const table = new ManifestReader(part);
   const shapes = readShapes(table, later);
   const reader = new ManifestReader(table.bytes(table.varint()));
-  fields.push(...readFields(reader, shapes));
-  manifest.later = 0;
+  const fields = [...manifest.fields, ...readFields(reader, shapes)];
+  const more = levels[0]!.error ? readLevels(reader.rest(), 'some', later, levelColumns) : [];
   if (!levels[0]!.error && reader.rest().length > 0) throw damaged('has bytes behind its end');
-  if (levels[0]!.error)
-    readLevels(reader.rest(), 'some', later, levelColumns).forEach(({error}, level) =>
-      levels[level]!.error?.fields.push(...(error?.fields ?? [])),
-    );
+  if (more.some(({error}, level) => !error !== !levels[level]!.error))
+    throw damaged('has errors of other levels');
   settle(fields, 0);
+  // from here on nothing throws
+  manifest.fields = fields;
+  manifest.later = 0;
+  more.forEach(({error}, level) => levels[level]!.error?.fields.push(...(error?.fields ?? [])));
 }
 
 /** Once the fields are known, `later` more of them to come. */

@@ -23,6 +23,10 @@ export function instantName(name: string): ({series: string} & Time) | null {
  * range: that of the whole series. May be called again for more fields.
  */
 export function markSeries(fields: FieldInfo[], least = 2): void {
+  for (const info of fields) {
+    if (info.instant) info.range = info.instant.own.range;
+    delete info.instant;
+  }
   /** By kind and time: the field. */
   const kinds = new Map<string, Map<number, number>>();
   fields.forEach(({name, association, components, type}, field) => {

@@ -11,6 +11,8 @@ import type {Frame} from '../protocol/messages';
 export class CoarseVolume {
   private version = 0;
   private frames: Frame[] = [];
+  /** The part of later instants. */
+  private later: Uint8Array | null = null;
   /** The request that the cells were made for; empty if there are none. */
   private key = '';
   private assembler: Promise<Assembler> | null = null;
@@ -23,8 +25,13 @@ export class CoarseVolume {
     this.frames.push(frame);
   }
 
+  noteLater(part: Uint8Array): void {
+    this.later = part;
+  }
+
   forget(): void {
     this.frames = [];
+    this.later = null;
     this.key = '';
   }
 
@@ -46,7 +53,10 @@ export class CoarseVolume {
     const {codec} = assembler;
     const fields = fieldsOf(display);
     assembler.forget();
-    for (const frame of this.frames) assembler.take(frame);
+    for (const frame of this.frames) {
+      assembler.take(frame);
+      if (this.later && assembler.laterBytes > 0) assembler.takeLater(this.later);
+    }
     const hasRoom = (): boolean => {
       const next = codec.chunksApplied;
       return (

@@ -112,6 +112,11 @@ export class LogStream {
     return !isPaused || this.transport?.resume() === true;
   }
 
+  /** Payload that came beside the stream, which no credit was for. */
+  receivedAside(bytes: number): void {
+    this.receivedBytes += bytes;
+  }
+
   received(bytes: number): void {
     this.receivedBytes += bytes;
     this.unapplied += bytes;

@@ -66,7 +66,7 @@ const kNoSource: Source = {
 
 export class Session implements TransportHandlers {
   /** Receives every frame of the log. */
-  coarse: Pick<CoarseVolume, 'note' | 'forget'> | null = null;
+  coarse: Pick<CoarseVolume, 'note' | 'noteLater' | 'forget'> | null = null;
   /** Called once a log's base mesh is decoded. */
   onBase: () => void = () => undefined;
   private state: SessionState = {name: 'connecting'};
@@ -195,7 +195,7 @@ export class Session implements TransportHandlers {
         this.stream.digest = message.digest;
         return;
       case 'done':
-        return this.done();
+        return this.awaitsLater ? undefined : this.done();
       case 'error':
         return this.refused(message);
       case 'stopped':
@@ -204,6 +204,7 @@ export class Session implements TransportHandlers {
   }
 
   private take(frame: Frame): void {
+    if (this.awaitsLater) return; // its fields are not known; another stream brings them
     const isFirst = !this.assembler.manifest;
     try {
       this.assembler.take(frame);
@@ -335,7 +336,8 @@ export class Session implements TransportHandlers {
       );
       if (isOver()) return;
       assembler.takeLater(part);
-      this.stream.received(part.length);
+      this.stream.receivedAside(part.length);
+      this.coarse?.noteLater(part);
     } catch (thrown) {
       if (isOver()) return;
       const message = `${errorText(thrown).replace(/\.?$/, '.')}${kWithoutLater}`;
@@ -345,8 +347,16 @@ export class Session implements TransportHandlers {
     this.guarded(() => this.tellOfLater());
   }
 
+  /** The page is told of the manifest once the part of later instants is here. */
+  private get awaitsLater(): boolean {
+    return this.laterAsked && !this.manifestSent;
+  }
+
   private tellOfLater(): void {
-    if (!this.manifestSent) return void this.takeManifest();
+    if (this.awaitsLater) {
+      if (!this.takeManifest()) this.open();
+      return;
+    }
     const {manifest} = this.assembler;
     const fields = [...this.requested.fields];
     this.send({

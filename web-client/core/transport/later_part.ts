@@ -13,8 +13,8 @@ function fileOf(stream: string, mesh: string): string {
 }
 
 /**
- * The last `bytes` bytes of the log, whose head says that it has `fileBytes`. They are the last ones
- * of a log that was cut, too. Throws `network`, `not-found`, `http`, `truncated`.
+ * The last `bytes` bytes of the log, whose head says that it has `fileBytes`. A log that was cut
+ * ends with them, too. Throws `network`, `not-found`, `http`, `truncated`.
  */
 export async function fetchLaterPart(
   {url, log, mesh, token, chunks}: LogAddress & {mesh: string},

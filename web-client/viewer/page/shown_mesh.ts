@@ -23,6 +23,9 @@ import {
   type ViewAttribute,
 } from '../settings/settings';
 
+/** Fields that are asked for ahead at once. A server takes 1,024 names in a request. */
+export const kMaxAhead = 512;
+
 export class ShownMesh {
   /** Null before the head of the log is here. */
   manifest: Manifest | null = null;
@@ -63,7 +66,10 @@ export class ShownMesh {
 
   /** Fields that are wanted behind the shown ones. */
   get ahead(): number[] {
-    return [...new Set([...(this.filmed?.ahead ?? []), ...this.playing, ...this.plotted])];
+    const all = [...new Set([...(this.filmed?.ahead ?? []), ...this.playing, ...this.plotted])];
+    if (all.length <= kMaxAhead) return all;
+    const here = new Set(this.here);
+    return all.filter((field) => !here.has(field)).slice(0, kMaxAhead);
   }
 
   takeBase({bounds, chord}: BaseFigures): void {

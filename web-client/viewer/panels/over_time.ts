@@ -2,6 +2,7 @@
 
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {Vector} from '../../core/protocol/geometry';
+import type {Manifest} from '../../core/protocol/manifest';
 import {instantsOf} from '../../core/protocol/series';
 import type {Client} from '../../core/session/client';
 import type {ShownMesh} from '../page/shown_mesh';
@@ -32,6 +33,8 @@ export class OverTime {
   private place: Vector | null = null;
   /** The key of the plotted series. */
   private series: string | null = null;
+  /** That of the instants: the same log's may come again with more of them. */
+  private manifest: Manifest | null = null;
   /** Fields, by time. */
   private instants: readonly number[] = [];
   /** By instant: one value a component, none before it is here. A new mesh replaces them. */
@@ -80,9 +83,11 @@ export class OverTime {
     const {mesh} = this.host;
     const series = this.shownSeries;
     if (series === null) return this.end();
-    if (series !== this.series) {
+    const {manifest} = mesh;
+    if (series !== this.series || manifest !== this.manifest) {
       this.series = series;
-      this.instants = instantsOf(mesh.manifest!.fields, series);
+      this.manifest = manifest;
+      this.instants = instantsOf(manifest!.fields, series);
       this.values = this.instants.map(() => []);
       mesh.plotted = this.instants;
       void this.ask();
