@@ -163,10 +163,7 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
 }
 
 EditedLog::EditedLog(const LogFile& log, const LogIndex& index, std::vector<Piece> blocks)
-    : log_(log),
-      head_(index.encode()),
-      later_(index.encodeLater()),
-      blocks_(std::move(blocks)) {}
+    : log_(log), head_(index.encode()), later_(index.encodeLater()), blocks_(std::move(blocks)) {}
 
 Status EditedLog::writeTo(const ByteSink& sink) const {
   if (Status s = sink(head_); !s) return s;

@@ -54,8 +54,8 @@ struct TakenApart {
 /// everything else is as `index` says.
 [[nodiscard]] inline Bytes withFront(ByteView good, LogIndex index) {
   const LogIndex before = LogIndex::parse(good).value();
-  const std::size_t blocks = static_cast<std::size_t>(before.fileBytes - before.headBytes()) -
-                             before.encodeLater().size();
+  const std::size_t blocks =
+      static_cast<std::size_t>(before.fileBytes - before.headBytes()) - before.encodeLater().size();
   const Bytes later = index.encodeLater();
   index.fileBytes += index.encode().size() + blocks + later.size() - good.size();
   Bytes out = index.encode();
