@@ -193,7 +193,10 @@ export class Assembler implements LogTable {
     }
   }
 
+  /** A stream that is opened again may bring the same head again. */
   private takeHead(head: Uint8Array): void {
+    const {head: known} = this;
+    if (known?.length === head.length && known.every((byte, at) => byte === head[at])) return;
     this.codec.open(head);
     this.manifest = readManifest(head, this.levelColumns);
     this.later = null;

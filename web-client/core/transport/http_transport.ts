@@ -59,10 +59,11 @@ export class HttpTransport implements Transport {
     if (!this.isConnected) return;
     this.stop();
     this.abort = new AbortController();
+    const {signal} = this.abort;
     this.credit = request.credit;
     this.target = request.target ?? null;
-    this.run(++this.stream, request, this.abort.signal).catch((thrown: unknown) => {
-      if (!this.abort.signal.aborted) this.lost(thrown);
+    this.run(++this.stream, request, signal).catch((thrown: unknown) => {
+      if (!signal.aborted) this.lost(thrown); // else another stream has taken its place
     });
   }
 
