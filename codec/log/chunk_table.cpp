@@ -1,5 +1,6 @@
 #include "codec/log/chunk_table.h"
 
+#include <algorithm>
 #include <cassert>
 #include <numeric>
 #include <utility>
@@ -77,11 +78,13 @@ void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks, RowParts 
       w.writeVarint(value);
     w.write(static_cast<std::uint8_t>(static_cast<unsigned>(e.structureCodec) |
                                       static_cast<unsigned>(e.valueCodec) << 4));
-    const std::span known = std::span(e.blocks).first(parts.count);
+    const std::size_t count = std::min<std::size_t>(parts.count, e.blocks.size());
+    const std::span known = std::span(e.blocks).first(count);
     for (const BlockEntry& b : known) w.writeVarint(b.size);
     if (parts.endsWithLater)
       writeLong(
-          w, std::accumulate(e.blocks.begin() + parts.count, e.blocks.end(), std::uint64_t{0},
+          w, std::accumulate(e.blocks.begin() + static_cast<std::ptrdiff_t>(count), e.blocks.end(),
+                             std::uint64_t{0},
                              [](std::uint64_t sum, const BlockEntry& b) { return sum + b.size; }));
     for (const BlockEntry& b : known) w.write(b.crc);
   }
