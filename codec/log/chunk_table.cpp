@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 #include <utility>
 
 #include "proto/limits.h"
@@ -26,6 +25,31 @@ std::uint64_t readLong(ByteReader& r) {
 void writeLong(ByteWriter& w, std::uint64_t number) {
   w.writeVarint(static_cast<std::uint32_t>(number >> 32));
   w.writeVarint(static_cast<std::uint32_t>(number));
+}
+
+/// The sizes of blocks that lie back to back from `offset`. Returns where they end.
+std::uint64_t readSizes(ByteReader& r, std::span<BlockEntry> blocks, std::uint64_t offset) {
+  for (BlockEntry& b : blocks) {
+    b.offset = offset;
+    b.size = r.readVarint();
+    offset += b.size;
+  }
+  return offset;
+}
+void readChecksums(ByteReader& r, std::span<BlockEntry> blocks) {
+  for (BlockEntry& b : blocks) b.crc = r.read<std::uint32_t>();
+}
+void writeSizes(ByteWriter& w, std::span<const BlockEntry> blocks) {
+  for (const BlockEntry& b : blocks) w.writeVarint(b.size);
+}
+void writeChecksums(ByteWriter& w, std::span<const BlockEntry> blocks) {
+  for (const BlockEntry& b : blocks) w.write(b.crc);
+}
+
+std::uint64_t bytesOf(std::span<const BlockEntry> blocks) {
+  std::uint64_t sum = 0;
+  for (const BlockEntry& b : blocks) sum += b.size;
+  return sum;
 }
 
 void readLevels(ByteReader& r, std::span<const ChunkEntry> before, ChunkEntry& e) {
@@ -57,13 +81,9 @@ std::vector<ChunkEntry> readChunkRows(ByteReader& r, std::uint32_t chunks, RowPa
     e.structureCodec = static_cast<CodecId>(codecs & 15u);
     e.valueCodec = static_cast<CodecId>(codecs >> 4);
     e.blocks.resize(parts.count);
-    for (BlockEntry& b : e.blocks) {
-      b.offset = offset;
-      b.size = r.readVarint();
-      offset += b.size;
-    }
+    offset = readSizes(r, e.blocks, offset);
     if (parts.endsWithLater) offset += e.laterBytes = readLong(r);
-    for (BlockEntry& b : e.blocks) b.crc = r.read<std::uint32_t>();
+    readChecksums(r, e.blocks);
     out.push_back(std::move(e));
   }
   return out;
@@ -80,28 +100,21 @@ void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks, RowParts 
                                       static_cast<unsigned>(e.valueCodec) << 4));
     const std::size_t count = std::min<std::size_t>(parts.count, e.blocks.size());
     const std::span known = std::span(e.blocks).first(count);
-    for (const BlockEntry& b : known) w.writeVarint(b.size);
-    if (parts.endsWithLater)
-      writeLong(
-          w, std::accumulate(e.blocks.begin() + static_cast<std::ptrdiff_t>(count), e.blocks.end(),
-                             std::uint64_t{0},
-                             [](std::uint64_t sum, const BlockEntry& b) { return sum + b.size; }));
-    for (const BlockEntry& b : known) w.write(b.crc);
+    writeSizes(w, known);
+    if (parts.endsWithLater) writeLong(w, bytesOf(std::span(e.blocks).subspan(count)));
+    writeChecksums(w, known);
   }
 }
 
 void readLaterBlocks(ByteReader& r, std::uint32_t count, std::span<ChunkEntry> chunks) {
   for (ChunkEntry& e : chunks) {
-    std::uint64_t offset = e.offset + e.size() - e.laterBytes, bytes = 0;
+    const std::uint64_t begin = e.offset + e.size() - e.laterBytes;
     const std::size_t first = e.blocks.size();
     e.blocks.resize(first + count);
-    for (BlockEntry& b : std::span(e.blocks).subspan(first)) {
-      b.offset = offset + bytes;
-      b.size = r.readVarint();
-      bytes += b.size;
-    }
-    for (BlockEntry& b : std::span(e.blocks).subspan(first)) b.crc = r.read<std::uint32_t>();
-    if (bytes != e.laterBytes && !r.failed())
+    const std::span later = std::span(e.blocks).subspan(first);
+    const std::uint64_t end = readSizes(r, later, begin);
+    readChecksums(r, later);
+    if (end - begin != e.laterBytes && !r.failed())
       r.fail(ErrorCode::kBadValue,
              "the blocks of later instants have other sizes than the chunk table says; fetch or "
              "build the log again");
@@ -111,8 +124,9 @@ void readLaterBlocks(ByteReader& r, std::uint32_t count, std::span<ChunkEntry> c
 
 void writeLaterBlocks(ByteWriter& w, std::uint32_t count, std::span<const ChunkEntry> chunks) {
   for (const ChunkEntry& e : chunks) {
-    for (const BlockEntry& b : std::span(e.blocks).last(count)) w.writeVarint(b.size);
-    for (const BlockEntry& b : std::span(e.blocks).last(count)) w.write(b.crc);
+    const std::span later = std::span(e.blocks).last(count);
+    writeSizes(w, later);
+    writeChecksums(w, later);
   }
 }
 

@@ -215,7 +215,7 @@ LogIndex::Unread readLaterSummary(ByteReader& r, const Header& header) {
   return out;
 }
 
-// As check(), for the blocks that readLater has brought.
+// As check(), for the blocks that readLater has brought. Their sum is the row's, which check() knew.
 Status checkLaterBlocks(const LogIndex& index) {
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
     const ChunkEntry& e = index.chunks[chunk];
@@ -223,12 +223,6 @@ Status checkLaterBlocks(const LogIndex& index) {
       if (b.size > kMaxBlockBytes)
         return fail(ErrorCode::kLimitExceeded,
                     "a block of chunk " + std::to_string(chunk) + " above 256 MiB", b.offset);
-      if (b.size > 0 && e.valueCodec == CodecId::kEmpty)
-        return fail(ErrorCode::kBadCodec,
-                    "chunk " + std::to_string(chunk) +
-                        " has value blocks of the codec 'no bytes' that have bytes; fetch or build "
-                        "the log again",
-                    b.offset);
     }
   }
   return {};
@@ -325,12 +319,11 @@ Result<std::uint64_t> LogIndex::headBytesOf(ByteView firstBytes) {
 }
 
 Result<LogIndex> LogIndex::parse(ByteView file) {
-  Result<LogIndex> index = parseHead(file);
-  if (!index || index->unreadBytes() == 0) return index;
-  const std::uint64_t at = index->fileBytes - index->unreadBytes();
-  const ByteView part = at < file.size() ? file.subspan(static_cast<std::size_t>(at)) : ByteView();
-  if (Status s = index->readLater(part); !s) return std::unexpected(s.error());
-  return index;
+  const Result<Header> header = readHeader(file);
+  if (!header) return std::unexpected(header.error());
+  const std::uint64_t at = header->fileBytes - header->laterBytes;
+  return parse(file,
+               file.subspan(static_cast<std::size_t>(std::min(at, std::uint64_t{file.size()}))));
 }
 
 Result<LogIndex> LogIndex::parse(ByteView head, ByteView later) {

@@ -413,8 +413,9 @@ Status setManifest(LogIndex& index, Manifest manifest) {
   return {};
 }
 
-Status checkLaterBytes(const LogIndex& index) {
-  if (index.encodeLater().size() <= kMaxLaterBytes) return {};
+Result<Bytes> laterPart(const LogIndex& index) {
+  Bytes part = index.encodeLater();
+  if (part.size() <= kMaxLaterBytes) return part;
   return fail(ErrorCode::kLimitExceeded,
               "the later instants take more than 256 MiB; choose some with `time`");
 }

@@ -20,8 +20,8 @@ struct LogIndex;
 /// shapes of these fields.
 [[nodiscard]] Status setManifest(LogIndex& index, Manifest manifest);
 
-/// Whether a log may have so large a part of later instants. Errors: limit-exceeded.
-[[nodiscard]] Status checkLaterBytes(const LogIndex& index);
+/// LogIndex::encodeLater, if a log may have so large a part. Errors: limit-exceeded.
+[[nodiscard]] Result<Bytes> laterPart(const LogIndex& index);
 
 /// The bytes of LogIndex::manifest, without the last `later` fields. Errors are rounded up to three
 /// significant digits (codec/coding/error_figure.h). If a level has one, the first and the last

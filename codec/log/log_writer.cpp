@@ -124,10 +124,10 @@ Result<LogIndex> indexOf(const FusionHistory& history, const LogWriterOptions& o
   return index;
 }
 
-LogStatistics statisticsOf(const LogIndex& index, const FusionHistory& history,
-                           std::uint64_t positionCost) {
+LogStatistics statisticsOf(const LogIndex& index, std::uint64_t laterBytes,
+                           const FusionHistory& history, std::uint64_t positionCost) {
   LogStatistics s;
-  s.headBytes = s.fileBytes = index.encode().size() + index.encodeLater().size();
+  s.headBytes = s.fileBytes = index.encode().size() + laterBytes;
   s.fieldBytes.resize(index.fields.size());
   for (const ChunkEntry& row : index.chunks) {
     for (std::size_t part = 0; part < row.blocks.size(); ++part) {
@@ -166,13 +166,14 @@ Result<EncodedHead> encodeLog(const FusionHistory& history, const LogWriterOptio
   Result<std::vector<ClosingBlock>> closing = writeClosing(writer, options, body);
   if (!closing) return std::unexpected(closing.error());
   index->closing = std::move(*closing);
-  if (Status s = checkLaterBytes(*index); !s) return std::unexpected(s.error());
+  Result<Bytes> later = laterPart(*index);
+  if (!later) return std::unexpected(later.error());
   EncodedHead log;
-  log.statistics = statisticsOf(*index, history, writer.positionCost());
+  log.later = std::move(*later);
+  log.statistics = statisticsOf(*index, log.later.size(), history, writer.positionCost());
   log.statistics.steps = writer.meter().steps();
   index->fileBytes = log.statistics.fileBytes;
   log.head = index->encode();
-  log.later = index->encodeLater();
   return log;
 }
 

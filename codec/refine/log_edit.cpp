@@ -56,14 +56,11 @@ void keepOpening(Manifest& manifest, const ManifestField& shown,
                  const std::vector<std::uint32_t>& kept, const std::vector<NewField>& added) {
   auto place =
       static_cast<std::size_t>(std::ranges::find(kept, manifest.opening->field) - kept.begin());
+  const auto isShown = [&](const NewField& field) {
+    return field.info.name == shown.name && field.info.association == shown.association;
+  };
   if (place == kept.size())
-    place += static_cast<std::size_t>(std::ranges::find_if(added,
-                                                           [&](const NewField& field) {
-                                                             return field.info.name == shown.name &&
-                                                                    field.info.association ==
-                                                                        shown.association;
-                                                           }) -
-                                      added.begin());
+    place += static_cast<std::size_t>(std::ranges::find_if(added, isShown) - added.begin());
   if (place < kept.size() + added.size() && place <= kMaxOpeningField) {
     manifest.opening->field = static_cast<std::uint8_t>(place);
   } else {
@@ -157,13 +154,11 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
       index.closing.back().field = static_cast<std::uint32_t>(place - kept.begin());
     index.closing.back().block = pieces.keep(c.block);
   }
-  index.fileBytes = index.encode().size() + pieces.bytes() + index.encodeLater().size();
-  if (Status s = checkLaterBytes(index); !s) return std::unexpected(s.error());
-  return EditedLog(log, index, std::move(pieces.all()));
+  Result<Bytes> later = laterPart(index);
+  if (!later) return std::unexpected(later.error());
+  index.fileBytes = index.encode().size() + pieces.bytes() + later->size();
+  return EditedLog(log, index.encode(), std::move(pieces.all()), std::move(*later));
 }
-
-EditedLog::EditedLog(const LogFile& log, const LogIndex& index, std::vector<Piece> blocks)
-    : log_(log), head_(index.encode()), later_(index.encodeLater()), blocks_(std::move(blocks)) {}
 
 Status EditedLog::writeTo(const ByteSink& sink) const {
   if (Status s = sink(head_); !s) return s;

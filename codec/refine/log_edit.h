@@ -15,7 +15,6 @@
 namespace qtet {
 
 class LogFile;
-struct LogIndex;
 
 /// A field for a log, its blocks those of encodeFieldBlocks.
 struct NewField {
@@ -35,7 +34,8 @@ class EditedLog {
     std::optional<std::uint64_t> offset;
   };
 
-  EditedLog(const LogFile& log, const LogIndex& index, std::vector<Piece> blocks);
+  EditedLog(const LogFile& log, Bytes head, std::vector<Piece> blocks, Bytes later)
+      : log_(log), head_(std::move(head)), later_(std::move(later)), blocks_(std::move(blocks)) {}
 
   /// Header, manifest and table.
   [[nodiscard]] const Bytes& head() const { return head_; }

@@ -20,6 +20,7 @@
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_times.h"
 #include "simplify/read/steps/step_reports.h"
+#include "simplify/series/series.h"
 
 namespace qtet {
 namespace {
@@ -219,13 +220,10 @@ struct Made {
   PipelineOutput output;
 };
 
-/// Steps are read so many at a time.
-constexpr std::size_t kStepsAtOnce = 8;
-
 Result<Made> makeAtOnce(const Request& request, const std::vector<double>& times,
                         const PipelineOptions& options, Stopwatch& watch) {
-  Result<ReadMesh> read = times.size() > kStepsAtOnce
-                              ? readTimesInParts(request.input, request.read, times, kStepsAtOnce)
+  Result<ReadMesh> read = times.size() > kWindow
+                              ? readTimesInParts(request.input, request.read, times, kWindow)
                               : readMesh(request.input, request.read);
   if (!read) return std::unexpected(read.error());
   watch.lap("read");

@@ -47,15 +47,20 @@ export function makeInputs(bin, folder) {
   for (const file of ['step.vtu', 'step-17.vtu', 'step-18.vtu']) {
     withFields(folder, file, ['T', 'U']);
   }
-  const step = (time) => `<DataSet timestep="${time}" file="step.vtu"/>`;
-  const steps = [0, 0.25, 0.5].map(step).join('');
-  const series = `<VTKFile type="Collection"><Collection>${steps}</Collection></VTKFile>\n`;
-  writeFileSync(join(folder, 'run.pvd'), series);
   writeFileSync(join(folder, 'voxels.vtk'), kVoxels);
+  writeFileSync(join(folder, 'bent.vtk'), kVoxels.replace('2 1 1\nCELLS', '2 1 1.2\nCELLS'));
+  writeFileSync(join(folder, 'run.pvd'), collection(['step.vtu', 'step.vtu', 'step.vtu']));
+  writeFileSync(join(folder, 'moving.pvd'), collection(['voxels.vtk', 'bent.vtk']));
   qtet('simplify', 'part.vtu', '-o', 'part.qtet');
   for (const copy of ['wing.qtet', 'served/part.qtet']) {
     cpSync(join(folder, 'part.qtet'), join(folder, copy));
   }
+}
+
+/** A series of these files, a quarter of a unit of time apart. */
+function collection(files) {
+  const sets = files.map((file, i) => `<DataSet timestep="${i / 4}" file="${file}"/>`).join('');
+  return `<VTKFile type="Collection"><Collection>${sets}</Collection></VTKFile>\n`;
 }
 
 /** The box's one field under other names, in a file of its own. */

@@ -301,7 +301,6 @@ export class Session implements TransportHandlers {
 
   /** Returns true if the stream was opened again, now that the fields are known. */
   private takeManifest(): boolean {
-    const manifest = this.assembler.manifest!;
     const unknown = this.requested.findFields();
     const mayComeLater = unknown !== undefined || this.source.time != null;
     if (mayComeLater && this.assembler.laterBytes > 0 && !this.laterAsked) {
@@ -313,8 +312,7 @@ export class Session implements TransportHandlers {
       const message = `The mesh has no field "${unknown}". The first one is shown instead.`;
       this.send({type: 'error', code: 'unknown-field', message});
     }
-    const {fields} = this.requested;
-    this.send({type: 'manifest', manifest, digest: this.stream.digest, fields: [...fields]});
+    this.sendManifest();
     this.sendPlan();
     if (!this.stream.endsAtHead && this.stream.brings(this.requested.keys)) return false;
     this.open();
@@ -357,14 +355,17 @@ export class Session implements TransportHandlers {
       if (!this.takeManifest()) this.open();
       return;
     }
-    const {manifest} = this.assembler;
-    const fields = [...this.requested.fields];
+    this.sendManifest({isMore: true});
+  }
+
+  private sendManifest(more: {isMore?: boolean} = {}): void {
+    const {assembler, requested, stream} = this;
     this.send({
       type: 'manifest',
-      manifest: manifest!,
-      digest: this.stream.digest,
-      fields,
-      isMore: true,
+      manifest: assembler.manifest!,
+      digest: stream.digest,
+      fields: [...requested.fields],
+      ...more,
     });
   }
 
