@@ -215,7 +215,7 @@ LogIndex::Unread readLaterSummary(ByteReader& r, const Header& header) {
   return out;
 }
 
-// As check(), for the blocks that readLater has brought. Their sum is the row's, which check() knew.
+// As check(), for the blocks that readLater has brought. The row has had their sum from the start.
 Status checkLaterBlocks(const LogIndex& index) {
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
     const ChunkEntry& e = index.chunks[chunk];
