@@ -33,7 +33,7 @@ export const kTemplate = `
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
   <div class="legend-note" hidden></div>
-  <div class="legend-note legend-warp" hidden></div>
+  <div class="legend-warp" hidden></div>
   <div class="legend-missing" hidden><i></i>No value</div>
 </figure>
 
