@@ -80,6 +80,18 @@ Reply Upload::diskTrouble(const std::string& what, int number) {
 }
 
 std::optional<Reply> Upload::append(ByteView bytes) {
+  if (!delta_) return write(bytes);
+  if (!bytes.empty()) delta_->feed(bytes);
+  for (std::uint64_t done = 0; isBusy() && done < limits::kDeltaPiece;) {
+    const Result<ByteView> piece = delta_->next(limits::kDeltaPiece - done);
+    if (!piece) return problem(400, "bad-request", piece.error().message);
+    if (std::optional<Reply> trouble = write(*piece)) return trouble;
+    done += piece->size();
+  }
+  return std::nullopt;
+}
+
+std::optional<Reply> Upload::write(ByteView bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(file_, bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) continue;
@@ -90,6 +102,8 @@ std::optional<Reply> Upload::append(ByteView bytes) {
 }
 
 std::optional<Reply> Upload::partial() {
+  if (delta_ && !delta_->isWhole())
+    return problem(400, "bad-request", "the delta ends within an instruction");
   struct stat info{};
   if (::fstat(file_, &info) != 0) return diskTrouble("the upload cannot be read", errno);
   if (static_cast<std::uint64_t>(info.st_size) >= request_.totalBytes) return std::nullopt;
@@ -193,6 +207,12 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
   if (std::optional<Reply> refusal = folderInTheWay(*pathOfMesh(store_.folder(), request.id)))
     return refuse(std::move(*refusal));
 
+  // The name's log alone: a token for this mesh then reads no other one.
+  MeshPointer base = request.from ? store_.find(request.id) : nullptr;
+  if (request.from && (!base || base->log.digest() != *request.from))
+    return refuse(problem(409, "upload-conflict",
+                          "the mesh's log is not the one that this is a delta to; send it whole"));
+
   const std::scoped_lock lock(mutex_);
   const fs::path part =
       request.digest ? parts_.resumable(request.id, *request.digest) : parts_.nameless();
@@ -225,7 +245,7 @@ std::expected<std::unique_ptr<Upload>, Reply> Uploads::begin(const UploadRequest
     if (request.first == 0) ::unlink(part.c_str());  // it was empty
     return refuseOpened(std::move(*refusal));
   }
-  return std::unique_ptr<Upload>(new Upload(*this, request, part, file));
+  return std::unique_ptr<Upload>(new Upload(*this, request, std::move(base), part, file));
 }
 
 std::optional<std::uint64_t> Uploads::partialBytes(const std::string& id,

@@ -14,6 +14,7 @@
 #include <stop_token>
 #include <string>
 
+#include "codec/log/log_delta.h"
 #include "server/http/http_message.h"
 #include "server/http/log_check.h"
 #include "server/http/upload_limits.h"
@@ -35,8 +36,13 @@ class Upload {
 
   /// nullopt: the bytes are written. Else the answer that ends the upload: 507 (the disk is full;
   /// the received bytes are removed) or 500.
+  /// So that no call takes long, a part of a delta may be left: see isBusy(). The answer to bytes
+  /// that are no delta is 400.
   [[nodiscard]] std::optional<Reply> append(ByteView bytes);
-  /// 202: this part is kept, and more is missing; nullopt: all bytes are there. Or 500.
+  /// A part of a delta is left: append({}) goes on with it, and takes no other bytes until then.
+  [[nodiscard]] bool isBusy() const { return delta_ && !delta_->needsBytes(); }
+  /// 202: this part is kept, and more is missing; nullopt: all bytes are there. Or 400 (a delta
+  /// that is not whole), 500.
   [[nodiscard]] std::optional<Reply> partial();
   /// After the last byte: verifies, decodes and publishes. Reads the whole file and takes as long
   /// as its check may, so not for a thread that serves others. 201 (new), 200 (replaced), or 412,
@@ -46,12 +52,18 @@ class Upload {
 
  private:
   friend class Uploads;
-  Upload(Uploads& uploads, UploadRequest request, std::filesystem::path part, int file)
+  /// `base` is the log that the body is a delta to, or nullptr.
+  Upload(Uploads& uploads, UploadRequest request, MeshPointer base, std::filesystem::path part,
+         int file)
       : uploads_(uploads),
         request_(std::move(request)),
+        base_(std::move(base)),
         part_(std::move(part)),
         file_(file),
-        remove_(!request_.digest) {}
+        remove_(!request_.digest) {
+    if (base_) delta_.emplace(base_->log.bytes(), request_.totalBytes - request_.first);
+  }
+  std::optional<Reply> write(ByteView bytes);
   /// After 507 what came goes: kept it would keep the disk full.
   Reply diskTrouble(const std::string& what, int number);
   /// nullopt: the log is sound, and `mesh` it; else the answer.
@@ -60,9 +72,11 @@ class Upload {
 
   Uploads& uploads_;
   const UploadRequest request_;
+  const MeshPointer base_;
   const std::filesystem::path part_;
   int file_;
   bool remove_;  // the part, at the end
+  std::optional<DeltaReader> delta_{};
 };
 
 struct UploadOptions {
@@ -81,7 +95,8 @@ class Uploads {
       : store_(store), options_(std::move(options)), parts_(store.folder(), options_.parts) {}
 
   /// Opens the file for the bytes, or returns the answer: 404 (no such name), 409 (the range does
-  /// not begin where the upload stopped, or somebody is sending the same), 412, 413, 500, 503, 507.
+  /// not begin where the upload stopped, somebody is sending the same, or the mesh's log is not the
+  /// one that the body is a delta to), 412, 413, 500, 503, 507.
   [[nodiscard]] std::expected<std::unique_ptr<Upload>, Reply> begin(const UploadRequest& request);
   /// Bytes received of an interrupted upload of this log under this name; nullopt: there is none.
   /// REQUIRES: a name that a mesh may have.

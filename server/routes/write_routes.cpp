@@ -33,9 +33,9 @@ bool readContentRange(std::string_view text, UploadRequest& out) {
   const auto first = parseNumber(text.substr(0, dash)),
              last = parseNumber(text.substr(dash + 1, slash - dash - 1)),
              total = parseNumber(text.substr(slash + 1));
-  if (!first || !last || !total || *last < *first || *last >= *total ||
-      *last - *first + 1 != out.bodyBytes)
-    return false;
+  if (!first || !last || !total || *last < *first || *last >= *total) return false;
+  if (!out.from && *last - *first + 1 != out.bodyBytes) return false;
+  if (out.from && *last + 1 != *total) return false;
   out.first = *first;
   out.totalBytes = *total;
   return true;
@@ -66,8 +66,13 @@ Answer routePut(const RequestView& request, const RequestTarget& target, UploadR
   out.digest = target.parameter("digest");
   if (out.digest && !isDigest(*out.digest))
     return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
-  if (request.contentRange && !out.digest)
+  out.from = target.parameter("from");
+  if (out.from && !isDigest(*out.from))
+    return badRequest("from is the old log's SHA-256, 64 hexadecimal digits in lower case");
+  if ((request.contentRange || out.from) && !out.digest)
     return badRequest("a part of a log is sent with ?digest= of the whole");
+  if (out.from && !request.contentRange)
+    return badRequest("a delta comes with Content-Range: bytes FIRST-LAST/SIZE of the new log");
   if (request.contentRange && !readContentRange(*request.contentRange, out))
     return badRequest(
         "Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes; or bytes */SIZE, "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/this_coro.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <span>
@@ -77,11 +78,16 @@ asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const Re
 asio::awaitable<std::optional<Reply>> receiveBody(HttpInput& input, Upload& upload,
                                                   std::uint64_t bytes) {
   Bytes piece(limits::kBodyPiece);
+  const auto executor = co_await asio::this_coro::executor;
   while (bytes > 0) {
     const std::size_t wanted = std::min<std::uint64_t>(bytes, piece.size());
     const std::size_t have = co_await input.readBody(std::span(piece).first(wanted));
     if (std::optional<Reply> trouble = upload.append(ByteView(piece).first(have)))
       co_return trouble;
+    while (upload.isBusy()) {
+      co_await asio::post(executor, use_awaitable);  // others have their turn
+      if (std::optional<Reply> trouble = upload.append({})) co_return trouble;
+    }
     if (have < wanted)
       co_return problem(408, "request-timeout",
                         "the request's body did not arrive, or not in time");

@@ -1,11 +1,15 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <thread>
 
+#include "codec/log/log_delta.h"
 #include "codec/refine/log_file.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/http_client.h"
+#include "simplify/commands/old_log.h"
 #include "simplify/commands/progress.h"
 
 namespace qtet {
@@ -75,29 +79,69 @@ Result<std::uint64_t> bytesThere(const Push& push) {
   return bytes <= push.log.bytes().size() ? bytes : 0;
 }
 
-Result<HttpAnswer> sendFrom(const Push& push, std::uint64_t first, Progress& progress) {
-  const std::uint64_t size = push.log.bytes().size();
+/// Bytes of a delta that are held in memory; beyond them the log is sent whole.
+constexpr std::uint64_t kMaxDeltaBytes = std::uint64_t{1} << 30;
+
+/// The log from byte `first` on: its own bytes, or a delta to another log.
+struct Sending {
+  std::uint64_t first = 0;
+  Bytes delta{};
+  std::string from{};  ///< the other log's digest; empty: the log's own bytes
+};
+
+/// A delta to the log that the server has, if it is known and at most half as long as the log.
+Sending sendingFrom(const Push& push, std::uint64_t first, const std::optional<OldLog>& old) {
+  Sending out{.first = first};
+  const ByteView log = push.log.bytes();
+  if (!old || first == log.size()) return out;
+  const std::uint64_t most = std::min<std::uint64_t>(kMaxDeltaBytes, (log.size() - first) / 2);
+  if (auto delta = makeDelta(old->index, push.log.index(), log, first, most)) {
+    out.delta = std::move(*delta);
+    out.from = old->digest;
+  }
+  return out;
+}
+
+Result<HttpAnswer> send(const Push& push, const Sending& sending, Progress& progress) {
+  const std::uint64_t size = push.log.bytes().size(), first = sending.first;
+  const bool isDelta = !sending.from.empty();
+  const ByteView body = isDelta ? ByteView(sending.delta) : push.log.bytes().subspan(first);
   std::vector<std::string> headers{push.authorization};
-  if (first > 0)
+  if (first > 0 || isDelta)
     headers.push_back(
         "Content-Range: bytes " +
         (first < size ? std::to_string(first) + "-" + std::to_string(size - 1) : "*") + "/" +
         std::to_string(size));
   constexpr std::string_view kChecking = "the server checks the log";
-  progress.stage(first == size ? kChecking : first > 0 ? "sending the rest" : "sending");
+  progress.stage(body.empty() ? kChecking
+                 : isDelta    ? "sending what is new"
+                 : first > 0  ? "sending the rest"
+                              : "sending");
+  const std::uint64_t there = isDelta ? 0 : first;
   return exchange(push.server, {.method = "PUT",
-                                .target = push.target + "?digest=" + push.log.digest(),
+                                .target = push.target + "?digest=" + push.log.digest() +
+                                          (isDelta ? "&from=" + sending.from : ""),
                                 .headers = headers,
-                                .body = push.log.bytes().subspan(first),
+                                .body = body,
                                 .authorities = push.authorities,
                                 .patience = {.answering = kCheckTime},
                                 .progress =
                                     [&](std::uint64_t sent) {
-                                      progress.update(static_cast<double>(first + sent) /
-                                                      static_cast<double>(size));
-                                      if (first + sent == size) progress.stage(kChecking);
+                                      progress.update(static_cast<double>(there + sent) /
+                                                      static_cast<double>(there + body.size()));
+                                      if (sent == body.size()) progress.stage(kChecking);
                                     },
                                 .waiting = [&] { progress.working(); }});
+}
+
+/// Nothing if it cannot be had: then the log is sent whole.
+std::optional<OldLog> oldLogOf(const Push& push) {
+  const HttpRequest request{.method = "GET",
+                            .target = push.target,
+                            .headers = {push.authorization},
+                            .authorities = push.authorities};
+  Result<OldLog> old = fetchOldLog(push.server, request);
+  return old ? std::optional(std::move(*old)) : std::nullopt;
 }
 
 /// Whether another attempt may go better: the server had no time or no place, or disagreed about
@@ -107,22 +151,40 @@ bool worthAnother(const HttpAnswer& answer) {
          answer.status == 503;
 }
 
-/// The answer to the log, sent as often as it takes.
-Result<HttpAnswer> pushLog(const Push& push, Console& console) {
+/// The last answer to the log, and the bytes that were sent for it.
+struct Pushed {
+  HttpAnswer answer;
+  std::uint64_t bytes = 0;
+};
+
+/// Sends the log as often as it takes.
+Result<Pushed> pushLog(const Push& push, Console& console) {
   Progress progress(console);
-  Result<HttpAnswer> out = fail(ErrorCode::kIo, "");
+  std::optional<OldLog> old = oldLogOf(push);
+  Result<HttpAnswer> answer = fail(ErrorCode::kIo, "");
+  Sending sending;
   for (int attempt = 1; attempt <= kMaxAttempts; ++attempt) {
     const Result<std::uint64_t> first = bytesThere(push);
-    out = first ? sendFrom(push, *first, progress)
-                : Result<HttpAnswer>(std::unexpected(first.error()));
+    if (first) sending = sendingFrom(push, *first, old);
+    answer =
+        first ? send(push, sending, progress) : Result<HttpAnswer>(std::unexpected(first.error()));
     progress.clear();
-    const bool again = out ? worthAnother(*out) : out.error().code == ErrorCode::kIo;
+    // A server without deltas, another log by now, or blocks whose checksums agree by chance.
+    if (answer && !sending.from.empty() &&
+        (answer->status == 400 || answer->status == 409 ||
+         (answer->status == 422 && sending.first == 0))) {
+      old.reset();
+      continue;
+    }
+    const bool again = answer ? worthAnother(*answer) : answer.error().code == ErrorCode::kIo;
     if (!again || attempt == kMaxAttempts) break;
-    console.err << "qtet: " << printable(out ? reasonOf(*out) : out.error().message)
+    console.err << "qtet: " << printable(answer ? reasonOf(*answer) : answer.error().message)
                 << "; trying again\n";
     std::this_thread::sleep_for(kFirstPause * (1 << (attempt - 1)));
   }
-  return out;
+  if (!answer) return std::unexpected(answer.error());
+  return Pushed{std::move(*answer), sending.from.empty() ? push.log.bytes().size() - sending.first
+                                                         : sending.delta.size()};
 }
 
 }  // namespace
@@ -144,7 +206,9 @@ int runPush(const Words& words, Console& console) {
        "The server checks the log before\n"
        "anybody sees it, as qtet verify does, which takes a while for a large one. A connection "
        "that breaks is taken up again\n"
-       "where it broke, also by a later push of the same log.",
+       "where it broke, also by a later push of the same log. Blocks of the log that the server "
+       "has "
+       "under this name are not sent again.",
        "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
        "  qtet push fin.qtet https://meshes.example.org/v1/meshes/wing --token-file "
        "~/.qtet-token\n"},
@@ -161,22 +225,28 @@ int runPush(const Words& words, Console& console) {
 
   const Push push{*log, *url, targetOf(*url, file), "Authorization: Bearer " + *token,
                   parsed.get<std::string>("cacert")};
-  const Result<HttpAnswer> answer = pushLog(push, console);
-  if (!answer) return reportFailure(answer.error(), asJson, console);
-  if (answer->status != 200 && answer->status != 201)
-    return reportFailure(
-        {ErrorCode::kIo, "the server refuses the log, " + reasonOf(*answer), Error::kNoOffset},
-        asJson, console);
+  const Result<Pushed> pushed = pushLog(push, console);
+  if (!pushed) return reportFailure(pushed.error(), asJson, console);
+  const unsigned status = pushed->answer.status;
+  if (status != 200 && status != 201)
+    return reportFailure({ErrorCode::kIo, "the server refuses the log, " + reasonOf(pushed->answer),
+                          Error::kNoOffset},
+                         asJson, console);
   const std::string address = push.server.origin + push.target;
+  const std::uint64_t bytes = log->bytes().size();
   if (asJson)
     printJson({{"address", address},
                {"digest", log->digest()},
-               {"bytes", log->bytes().size()},
-               {"replaced", answer->status == 200}},
+               {"bytes", bytes},
+               {"sent", pushed->bytes},
+               {"replaced", status == 200}},
               console);
   else
-    console.out << address << "  " << (answer->status == 200 ? "replaced" : "new") << ", "
-                << log->bytes().size() << " bytes\n";
+    console.out << address << "  " << (status == 200 ? "replaced" : "new") << ", " << bytes
+                << " bytes"
+                << (pushed->bytes < bytes ? ", " + std::to_string(pushed->bytes) + " of them sent"
+                                          : "")
+                << "\n";
   return kExitOk;
 }
 

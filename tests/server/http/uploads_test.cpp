@@ -413,6 +413,45 @@ TEST_F(UploadTest, anUploadThatBrokeOffGoesOnWhereItStopped) {
         << wrong;
 }
 
+TEST_F(UploadTest, aDeltaToTheMeshsLogGivesTheNewOne) {
+  const auto instruction = [](std::uint64_t from, std::uint64_t copied, const std::string& own) {
+    ByteWriter out;
+    out.write(from);
+    out.write(copied);
+    out.write(own.size());
+    return textOf(out.bytes()) + own;
+  };
+  const std::string size = std::to_string(log_.size());
+  const auto send = [&](const std::string& from, std::size_t first, const std::string& delta) {
+    return put("/v1/meshes/new?digest=" + digestOf(log_) + "&from=" + from, delta,
+               "Content-Range: bytes " + std::to_string(first) + "-" +
+                   std::to_string(log_.size() - 1) + "/" + size + "\r\n");
+  };
+  const std::string old = textOf(testing::logBytes(testing::soundMesh(9, 4)));
+  ASSERT_EQ(put("/v1/meshes/new", old).status, 201u);
+  std::string delta = instruction(0, 0, log_.substr(0, 100));
+  const HttpResponse none = send(std::string(64, 'a'), 0, delta);
+  EXPECT_EQ(none.status, 409u) << none.body;
+  EXPECT_EQ(send("abc", 0, delta).status, 400u);
+  EXPECT_EQ(put("/v1/meshes/new?digest=" + digestOf(log_) + "&from=" + digestOf(old), delta).status,
+            400u)
+      << "without Content-Range";
+  EXPECT_EQ(put("/v1/meshes/new?from=" + digestOf(old), delta).status, 400u) << "without digest";
+
+  EXPECT_EQ(send(digestOf(old), 0, instruction(0, old.size() + 1, "")).status, 400u);
+  const HttpResponse short1 = send(digestOf(old), 0, delta + "and half an instruction");
+  EXPECT_EQ(short1.status, 400u) << short1.body;
+  EXPECT_EQ(send(digestOf(old), 0, delta).status, 202u);
+  const HttpResponse wrong = send(digestOf(old), 100, instruction(0, log_.size() - 100, ""));
+  EXPECT_EQ(wrong.status, 422u) << "another digest: " << wrong.body;
+  EXPECT_EQ(leftovers(), 0u);
+  EXPECT_EQ(send(digestOf(old), 0, instruction(0, 0, log_)).status, 200u);
+  EXPECT_EQ(get("/v1/logs/" + digestOf(log_) + "/log").body, log_);
+  const HttpResponse same = send(digestOf(log_), 0, instruction(0, log_.size(), ""));
+  EXPECT_EQ(same.status, 200u) << same.body;
+  EXPECT_EQ(leftovers(), 0u);
+}
+
 TEST_F(UploadTest, askingForTheCheckOfNothingTakesNothingAway) {
   const auto request = [&](const std::string& range) {
     return put(digested("new"), "", "Content-Range: " + range + "\r\n");

@@ -3,7 +3,10 @@
 
 #include <fstream>
 #include <functional>
+#include <numeric>
 
+#include "codec/refine/log_edit.h"
+#include "codec/refine/log_file.h"
 #include "proto/checksum.h"
 #include "tests/server/http/held_check.h"
 #include "tests/server/program/loopback.h"
@@ -89,6 +92,33 @@ TEST_F(PushTest, whatTheServerHasWholeIsNotSentAgain) {
       .write(reinterpret_cast<const char*>(log_.data()), static_cast<std::streamsize>(log_.size()));
   EXPECT_EQ(push(url()).code, 0);
   EXPECT_EQ(served("/v1/logs/" + digest_ + "/log"), std::string(log_.begin(), log_.end()));
+}
+
+TEST_F(PushTest, whatTheServersLogHasIsNotSentAgain) {
+  // The second time the server finds the log unsound, as if checksums had agreed by chance.
+  int checks = 0;
+  const test::RunningServer server(
+      *store_, folder_.viewer(),
+      {.access = &access_,
+       .uploads = {.check = [&](const ServedMesh&, const CheckLimits&, const std::stop_token&) {
+         return ++checks == 2 ? std::optional(problem(422, "bad-log", "unsound")) : std::nullopt;
+       }}});
+  const std::string url = "http://127.0.0.1:" + std::to_string(server.port()) + "/";
+  const LogFile log = *LogFile::fromBytes(log_);
+  std::vector<std::uint32_t> kept(log.fields().size() - 1);
+  std::iota(kept.begin(), kept.end(), 0u);
+  const Bytes old = withFields(log, kept, {})->together();
+  for (const bool isDelta : {true, false}) {
+    mine_.write("old.qtet", ByteView(old));
+    std::filesystem::rename(mine_.path() / "old.qtet", folder_.logFolder() / "my wing.qtet");
+    ASSERT_TRUE(store_->rescan());
+    const Outcome pushed = push(url);
+    EXPECT_EQ(pushed.code, 0) << pushed.text;
+    EXPECT_EQ(pushed.text.find(" of them sent") != std::string::npos, isDelta) << pushed.text;
+    EXPECT_EQ(test::RawClient(server.port()).get("/v1/logs/" + digest_ + "/log").body,
+              std::string(log_.begin(), log_.end()));
+  }
+  EXPECT_EQ(checks, 3);
 }
 
 TEST_F(PushTest, itSaysThatTheServerChecks) {

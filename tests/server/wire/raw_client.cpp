@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <stdexcept>
 
 #include "tests/server/program/loopback.h"
@@ -84,7 +85,7 @@ RawClient::RawClient(std::uint16_t port, const char* from)
   const timeval patience{std::chrono::seconds(kPatience).count(), 0};
   ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
   if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
-    throw std::runtime_error("the server does not answer");
+    throw std::runtime_error(std::string("no connection to the server: ") + std::strerror(errno));
 }
 
 RawClient::~RawClient() { ::close(socket_); }
