@@ -108,8 +108,8 @@ export interface ServerListener {
 }
 
 /**
- * Asks the server once, and again for the exact values: when they are wanted, and where a coarse
- * level leaves out a point of the surface.
+ * Asks the server once, and again when the exact values are wanted. Where a coarse level leaves out
+ * a point of the surface, it gets the exact values at once.
  */
 export class ServerValues implements TimeValues {
   private here: SeriesValues | null = null;
