@@ -1,7 +1,7 @@
 // The transports of a log, each by itself and one after the other.
 
 import assert from 'node:assert/strict';
-import {writeFileSync} from 'node:fs';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {kDesktop, kTimeoutMs} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
@@ -112,6 +112,22 @@ async function showsWhichPartOfTheCurveIsHere({server, browser}) {
   assert.ok(reached > 2 && reached < ahead, `${reached} of ${ahead} points are reached`);
 }
 
+/** Plots the middle over time. Returns what the card says of the values, and their table. */
+async function plotOverTime(viewer) {
+  const {page} = viewer;
+  await page.locator('qtet-viewer canvas.scene').focus();
+  await page.keyboard.press('i');
+  await page.getByRole('button', {name: 'Over time'}).click();
+  const status = page.locator('qtet-viewer .result .status');
+  await status.getByText(/exact|9 of 9/).waitFor();
+  const download = page.waitForEvent('download');
+  await page.getByRole('button', {name: 'Save as CSV'}).click();
+  const rows = readFileSync(await (await download).path(), 'utf8').split('\r\n');
+  const text = await status.innerText();
+  await page.locator('qtet-viewer .close-result').click();
+  return {status: text, table: rows.map((row) => row.split(','))};
+}
+
 /**
  * A series is one field with a time. Its instants come alone and play; what is shown stays whole.
  */
@@ -141,6 +157,12 @@ async function playsASeries({server, browser, out, bin}) {
     .allInnerTexts();
   assert.deepEqual(options, ['Density']);
   const few = (await viewer.statistics()).bytes;
+  const here = () => viewer.page.evaluate(() => window.qtetViewer.viewing.mesh.here.length);
+  const hereBefore = await here();
+  const fromServer = await plotOverTime(viewer);
+  assert.match(fromServer.status, /^\d+\sB from the server, exact, level (\d+) of \1\.$/);
+  assert.equal(await here(), hereBefore, "instants are fetched beside the server's answer");
+  await viewer.screenshot('over-time');
   await viewer.page.locator('qtet-viewer canvas.scene').focus();
   await viewer.page.keyboard.press('.');
   await viewer.page.waitForFunction(
@@ -160,8 +182,17 @@ async function playsASeries({server, browser, out, bin}) {
   }
   await viewer.page.keyboard.press('Space');
   await viewer.waitForState('complete');
-  const here = await viewer.page.evaluate(() => window.qtetViewer.viewing.mesh.here.length);
-  assert.equal(here, 9);
+  assert.equal(await here(), 9);
+
+  await viewer.page.route(/series\?/, (route) => route.fulfill({status: 503}));
+  const fromBlocks = await plotOverTime(viewer);
+  assert.match(fromBlocks.status, /^9 of 9 instants are here, /);
+  assert.equal(fromServer.table.length, 10);
+  fromServer.table.forEach(([time, value], i) => {
+    const [itsTime, itsValue] = fromBlocks.table[i];
+    assert.equal(itsTime, time);
+    if (i > 0) assert.ok(Math.abs(itsValue - value) < 1e-4, `${itsValue} is not ${value}`);
+  });
   return `one instant with ${few} bytes, then all nine`;
 }
 

@@ -36,7 +36,8 @@ test('eachRowIsAPlaceWithAllFieldsThatAreHere', async () => {
 test('eachRowOverTimeIsAnInstantWithItsComponents', async () => {
   const fields = ['u@0', 'u@0.5'].map((name) => ({...info(name, 2), minimum: [0, 0]}));
   markSeries(fields);
-  expect((await timeTableOf([0, 1], [[1, 2], []], fields).text()).split('\r\n')).toEqual([
+  const table = {field: 1, times: [0, 0.5], values: [[1, 2], []]};
+  expect((await timeTableOf(table, fields).text()).split('\r\n')).toEqual([
     '"time","u, x","u, y"',
     '0,1,2',
     '0.5,,',

@@ -6,6 +6,8 @@ import type {Vector} from '../core/protocol/geometry';
 import type {Manifest} from '../core/protocol/manifest';
 import {markSeries} from '../core/protocol/series';
 import {Inspector} from '../core/session/inspector';
+import type {Fetch} from '../core/transport/ranged_file';
+import {seriesServer, type SeriesServer} from '../core/transport/series_server';
 import {ShownMesh} from '../viewer/page/shown_mesh';
 import {OverTime} from '../viewer/panels/over_time';
 import type {TimeCurve} from '../viewer/panels/probe_plot';
@@ -28,15 +30,22 @@ let curve: TimeCurve | null;
 let choose: (i: number) => void;
 let times: string[];
 let overTime: OverTime;
+let server: SeriesServer | null;
+let isExactOffered: boolean;
+let announced: string[];
 
 beforeEach(() => {
   const fields = kFields.map((name) => field(name, name.startsWith('u') ? 2 : 1));
   markSeries(fields);
   mesh = new ShownMesh();
-  mesh.manifest = {fields} as Manifest;
+  const lattice = {bits: 16, step: 0.5, origin: [10, 20, 30]};
+  mesh.manifest = {fields, lattice, levels: [{level: 0}, {level: 7}]} as unknown as Manifest;
   here = new Map([[1, [3, 4]]]);
   asked = [];
   times = [];
+  announced = [];
+  server = null;
+  isExactOffered = false;
   curve = null;
   color = {field: 1, component: -1};
   overTime = new OverTime(
@@ -51,7 +60,11 @@ beforeEach(() => {
       get color() {
         return color;
       },
+      get seriesServer() {
+        return server;
+      },
       fieldTitle: 'u',
+      announce: (text) => announced.push(text),
       apply: () => overTime.update(),
       showTime: (text) => times.push(text),
     },
@@ -61,6 +74,7 @@ beforeEach(() => {
         const plot = {show: (its: TimeCurve) => void (curve = its), destroy: () => undefined};
         return Promise.resolve(isWanted() ? plot : null);
       },
+      offerExact: (isOffered) => void (isExactOffered = isOffered),
       close: () => void (curve = null),
     },
   );
@@ -84,12 +98,14 @@ describe('a plot over time', () => {
       values: [5, NaN],
       title: 'u',
       time: 0,
-      status: '1 of 2 instants are here.',
+      status: '1 of 2 instants are here, 0\u00a0B so far.',
     });
     here.set(0, [6, 8]);
+    mesh.received = 1500;
     overTime.takeProgress();
     await settled();
-    expect(curve).toMatchObject({values: [5, 10], status: 'u'});
+    const status = '2 of 2 instants are here, 1.50\u00a0kB so far.';
+    expect(curve).toMatchObject({values: [5, 10], status});
   });
 
   test('keepsValuesThatAreNotHereAgainAndSaysThatNoMoreCome', async () => {
@@ -100,7 +116,7 @@ describe('a plot over time', () => {
     overTime.takeProgress();
     await settled();
     expect(curve!.values).toEqual([5, NaN]);
-    expect(curve!.status).toMatch(/^1 of 2 instants are here\. The others come when/);
+    expect(curve!.status).toMatch(/^1 of 2 instants are here, .*\. The others come when/);
   });
 
   test('followsTheComponentTheTimeAndTheSeries', async () => {
@@ -142,6 +158,205 @@ describe('a plot over time', () => {
     await opening;
     expect(curve).toBeNull();
   });
+});
+
+/** A server's answers, which come when they are given. */
+class FakeServer {
+  readonly requests: URL[] = [];
+  private readonly answers: ((answer: Response | Error) => void)[] = [];
+
+  readonly fetch: Fetch = (url, {signal}) => {
+    this.requests.push(new URL(url));
+    return new Promise((resolve, reject) => {
+      signal!.addEventListener('abort', () => reject(new Error('aborted')));
+      this.answers.push((answer) => (answer instanceof Error ? reject(answer) : resolve(answer)));
+    });
+  };
+
+  async answer(answer: Response | Error): Promise<void> {
+    this.answers.shift()!(answer);
+    await settled();
+  }
+}
+
+const answerOf = (level: number, values: (number | null)[][], at = [0, 1]): Response =>
+  Response.json({level, times: at, values}, {headers: {'Content-Length': '18000'}});
+
+describe('a plot over time from a server', () => {
+  const kLog = 'https://x/a/v1/meshes/fin/log';
+  let fake: FakeServer;
+
+  beforeEach(async () => {
+    fake = new FakeServer();
+    server = seriesServer(kLog, '', '', fake.fetch);
+    await overTime.begin(kPlace);
+  });
+
+  test('asksOnceAndShowsTheAnswerWithoutBlocks', async () => {
+    expect(fake.requests.map(String)).toEqual([
+      'https://x/a/v1/meshes/fin/series?x=10.5&y=21&z=31.5&field=u',
+    ]);
+    expect(curve).toMatchObject({at: [], status: 'The server is asked for the values.'});
+    await fake.answer(
+      answerOf(3, [
+        [3, 4],
+        [null, 1],
+      ]),
+    );
+    overTime.takeProgress();
+    expect(curve).toMatchObject({
+      at: [0, 1],
+      values: [5, NaN],
+      time: 0,
+      status: '18.0\u00a0kB from the server, at most 1\u202f% off (rms), level 3 of 7.',
+    });
+    expect([isExactOffered, announced]).toEqual([true, [curve!.status]]);
+    expect([asked, mesh.ahead, fake.requests.length]).toEqual([[], [], 1]);
+    const values = [
+      [3, 4],
+      [NaN, 1],
+    ];
+    expect(overTime.table()).toEqual({field: 1, times: [0, 1], values});
+    color = {field: 0, component: 1};
+    overTime.update();
+    expect(curve).toMatchObject({values: [4, 1], time: 1});
+    expect(fake.requests).toHaveLength(1);
+  });
+
+  test('getsTheExactValuesOnRequest', async () => {
+    await fake.answer(
+      answerOf(3, [
+        [3, 4],
+        [6, 8],
+      ]),
+    );
+    overTime.askExact();
+    expect([isExactOffered, curve!.values]).toEqual([false, [5, 10]]);
+    expect(curve!.status).toMatch(/level 3 of 7\. The exact values are on their way\.$/);
+    await fake.answer(new Response(null, {status: 503}));
+    expect([isExactOffered, curve!.values]).toEqual([true, [5, 10]]);
+    expect(curve!.status).toMatch(/ The server does not give the exact values now\.$/);
+    overTime.askExact();
+    await fake.answer(
+      answerOf(7, [
+        [0, 1],
+        [0, 2],
+      ]),
+    );
+    expect([isExactOffered, curve!.values]).toEqual([false, [1, 2]]);
+    expect(curve!.status).toBe('18.0\u00a0kB from the server, exact, level 7 of 7.');
+    expect(fake.requests.map(({searchParams}) => searchParams.get('level'))).toEqual([
+      null,
+      '7',
+      '7',
+    ]);
+  });
+
+  test('asksForTheLastLevelWhereACoarseOneLeavesThePointOut', async () => {
+    await fake.answer(new Response(null, {status: 404}));
+    expect(fake.requests.map(({searchParams}) => searchParams.get('level'))).toEqual([null, '7']);
+    expect([curve!.status, asked]).toEqual(['The server is asked for the values.', []]);
+    const exact = [
+      [0, 1],
+      [0, 2],
+    ];
+    await fake.answer(answerOf(7, exact));
+    expect([curve!.values, isExactOffered]).toEqual([[1, 2], false]);
+  });
+
+  test('goesOnWithBlocksForAPointOutside', async () => {
+    await fake.answer(new Response(null, {status: 404}));
+    await fake.answer(new Response(null, {status: 404}));
+    await settled();
+    expect([asked, mesh.ahead, fake.requests.length]).toEqual([[[1, 0]], [1, 0], 2]);
+  });
+
+  test.each([
+    new Response(null, {status: 429}),
+    new Response(null, {status: 503, headers: {'Retry-After': '2'}}),
+    new Response('no JSON'),
+    answerOf(3, [[3, 4]]),
+    answerOf(3, [[3], [4]]),
+    new Error('no network'),
+  ])('goesOnWithBlocksIfTheServerFails', async (answer) => {
+    await fake.answer(answer);
+    await settled();
+    expect([asked, mesh.ahead]).toEqual([[[1, 0]], [1, 0]]);
+    expect(curve!.values).toEqual([5, NaN]);
+    expect(curve!.status).toMatch(/^1 of 2 instants are here, /);
+    expect([isExactOffered, fake.requests.length]).toEqual([false, 1]);
+  });
+
+  test('isAbortedByAnotherPointAnotherSeriesAndTheEnd', async () => {
+    await overTime.begin([0, 0, 0]);
+    color = {field: 2, component: -1};
+    overTime.update();
+    expect(fake.requests.map(({searchParams}) => searchParams.get('field'))).toEqual([
+      'u',
+      'u',
+      'T',
+    ]);
+    await fake.answer(
+      answerOf(3, [
+        [3, 4],
+        [6, 8],
+      ]),
+    );
+    await fake.answer(
+      answerOf(3, [
+        [3, 4],
+        [6, 8],
+      ]),
+    );
+    expect(curve!.at).toEqual([]);
+    overTime.end();
+    await fake.answer(answerOf(3, [[1], [2]]));
+    expect([curve, asked, mesh.ahead, announced]).toEqual([null, [], [], []]);
+  });
+
+  test('showsTheTimeOfAnInstantThatTheManifestDoesNotHaveYet', async () => {
+    await fake.answer(
+      answerOf(
+        3,
+        [
+          [3, 4],
+          [6, 8],
+          [0, 0],
+        ],
+        [0, 1, 2.5],
+      ),
+    );
+    choose(1);
+    choose(2);
+    expect(times).toEqual(['1', '2.5']);
+  });
+});
+
+test('theServerOfALogIsKnownByItsAddress', async () => {
+  const kDigest = 'ab'.repeat(32);
+  const urlOf = async (log: string, digest = '', name = 'T@0'): Promise<string | null> => {
+    const urls: [string, string | null][] = [];
+    const its = seriesServer(log, digest, 'secret', (url, {headers}) => {
+      urls.push([url, new Headers(headers).get('authorization')]);
+      return Promise.resolve(answerOf(0, [[1], [2]]));
+    });
+    const info = {...field(name), association: 'cell' as const};
+    await its?.values({point: [1, 0, -2], field: info, level: 0}, new AbortController().signal);
+    expect(urls.map(([, authorization]) => authorization)).toEqual(its ? ['Bearer secret'] : []);
+    return urls[0]?.[0] ?? null;
+  };
+  const query = '/series?x=1&y=0&z=-2&field=cell%3AT&level=0';
+  expect(await urlOf('http://x/v1/meshes/a%20b/log', kDigest)).toBe(
+    `http://x/v1/logs/${kDigest}${query}`,
+  );
+  expect(await urlOf('http://x/v1/meshes/a%20b/log', '5f-1')).toBe(
+    `http://x/v1/meshes/a%20b${query}`,
+  );
+  expect(await urlOf(`https://x/p/v1/logs/${kDigest}/log`)).toBe(
+    `https://x/p/v1/logs/${kDigest}${query}`,
+  );
+  for (const log of ['https://x/a/fin.qtet', 'blob:https://x/v1#fin.qtet', ''])
+    expect(await urlOf(log, kDigest)).toBeNull();
 });
 
 test('valuesAtAPlaceAreThoseOfWholeFields', () => {

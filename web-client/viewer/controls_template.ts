@@ -275,7 +275,11 @@ export const kCards = `
   </div>
   <dl></dl>
   <div class="plot"></div>
-  <p class="hint"></p>
+  <p class="hint readout"></p>
+  <div class="row source">
+    <p class="hint status"></p>
+    <button type="button" class="exact" title="The values of the whole mesh" hidden>Exact</button>
+  </div>
   <div class="buttons">
     <button type="button" class="copy-result">Copy</button>
     <button type="button" class="over-time" hidden>Over time</button>

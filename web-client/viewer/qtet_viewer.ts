@@ -7,6 +7,7 @@
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
 //   time         of a series: the instant nearest to it is shown; by default the first.
+//   time-group   a name: viewers of the document with the same one show the same time.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
 //   range        "auto" (default), "full", "symmetric", "LOW,HIGH" or, of a series, "instant".
 //   scale        "log".
@@ -40,6 +41,7 @@
 import {kNoStatistics, type Statistics} from '../core/decode/statistics';
 import type {Counts} from '../core/protocol/counts';
 import type {Manifest} from '../core/protocol/manifest';
+import {timesOf} from '../core/protocol/series';
 import {Client} from '../core/session/client';
 import type {StreamState} from '../core/session/worker_messages';
 import type {CameraState} from '../webgl/camera';
@@ -48,6 +50,7 @@ import {checkedCamera} from '../webgl/pose';
 import type {View} from '../webgl/view';
 import type {QtetViewerEventMap} from './page/events';
 import type {Kept, Page} from './page/page';
+import {joinTimeGroup, type Membership, type TimeMember} from './page/time_group';
 import {adopt, setMarkup} from './page/trusted';
 import {chosenMesh} from './panels/mesh_menu';
 import type {MovieOptions} from './picture/movies';
@@ -57,7 +60,7 @@ import {kTemplate} from './template';
 import {Viewing} from './viewing';
 
 export class QtetViewer extends HTMLElement {
-  static readonly observedAttributes = ['src', 'transport', ...kViewAttributes];
+  static readonly observedAttributes = ['src', 'transport', 'time-group', ...kViewAttributes];
 
   /** Exists while the element is in a document. */
   client: Client | null = null;
@@ -67,8 +70,16 @@ export class QtetViewer extends HTMLElement {
   /** Exists from the first step on; before it the shadow root is empty. */
   private viewing: Viewing | null = null;
   private bearer = '';
+  private timeGroup: Membership | null = null;
   /** The names in the page's address: the viewer says which mean nothing to it. */
   unknown: readonly string[] = [];
+
+  constructor() {
+    super();
+    this.addEventListener('time-change', ({detail}) => {
+      if (detail.playing) this.timeGroup?.lead();
+    });
+  }
 
   // ---- for the page
 
@@ -202,6 +213,7 @@ export class QtetViewer extends HTMLElement {
    */
   connectedCallback(): void {
     if (this.client) return; // it has moved within the document
+    this.joinTimeGroup();
     const client = new Client((message) => this.viewing?.receive(message));
     this.client = client;
     const steps = [
@@ -233,11 +245,26 @@ export class QtetViewer extends HTMLElement {
     client?.dispose();
     viewing?.dispose();
     this.client = this.viewing = null;
+    this.timeGroup?.leave();
+    this.timeGroup = null;
+  }
+
+  /** Leaves the one before. */
+  private joinTimeGroup(): void {
+    this.timeGroup?.leave();
+    const name = this.getAttribute('time-group');
+    this.timeGroup = name ? joinTimeGroup(this.ownerDocument, name, memberOf(this)) : null;
   }
 
   attributeChangedCallback(name: string, before: string | null, after: string | null): void {
     const {viewing} = this;
-    if (!viewing || before === after) return; // the first step reads them all
+    if (before === after) return;
+    if (name === 'time') this.timeGroup?.lead();
+    if (name === 'time-group') {
+      if (this.client) this.joinTimeGroup();
+      return;
+    }
+    if (!viewing) return; // the first step reads them all
     const isOfStream = name === 'src' || name === 'transport';
     if (isOfStream || (name === 'mesh' && !viewing.stream.isChoosing)) void viewing.stream.open();
     else viewing.apply();
@@ -246,6 +273,20 @@ export class QtetViewer extends HTMLElement {
     if (name === 'transport') viewing.apply();
     if (!isOfStream) this.page.dispatch('view-change', {name, value: after});
   }
+}
+
+function memberOf(element: QtetViewer): TimeMember {
+  return {
+    get time() {
+      const [first] = timesOf(element.manifest?.fields ?? []);
+      return element.getAttribute('time') ?? first?.text ?? null;
+    },
+    take: (time) => {
+      if (time === null) element.removeAttribute('time');
+      else element.setAttribute('time', time);
+    },
+    stop: () => void (element.playing = false),
+  };
 }
 
 function pageOf(element: QtetViewer, root: ShadowRoot): Page {

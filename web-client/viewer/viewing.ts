@@ -2,7 +2,6 @@
 
 import type {BaseFigures} from '../core/picture/base_figures';
 import type {Vector} from '../core/protocol/geometry';
-import type {Manifest} from '../core/protocol/manifest';
 import type {Client} from '../core/session/client';
 import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
@@ -26,6 +25,7 @@ import {StreamControl} from './stream_control';
  */
 const kLaterMs = 5000;
 
+type Head = Extract<FromWorker, {type: 'manifest'}>;
 type Progress = Extract<FromWorker, {type: 'progress'}>;
 
 export class Viewing implements LaterHost {
@@ -218,7 +218,7 @@ export class Viewing implements LaterHost {
   receive(message: Exclude<FromWorker, {type: 'answer'}>): void {
     switch (message.type) {
       case 'manifest':
-        return this.takeManifest(message.manifest, message.isMore === true);
+        return this.takeManifest(message);
       case 'plan':
         this.mesh.plan = message.plan;
         return this.shell?.progress.takePlan(message.plan);
@@ -237,9 +237,9 @@ export class Viewing implements LaterHost {
     }
   }
 
-  private takeManifest(manifest: Manifest, isMore: boolean): void {
+  private takeManifest({manifest, digest, isMore}: Head): void {
     if (this.mesh.manifest && !isMore) this.forget(true); // another log has taken its name
-    this.mesh.manifest = manifest;
+    Object.assign(this.mesh, {manifest, digest});
     if (isMore) {
       this.shell?.progress.takeFields(manifest);
       return this.apply();
@@ -254,9 +254,9 @@ export class Viewing implements LaterHost {
     this.apply();
   }
 
-  private takeProgress({statistics, here, aheadEnded}: Progress): void {
+  private takeProgress({statistics, received, here, aheadEnded}: Progress): void {
     const isMore = here.length !== this.mesh.here.length;
-    Object.assign(this.mesh, {statistics, here, aheadEnded});
+    Object.assign(this.mesh, {statistics, received, here, aheadEnded});
     if (isMore && this.mesh.plotted.length > kMaxAhead) this.apply(); // asks for the next ones
     this.later?.time.follow();
     this.later?.panels.inspect.takeProgress();

@@ -1,4 +1,4 @@
-// Places in lattice coordinates.
+// Places in lattice coordinates, and in those of the input.
 
 export type Vector = [number, number, number];
 
@@ -8,6 +8,10 @@ export const cross = (a: Vector, b: Vector): Vector => [
   a[2] * b[0] - a[0] * b[2],
   a[0] * b[1] - a[1] * b[0],
 ];
+
+/** The place in the input's own coordinates. */
+export const positionOf = ({origin, step}: {origin: Vector; step: number}, place: Vector): Vector =>
+  place.map((x, axis) => origin[axis]! + step * x) as Vector;
 
 /**
  * The points with normal . p = offset. The part above (normal . p > offset) is cut away.

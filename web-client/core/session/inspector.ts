@@ -20,7 +20,7 @@ import {FieldScale, kMagnitude, scalarRange} from '../picture/field_scale';
 import {histogramOf, type Axis, type Histogram} from '../picture/histogram';
 import {meshArrays} from '../picture/mesh_arrays';
 import type {Cells} from '../picture/section';
-import type {Vector} from '../protocol/geometry';
+import {positionOf, type Vector} from '../protocol/geometry';
 import type {FieldInfo} from '../protocol/fields';
 import type {Manifest} from '../protocol/manifest';
 
@@ -181,8 +181,7 @@ export class Inspector {
 
   /** In the mesh's own coordinates. */
   private positionOf(lattice: Vector): Vector {
-    const {origin, step} = this.assembler.manifest!.lattice;
-    return lattice.map((x, axis) => origin[axis]! + step * x) as Vector;
+    return positionOf(this.assembler.manifest!.lattice, lattice);
   }
 
   /** In the mesh's own unit. */

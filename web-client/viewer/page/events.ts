@@ -22,4 +22,6 @@ export interface QtetViewerEventMap {
 }
 
 /** For templates that are checked: `interface IntrinsicElements {'qtet-viewer': ...}`. */
-export type QtetViewerAttributes = Partial<Record<'src' | 'transport' | ViewAttribute, string>>;
+export type QtetViewerAttributes = Partial<
+  Record<'src' | 'transport' | 'time-group' | ViewAttribute, string>
+>;

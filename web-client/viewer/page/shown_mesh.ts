@@ -29,6 +29,8 @@ export const kMaxAhead = 512;
 export class ShownMesh {
   /** Null before the head of the log is here. */
   manifest: Manifest | null = null;
+  /** SHA-256 of the log, or another tag of it; empty before its head is here. */
+  digest = '';
   /** The base mesh's, in lattice coordinates; empty before it is decoded. */
   bounds: number[] = [];
   /** The mean length of lines through the mesh, as a share of its diagonal. */
@@ -37,6 +39,8 @@ export class ShownMesh {
   plan: LevelBytes[] = [];
   /** The newest figures. */
   statistics: Statistics = kNoStatistics;
+  /** Bytes of the log that have come. */
+  received = 0;
   /** The fields that are here for all of the mesh. */
   here: readonly number[] = [];
   /** Fields that the playing series shows soon. */

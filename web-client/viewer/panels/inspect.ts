@@ -34,7 +34,6 @@ export interface InspectHost extends OverTimeHost {
   readonly bounds: number[];
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
-  announce(text: string): void;
   /** The place that is pointed at, in lattice coordinates; null for none. */
   pointAt(point: Vector | null): void;
 }
@@ -52,15 +51,15 @@ export class Inspect {
     private readonly root: ShadowRoot,
     private readonly host: InspectHost,
   ) {
-    this.card = new ResultCard(
-      root,
-      (text) => host.announce(text),
-      () => this.clear(),
-      () => void this.saveTable(),
-      () => void this.overTime.begin(materialPlace(this.points[0]!)),
-    );
+    this.card = new ResultCard(root, (text) => host.announce(text), {
+      close: () => this.clear(),
+      saveTable: () => void this.saveTable(),
+      overTime: () => void this.overTime.begin(materialPlace(this.points[0]!)),
+      exact: () => this.overTime.askExact(),
+    });
     this.overTime = new OverTime(host, {
       open: (choose, isWanted) => this.openTimePlot(choose, isWanted),
+      offerExact: (isOffered) => this.card.offerExact(isOffered),
       close: () => this.card.closePlot(),
     });
     this.marks = root.querySelector('.marks')!;
@@ -233,10 +232,8 @@ export class Inspect {
   private async saveTable(): Promise<void> {
     const {client, manifest} = this.host;
     const {tableOf, timeTableOf} = await import('./probe_plot'); // the plot has loaded it
-    if (this.overTime.isOpen) {
-      const {instants, values} = this.overTime.table();
-      return save(timeTableOf(instants, values, manifest!.fields), 'over-time.csv');
-    }
+    if (this.overTime.isOpen)
+      return save(timeTableOf(this.overTime.table(), manifest!.fields), 'over-time.csv');
     const [from, to] = this.points.map(({lattice}) => lattice);
     const places = await client!.line(from!, to!);
     save(tableOf(places, manifest!.fields), 'line.csv');

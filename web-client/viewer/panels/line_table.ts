@@ -20,21 +20,21 @@ export function tableOf(places: readonly LineValues[], infos: readonly FieldInfo
   return csvOf([['distance', 'x', 'y', 'z', ...titles], ...rows]);
 }
 
-/**
- * Each row is an instant: its time, and each component. `values` holds none of an instant that is
- * not here.
- */
-export function timeTableOf(
-  instants: readonly number[],
-  values: readonly number[][],
-  infos: readonly FieldInfo[],
-): Blob {
-  const field = instants[0]!;
+/** By instant its time, and one value a component; none of an instant that is not here. */
+export interface TimeTable {
+  /** One of the instants. */
+  field: number;
+  times: readonly number[];
+  values: readonly number[][];
+}
+
+/** Each row is an instant: its time, and each component. */
+export function timeTableOf({field, times, values}: TimeTable, infos: readonly FieldInfo[]): Blob {
   const titles = infos[field]!.minimum.map((_, component) =>
     scalarTitle({field, component}, infos),
   );
-  const rows = instants.map((instant, i) => [
-    infos[instant]!.instant!.time,
+  const rows = times.map((time, i) => [
+    time,
     ...titles.map((_, component) => values[i]![component] ?? NaN),
   ]);
   return csvOf([['time', ...titles], ...rows]);

@@ -1,16 +1,17 @@
-// A series over time at a point: fetches its instants and plots those that are here.
+// A series over time at a point: the values of its instants, from the server or from their blocks.
 
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
-import type {Vector} from '../../core/protocol/geometry';
+import {positionOf, type Vector} from '../../core/protocol/geometry';
 import type {Manifest} from '../../core/protocol/manifest';
 import {instantsOf} from '../../core/protocol/series';
-import type {Client} from '../../core/session/client';
-import type {ShownMesh} from '../page/shown_mesh';
+import type {SeriesServer} from '../../core/transport/series_server';
+import type {TimeTable} from './line_table';
 import type {TimeCurve, TimePlot} from './probe_plot';
+import {BlockValues, ServerValues, type BlocksHost, type TimeValues} from './time_values';
 
-export interface OverTimeHost {
-  readonly client: Pick<Client, 'values'> | null;
-  readonly mesh: ShownMesh;
+export interface OverTimeHost extends BlocksHost {
+  /** The server that has the log; null if none is known. */
+  readonly seriesServer: SeriesServer | null;
   /** The scalar that colours, of a series at its shown instant; null for none. */
   readonly color: Scalar | null;
   /** Its title. */
@@ -19,12 +20,16 @@ export interface OverTimeHost {
   apply(): void;
   /** Shows the instants at this time. */
   showTime(text: string): void;
+  /** Tells screen readers. */
+  announce(text: string): void;
 }
 
 /** The place of the plot. */
 export interface TimeCard {
   /** Makes the plot, unless it is not wanted any more once uPlot is here. */
   open(choose: (i: number) => void, isWanted: () => boolean): Promise<TimePlot | null>;
+  /** Offers the exact values, or not. */
+  offerExact(isOffered: boolean): void;
   close(): void;
 }
 
@@ -35,14 +40,8 @@ export class OverTime {
   private series: string | null = null;
   /** That of the instants: the same log's may come again with more of them. */
   private manifest: Manifest | null = null;
-  /** Fields, by time. */
-  private instants: readonly number[] = [];
-  /** By instant: one value a component, none before it is here. A new mesh replaces them. */
-  private values: number[][] = [];
+  private values: TimeValues | null = null;
   private plot: TimePlot | null = null;
-  private isAsking = false;
-  /** More may be here than was asked for last. */
-  private isStale = false;
 
   constructor(
     private readonly host: OverTimeHost,
@@ -72,36 +71,40 @@ export class OverTime {
 
   end(): void {
     if (!this.isOpen) return;
-    this.place = this.plot = null;
-    this.host.mesh.plotted = [];
+    this.values?.end();
+    this.place = this.plot = this.values = null;
     this.card.close();
   }
 
   /** Brings the plot in line with what is shown. A field that is no series ends it. */
   update(): void {
     if (!this.isOpen) return;
-    const {mesh} = this.host;
     const series = this.shownSeries;
     if (series === null) return this.end();
-    const {manifest} = mesh;
-    if (series !== this.series || manifest !== this.manifest) {
-      this.series = series;
-      this.manifest = manifest;
-      this.instants = instantsOf(manifest!.fields, series);
-      this.values = this.instants.map(() => []);
-      mesh.plotted = this.instants;
-      void this.ask();
-    }
+    const {manifest} = this.host.mesh;
+    const isOther = series !== this.series;
+    // the server's answer has all instants from the beginning
+    const hasMore = manifest !== this.manifest && this.values instanceof BlockValues;
+    this.series = series;
+    this.manifest = manifest;
+    if (isOther) this.use(() => this.serverValues() ?? this.blockValues());
+    else if (hasMore) this.use(() => this.blockValues());
     this.draw();
   }
 
   /** Must be called when more is here. */
   takeProgress(): void {
-    if (this.isOpen) void this.ask();
+    this.values?.takeProgress?.();
   }
 
-  table(): {instants: readonly number[]; values: readonly number[][]} {
-    return {instants: this.instants, values: this.values};
+  askExact(): void {
+    this.values?.askExact?.();
+  }
+
+  /** The plotted values. REQUIRES: it is open. */
+  table(): TimeTable {
+    const {times, values} = this.values!;
+    return {field: this.host.color!.field, times, values};
   }
 
   private get shownSeries(): string | null {
@@ -109,59 +112,68 @@ export class OverTime {
     return (color && mesh.manifest?.fields[color.field]?.instant?.series) ?? null;
   }
 
-  /** One question at a time. */
-  private async ask(): Promise<void> {
-    this.isStale = true;
-    if (this.isAsking) return;
-    this.isAsking = true;
-    while (this.isStale && this.place) {
-      this.isStale = false;
-      const {place, instants} = this;
-      const found = await this.host.client!.values(place, instants);
-      if (place !== this.place || instants !== this.instants) this.isStale = true;
-      else this.take(found);
-    }
-    this.isAsking = false;
+  /** The one before ends first: both decide which instants are fetched. */
+  private use(make: () => TimeValues): void {
+    this.values?.end();
+    this.values = make();
   }
 
-  private take(found: number[][]): void {
-    this.values = found.map((values, i) => (values.length > 0 ? values : this.values[i]!));
-    this.draw();
+  private serverValues(): TimeValues | null {
+    const {color, mesh, seriesServer} = this.host;
+    if (!seriesServer) return null;
+    const {fields, lattice, levels} = mesh.manifest!;
+    const question = {
+      point: positionOf(lattice, this.place!),
+      field: fields[color!.field]!,
+      lastLevel: levels[levels.length - 1]!.level,
+    };
+    return new ServerValues(seriesServer, question, {
+      changed: () => this.draw(),
+      announce: (text) => this.host.announce(text),
+      failed: () => {
+        this.use(() => this.blockValues());
+        this.draw();
+        this.host.apply();
+      },
+    });
+  }
+
+  private blockValues(): TimeValues {
+    const {mesh} = this.host;
+    const instants = instantsOf(mesh.manifest!.fields, this.series!);
+    return new BlockValues(this.host, this.place!, instants, () => this.draw());
   }
 
   private draw(): void {
-    if (this.host.color) this.plot?.show(this.curve(this.host.color));
+    const {host, plot, values} = this;
+    if (!host.color || !plot || !values) return;
+    plot.show(this.curve(values, host.color));
+    this.card.offerExact(values.offersExact === true);
   }
 
-  private curve({field, component}: Scalar): TimeCurve {
+  private curve({times, values, status}: TimeValues, {field, component}: Scalar): TimeCurve {
     const {mesh, fieldTitle} = this.host;
-    const timeOf = (instant: number): number => mesh.manifest!.fields[instant]!.instant!.time;
-    const valueOf = (values: number[]): number => {
-      if (values.length === 0) return NaN;
-      if (values.length === 1) return values[0]!;
-      return component === kMagnitude ? Math.hypot(...values) : values[component]!;
+    const valueOf = (its: number[]): number => {
+      if (its.length === 0) return NaN;
+      if (its.length === 1) return its[0]!;
+      return component === kMagnitude ? Math.hypot(...its) : its[component]!;
     };
     return {
-      at: this.instants.map(timeOf),
-      values: this.values.map(valueOf),
+      at: times,
+      values: values.map(valueOf),
       title: fieldTitle,
-      time: timeOf(field),
-      status: this.status,
+      time: mesh.manifest!.fields[field]!.instant!.time,
+      status,
     };
-  }
-
-  private get status(): string {
-    const {fieldTitle, mesh} = this.host;
-    const all = this.instants.length;
-    const here = this.values.filter(({length}) => length > 0).length;
-    if (here === all) return fieldTitle;
-    const end = mesh.aheadEnded ? ' The others come when they are shown.' : '';
-    return `${here} of ${all} instants are here.${end}`;
   }
 
   private choose(i: number): void {
-    const instant = this.instants[i];
-    const fields = this.host.mesh.manifest?.fields;
-    if (instant !== undefined && fields) this.host.showTime(fields[instant]!.instant!.text);
+    const {mesh} = this.host;
+    const time = this.values?.times[i];
+    if (time === undefined || !mesh.manifest) return;
+    const its = mesh.manifest.fields.find(
+      ({instant}) => instant?.series === this.series && instant.time === time,
+    );
+    this.host.showTime(its?.instant?.text ?? String(time));
   }
 }

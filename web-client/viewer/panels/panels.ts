@@ -7,6 +7,7 @@ import {kMaxPlanes} from '../../core/picture/display';
 import type {Vector} from '../../core/protocol/geometry';
 import type {Client} from '../../core/session/client';
 import type {StreamState} from '../../core/session/worker_messages';
+import {seriesServer} from '../../core/transport/series_server';
 import type {View} from '../../webgl/view';
 import type {Actions} from '../page/actions';
 import type {CardLayout} from '../page/card_layout';
@@ -31,6 +32,10 @@ export interface PanelsHost {
   readonly client: Client;
   readonly view: View | null;
   readonly mesh: ShownMesh;
+  readonly stream: {
+    /** The address of the log that is open, as a file; empty: there is none. */
+    readonly logAddress: string;
+  };
   /** Brings everything in line with the attributes and the mesh. */
   apply(): void;
   /** The place that is pointed at, in lattice coordinates; null for none. */
@@ -96,6 +101,9 @@ export class Panels {
       },
       get mesh() {
         return host.mesh;
+      },
+      get seriesServer() {
+        return seriesServer(host.stream.logAddress, host.mesh.digest, page.token);
       },
       get color() {
         return colorOf(page, host.mesh);

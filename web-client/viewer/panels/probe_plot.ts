@@ -22,7 +22,7 @@ interface Curve {
 export interface TimeCurve extends Curve {
   /** A line across the plot marks it. */
   time: number;
-  /** The text while no value is pointed at. */
+  /** Where the values come from. */
   status: string;
 }
 
@@ -58,13 +58,14 @@ export function drawOverTime(
 ): TimePlot {
   let curve: TimeCurve = {at: [], values: [], title: '', time: NaN, status: ''};
   const say = (i: number | null | undefined): string =>
-    i == null ? curve.status : readout(curve, i);
+    i == null ? curve.title : readout(curve, i);
   const plot = draw(root, place, curve, {
     points: {show: true, size: 4},
     say,
     mark: () => curve.time,
   });
-  readoutOf(place).textContent = '\u00a0'; // the card is placed with room for the line
+  // the card is placed with room for the lines
+  for (const line of [readoutOf(place), statusOf(place)]) line.textContent = '\u00a0';
   plot.over.addEventListener('click', ({offsetX}) => choose(plot.posToIdx(offsetX)));
   return {
     show: (next) => {
@@ -72,6 +73,7 @@ export function drawOverTime(
       place.setAttribute('aria-label', `${curve.title} over time`);
       plot.setData(dataOf(curve));
       readoutOf(place).textContent = say(plot.cursor.idx);
+      statusOf(place).textContent = curve.status;
     },
     destroy: () => plot.destroy(),
   };
@@ -132,7 +134,8 @@ const dataOf = ({at, values}: Curve): uPlot.AlignedData => [
   values.map((value) => (Number.isNaN(value) ? null : value)),
 ];
 
-const readoutOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.hint')!;
+const readoutOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.readout')!;
+const statusOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.status')!;
 
 function readout({at, values, title}: Curve, i: number): string {
   const known = values.filter((value) => !Number.isNaN(value));

@@ -9,6 +9,17 @@ interface Plot {
   destroy(): void;
 }
 
+/** They are called when the user presses the buttons. */
+export interface CardActions {
+  close(): void;
+  /** Saves the plot's values. */
+  saveTable(): void;
+  /** Plots the values over time. */
+  overTime(): void;
+  /** Gets those exactly. */
+  exact(): void;
+}
+
 export class ResultCard {
   private readonly card: HTMLElement;
   private plot: Plot | null = null;
@@ -17,22 +28,17 @@ export class ResultCard {
   /** The user has chosen the card's place. */
   private dragged = false;
 
-  /**
-   * `closed` is called when the user closes it, `saveTable` when the plot's values are to be saved,
-   * `overTime` when they are wanted over time.
-   */
   constructor(
     private readonly root: ShadowRoot,
     private readonly announce: (text: string) => void,
-    closed: () => void,
-    saveTable: () => void,
-    overTime: () => void,
+    actions: CardActions,
   ) {
     this.card = find(root, '.result');
     onClick(root, '.copy-result', () => void this.copy());
-    onClick(root, '.save-table', saveTable);
-    onClick(root, '.over-time', overTime);
-    onClick(root, '.close-result', closed);
+    onClick(root, '.save-table', () => actions.saveTable());
+    onClick(root, '.over-time', () => actions.overTime());
+    onClick(this.card, '.exact', () => actions.exact());
+    onClick(root, '.close-result', () => actions.close());
     find(this.card, 'h2').addEventListener('pointerdown', (event) => this.drag(event));
   }
 
@@ -64,6 +70,11 @@ export class ResultCard {
   /** Offers the plot over time, or not. */
   offerOverTime(isOffered: boolean): void {
     find(this.card, '.over-time').hidden = !isOffered;
+  }
+
+  /** Offers the exact values, or not. */
+  offerExact(isOffered: boolean): void {
+    find(this.card, '.exact').hidden = !isOffered;
   }
 
   /** Moves it to the best place, or keeps the one that the user has chosen. */
@@ -107,8 +118,9 @@ export class ResultCard {
   private endPlot(): void {
     this.plot?.destroy();
     this.plot = null;
-    find(this.card, '.hint').textContent = '';
+    for (const name of ['.readout', '.status']) find(this.card, name).textContent = '';
     find(this.card, '.save-table').hidden = true;
+    this.offerExact(false);
   }
 
   /** Stays inside the viewer. */
