@@ -75,7 +75,9 @@ Status checkChoices(const qtet_simplify_options& options) {
                                {options.keepOrder, 1, "keepOrder"},
                                {options.lossless, 1, "lossless"},
                                {options.originalIds, 1, "originalIds"},
-                               {options.reserved, 0, "reserved"}})
+                               {options.timeStatistics, 1, "timeStatistics"},
+                               {options.reserved, 0, "reserved"},
+                               {options.reserved2, 0, "reserved2"}})
     if (choice.number > choice.last)
       return fail(ErrorCode::kBadValue, std::string(choice.member) + " is " +
                                             std::to_string(choice.number) + "; the last is " +
@@ -157,6 +159,7 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
   out.valueCodec =
       from.valueCodec == QTET_CODEC_ADAPTIVE ? qtet::CodecId::kAdaptive : qtet::CodecId::kDraco;
   out.keep = {from.keepOrder != 0, from.lossless != 0, from.originalIds != 0};
+  out.timeStatistics = from.timeStatistics != 0;
   return out;
 }
 

@@ -126,6 +126,10 @@ typedef struct {
    * diagonal and whose volume is within twice this fraction. NaN: 0.01, and 30,000 tetrahedra or 64
    * kB at most, where no other member chooses the base mesh */
   double baseError;
+  /* Since 0.4. 1: each series NAME@TIME gives the fields NAME_average, NAME_minimum, NAME_maximum
+   * and NAME_stddev, its statistics over all instants; 0 */
+  uint32_t timeStatistics;
+  uint32_t reserved2; /* 0 */
 } qtet_simplify_options;
 
 QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);

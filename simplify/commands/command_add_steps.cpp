@@ -4,7 +4,9 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include "proto/field_key.h"
 #include "proto/limits.h"
@@ -20,6 +22,7 @@
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/series/series.h"
+#include "simplify/series/time_statistics.h"
 
 namespace qtet {
 namespace {
@@ -212,6 +215,24 @@ void printSeries(const std::vector<NewField>& added, std::ostream& out) {
         << sum.second << " bytes\n";
 }
 
+/// Names the log's statistics of series that have more instants now.
+void warnOfStatistics(const Manifest& manifest, const std::vector<NewField>& added,
+                      Console& console) {
+  std::set<std::pair<std::string, std::string>> statistics;  // association, name
+  for (const NewField& field : added)
+    if (const auto series = nameWithoutStep(field.info.name))
+      for (const std::string& name : statisticsNames(*series))
+        statistics.emplace(field.info.association, name);
+  std::string names;
+  for (const ManifestField& field : manifest.fields)
+    if (statistics.contains({field.association, field.name}))
+      names += (names.empty() ? "" : ", ") + field.name;
+  if (names.empty()) return;
+  console.warn(names +
+               " do not count the added instants; make the log again with 'qtet simplify "
+               "--time-statistics', or remove them with 'qtet remove-field'");
+}
+
 Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console) {
   Request request;
   request.files = parsed.get<std::vector<std::string>>("FILE...");
@@ -231,10 +252,12 @@ Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console)
   if (!added) return std::unexpected(added.error());
   std::vector<std::uint32_t> kept(log->manifest.fields.size());
   std::iota(kept.begin(), kept.end(), 0u);
-  return writeAdded(
+  Status written = writeAdded(
       parsed, log->file, kept, *added, {{"files", request.files}},
       [&](const std::vector<NewField>& fields) { printSeries(fields, console.out); }, progress,
       console);
+  if (written) warnOfStatistics(log->manifest, added->fields, console);
+  return written;
 }
 
 }  // namespace

@@ -61,6 +61,7 @@ Request requestOf(const ParsedWords& parsed) {
   options.measure = measureOptionsOf(parsed);
   options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   request.read.originalIds = parsed.has("original-ids");
+  options.timeStatistics = parsed.has("time-statistics");
   options.keep = {parsed.has("keep-order"), parsed.has("lossless"), request.read.originalIds};
   return request;
 }
@@ -346,6 +347,10 @@ int runSimplify(const Words& words, Console& console) {
       "bits of the lattice an axis, 4 to 28; raised where a cell would be flattened or inverted")(
       "field-bits", po::value<int>()->default_value(12),
       "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
+      "time-statistics",
+      "of each series: its average, least, largest and standard deviation over all instants, as "
+      "the "
+      "fields NAME_average, NAME_minimum, NAME_maximum and NAME_stddev")(
       "geometry-codec", po::value<std::string>()->default_value("draco"),
       "how positions and fields are coded: draco, or adaptive, which is 1 to 6 % smaller and which "
       "only qtet can read")("keep-order",
@@ -373,7 +378,7 @@ int runSimplify(const Words& words, Console& console) {
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "
        "--time all -o run.qtet\n",
        {{"input", {"format", "time", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
-        {"fields", {"field-bits", "field-weight"}},
+        {"fields", {"field-bits", "field-weight", "time-statistics"}},
         {"quality and base mesh",
          {"target-ratio", "base-cells", "envelope-tolerance", "placement", "shape-weight",
           "preserve-regions", "position-bits"}},

@@ -26,6 +26,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`targetRatio`", "--target-ratio"},
     {"`threshold`", "--threshold"},
     {"`time`", "--time"},
+    {"`timeStatistics`", "--time-statistics"},
     {"`weld`", "--weld"},
 };
 

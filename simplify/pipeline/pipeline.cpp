@@ -17,6 +17,7 @@
 #include "simplify/pipeline/moved_flips.h"
 #include "simplify/series/series.h"
 #include "simplify/series/time_differences.h"
+#include "simplify/series/time_statistics.h"
 
 namespace qtet {
 namespace {
@@ -80,6 +81,9 @@ struct Run {
 
 Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   TetMesh mesh = std::move(given);
+  if (run.options.timeStatistics)
+    if (Status added = addTimeStatistics(mesh.fields); !added)
+      return std::unexpected(added.error());
   orderSeries(mesh.fields);
   const bool keeps = run.options.keep.any();
   run.report.tetrahedraIn = mesh.tetrahedra.size();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/log/add_fields.h"
 #include "simplify/series/series.h"
+#include "simplify/series/time_statistics.h"
 
 namespace qtet {
 namespace {
@@ -31,6 +33,33 @@ AddFieldsOptions addingOptions(const PipelineOptions& options) {
   out.threads = options.fusion.threads;
   out.scalesOfOthers = true;
   return out;
+}
+
+/// The fields of all steps: a series that has every instant of the sample has every step.
+std::size_t fieldsOfAll(std::span<const MeshField> sample, std::size_t steps) {
+  std::size_t out = sample.size();
+  const std::size_t sampled = sampledSteps(steps).size();
+  for (const Series& series : seriesOf(sample))
+    if (series.fields.size() == sampled) out += steps - sampled;
+  return out;
+}
+
+/// Puts the statistics of all steps behind the fields of the sample.
+Status addStatistics(std::size_t steps, const InstantsReader& read, const std::stop_token& stop,
+                     std::vector<MeshField>& sample) {
+  if (Status checked = checkTimeStatistics(sample, fieldsOfAll(sample, steps)); !checked)
+    return checked;
+  TimeStatistics statistics;
+  for (std::size_t begin = 0; begin < steps; begin += kWindow) {
+    if (stop.stop_requested()) return cancelled();
+    std::vector<std::size_t> window(std::min(kWindow, steps - begin));
+    std::iota(window.begin(), window.end(), begin);
+    const Result<TetMesh> mesh = read(window);
+    if (!mesh) return std::unexpected(mesh.error());
+    if (Status added = statistics.add(mesh->fields); !added) return added;
+  }
+  std::ranges::move(statistics.take(), std::back_inserter(sample));
+  return {};
 }
 
 Status addAll(std::size_t steps, const InstantsReader& read, const PipelineOptions& options,
@@ -92,7 +121,11 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
     return fail(ErrorCode::kBadValue,
                 "`lossless` keeps the values of all instants in memory, which are too many; leave "
                 "it out, or choose fewer with `time`");
-  Result<PipelineOutput> out = simplifyToLog(std::move(sample), options);
+  PipelineOptions ofSample = options;
+  if (std::exchange(ofSample.timeStatistics, false))
+    if (Status added = addStatistics(steps, read, options.stop, sample.fields); !added)
+      return std::unexpected(added.error());
+  Result<PipelineOutput> out = simplifyToLog(std::move(sample), ofSample);
   if (!out) return out;
   const auto start = std::chrono::steady_clock::now();
   Result<Bytes> bytes = out->log.bytes();

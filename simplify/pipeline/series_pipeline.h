@@ -28,7 +28,8 @@ using InstantsReader = std::function<Result<TetMesh>(std::span<const std::size_t
 /// As simplifyToLog, for a series of so many steps. `sample` holds the instants of sampledSteps().
 /// Fields that are no instants come from it. Float instants have two scales' room: values may lie
 /// one range of the sample below it, and far above it. Memory holds the values of one window.
-/// Errors: simplifyToLog's, `read`'s, FieldAdder's; bad-value (exact values are to be kept).
+/// Statistics read all steps once more, before the first fusion. Errors: simplifyToLog's, `read`'s,
+/// checkTimeStatistics's, FieldAdder's; bad-value (exact values are to be kept).
 [[nodiscard]] Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
                                                     const InstantsReader& read,
                                                     const PipelineOptions& options);

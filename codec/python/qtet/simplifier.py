@@ -115,6 +115,8 @@ class _Options(ctypes.Structure):
         ("originalIds", _u32),
         ("baseCells", _u32),
         ("baseError", _f64),
+        ("timeStatistics", _u32),
+        ("reserved2", _u32),
     ]
 
 
@@ -307,6 +309,7 @@ def simplify(
     cell_data: Mapping[str, ArrayLike] | None = None,
     *,
     times: Sequence[float] | None = None,
+    time_statistics: bool = False,
     path: str | os.PathLike[str] | None = None,
     progress: Callable[[str, float], bool | None] | None = None,
     source: str = "",
@@ -339,6 +342,8 @@ def simplify(
     point_data  {name: array}: (n,) or (n, components), float or integer; NaN is a missing value
     cell_data   {name: array}: the same with m
     times       of the grids, ascending: a field that changes becomes a series, NAME@TIME
+    time_statistics       of each series: the fields NAME_average, NAME_minimum, NAME_maximum and
+                NAME_stddev over all instants
     progress    called about ten times a second with the stage's name and the fraction of it that
                 is done, 0 to 1; the answer False ends the work with Cancelled. The fraction of a
                 grid with cells other than tetrahedra stays 0
@@ -408,6 +413,7 @@ def simplify(
     options.valueCodec = _choice(_CODECS, value_codec, "value_codec")
     options.keepOrder, options.lossless = bool(keep_order), bool(lossless)
     options.originalIds = bool(original_ids)
+    options.timeStatistics = bool(time_statistics)
     options.baseCells = int(base_cells or 0)
     options.threads = threads
     options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)

@@ -225,6 +225,11 @@ def grids_with_times_are_a_series():
             assert abs(at - log.field("Fixed") * (nearest + 2)).max() < 0.003
         refused(qtet.QtetError, "Heat (give a time)", lambda: log.field("Heat"))
         refused(qtet.QtetError, "'Fixed', 'Heat', 'Height'", lambda: log.field("Cold", 0))
+    qtet.simplify(grids[:2], times=times[:2], time_statistics=True, path=path)
+    with qtet.open(path) as log:
+        log.refine(log.last_level)
+        assert abs(log.field("Heat_average") - log.field("Fixed") * 1.75).max() < 0.003
+        assert abs(log.field("Heat_stddev") - abs(log.field("Fixed")) * 0.75).max() < 0.003
     refused(ValueError, "3 grids and 2 times", lambda: qtet.simplify(grids, times=[1, 2]))
     refused(ValueError, "ascending", lambda: qtet.simplify(grids, times=[1, 1, 2]))
     refused(ValueError, "NAME@TIME", lambda: qtet.simplify(points, cells, times=[1]))

@@ -295,6 +295,21 @@ TEST(QtetSimplify, originalIdsAreKeptForTheLastLevelAlone) {
   EXPECT_EQ(closingKinds(), (std::vector<std::uint32_t>{1, 2, 5}));
 }
 
+TEST(QtetSimplify, aSeriesGivesItsStatisticsOnDemand) {
+  TetMesh mesh = testing::boxWithFields();
+  mesh.fields.push_back(mesh.fields[0]);
+  mesh.fields[0].name = "T@0", mesh.fields.back().name = "T@1";
+  const Made log = made();
+  qtet_simplify_options options = usual();
+  options.timeStatistics = 1;
+  ASSERT_EQ(simplified(log, Arrays(mesh), options), QTET_OK) << errorOf(log);
+  EXPECT_EQ(LogIndex::parse(bytesOf(log)).value().fields.size(), mesh.fields.size() + 4);
+  options.timeStatistics = 2;
+  EXPECT_EQ(simplified(log, Arrays(mesh), options), QTET_BAD_VALUE);
+  options.timeStatistics = 0, options.reserved2 = 1;
+  EXPECT_EQ(simplified(log, Arrays(mesh), options), QTET_BAD_VALUE);
+}
+
 TEST(QtetSimplify, theBaseMeshHasAsManyCellsAsAreAskedFor) {
   const Arrays arrays(testing::boxWithFields());
   const Made log = made();

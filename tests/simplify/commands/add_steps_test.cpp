@@ -126,6 +126,27 @@ TEST_F(AddStepsTool, floatsOfTheOtherWidthJoinTheirSeries) {
   expectSteps("log.qtet", 4);
 }
 
+TEST_F(AddStepsTool, statisticsThatDoNotCountTheNewInstantsAreNamed) {
+  const Ran made =
+      run("simplify run.pvd --time 0:1 -o counted.qtet --base-cells 600 --time-statistics --json");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_TRUE(made.json()["bytesOf"]["fields"].contains("T_stddev"));
+  const Ran ran = run("add-steps counted.qtet run.pvd --time 1.5: -o more.qtet");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(
+      ran.err.find("qtet: warning: T_average, T_minimum, T_maximum, T_stddev do not count the "
+                   "added instants; "),
+      std::string::npos)
+      << ran.err;
+  EXPECT_EQ(run("remove-field more.qtet -o less.qtet --fields T_average,T_minimum,T_maximum,"
+                "T_stddev")
+                .code,
+            0);
+  EXPECT_EQ(run("add-steps log.qtet run.pvd --time 1.5: -q").err, "") << "a log without them";
+  expectFailure("simplify run.pvd --time first -o no.qtet --time-statistics", 1,
+                "--time-statistics needs a series");
+}
+
 // The instants that go must not be what the new ones rest on.
 TEST_F(AddStepsTool, addFieldReplacesInstantsThatLaterOnesCouldRestOn) {
   const Ran ran = run("add-field log.qtet --from run.pvd --time 0:3 --replace -o new.qtet");

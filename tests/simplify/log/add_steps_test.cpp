@@ -151,7 +151,9 @@ TEST_F(AddSteps, aWindowIsCodedAsDifferences) {
       ASSERT_TRUE(std::ranges::equal(file.block(chunk, part), after.block(chunk, part)));
   const Manifest manifest = manifestOf(after.index()).value();
   for (const ManifestLevel& level : manifest.levels)
-    if (level.error) EXPECT_EQ(level.error->fields.size(), manifest.fields.size());
+    if (level.error) {
+      EXPECT_EQ(level.error->fields.size(), manifest.fields.size());
+    }
 }
 
 // As a simulation does that goes on: one call a step, and one log after the other.

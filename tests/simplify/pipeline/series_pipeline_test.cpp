@@ -10,6 +10,8 @@
 
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
+#include "proto/field_key.h"
+#include "proto/limits.h"
 #include "simplify/read/options/time_steps.h"
 #include "tests/support/meshes.h"
 
@@ -119,6 +121,73 @@ TEST_F(SeriesPipeline, givesTheSameBytesTwiceAndWithTwoThreads) {
   two.fusion.threads = 2;
   const Bytes once = make().value().log.bytes().value();
   EXPECT_EQ(once, make(two).value().log.bytes().value());
+}
+
+/// A static field at the last level: what it is, and its integers by place, or sorted of cells.
+struct Finest {
+  FieldInfo info;
+  std::map<LatticePoint, std::int32_t> ofPoints;
+  std::vector<std::int32_t> ofCells;
+};
+std::map<std::string, Finest> staticFieldsOf(const PipelineOutput& made) {
+  const LogFile log = LogFile::fromBytes(made.log.bytes().value()).value();
+  const LatticeMesh mesh = meshAtLevel(log, log.chunks().back().lastLevel, std::nullopt).value();
+  std::map<std::string, Finest> out;
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    if (instantName(mesh.fields[f].name)) continue;
+    Finest& field = out[mesh.fields[f].name];
+    field.info = mesh.fields[f];
+    if (isCellField(field.info)) {
+      field.ofCells = mesh.values[f];
+      std::ranges::sort(field.ofCells);
+    } else {
+      for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        field.ofPoints[mesh.points[i]] = mesh.values[f][i];
+    }
+  }
+  return out;
+}
+
+TEST_F(SeriesPipeline, statisticsAreOfAllInstantsAndTheSameAsAtOnce) {
+  jump_ = 5;
+  PipelineOptions options;
+  options.timeStatistics = true;
+  options.fieldWeights = {{"T_stddev", 2}};  // they are there when fusions are chosen
+  Steps all(kSteps);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const auto inWindows = staticFieldsOf(make(options).value()),
+             atOnce = staticFieldsOf(simplifyToLog(read(all).value(), options).value());
+  ASSERT_EQ(inWindows.size(), 8u);
+  ASSERT_EQ(atOnce.size(), 8u);
+  for (const auto& [name, field] : inWindows) {
+    const Finest& other = atOnce.at(name);
+    EXPECT_EQ(field.info.type, other.info.type) << name;
+    EXPECT_EQ(field.info.step, other.info.step) << name;
+    EXPECT_EQ(field.info.minimum, other.info.minimum) << name;
+    EXPECT_EQ(field.ofPoints, other.ofPoints) << name;
+    EXPECT_EQ(field.ofCells, other.ofCells) << name;
+  }
+  EXPECT_EQ(inWindows.at("C_maximum").info.type, "int32");
+  EXPECT_EQ(inWindows.at("C_maximum").info.range, (std::array<double, 2>{kSteps - 1, kSteps + 5}));
+  EXPECT_NEAR(inWindows.at("C_average").info.minimum[0], (kSteps - 1) / 2.0, 1e-12);
+}
+
+TEST_F(SeriesPipeline, statisticsThatDoNotFitAreRefusedBeforeAStepIsRead) {
+  PipelineOptions options;
+  options.timeStatistics = true;
+  const auto never = [](std::span<const std::size_t>) -> Result<TetMesh> {
+    ADD_FAILURE() << "read";
+    return fail(ErrorCode::kIo, "read");
+  };
+  const std::size_t most = (kMaxFields - 8) / 2;  // of two series
+  const auto made = simplifySeries(read(sampledSteps(most + 1)).value(), most + 1, never, options);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kLimitExceeded);
+  TetMesh taken = read(sampledSteps(kSteps)).value();
+  taken.fields.push_back(taken.fields[0]);
+  taken.fields.back().name = "T_average";
+  EXPECT_EQ(simplifySeries(std::move(taken), kSteps, never, options).error().code,
+            ErrorCode::kBadValue);
 }
 
 TEST_F(SeriesPipeline, refusesExactValuesAndPassesAReadersErrorOn) {
