@@ -19,8 +19,7 @@ struct LogIndex;
 /// That is no proof, so the receiver must compare the digest of the whole. nullopt: it would take
 /// more than `most` bytes. REQUIRES: later instants of both that are read.
 [[nodiscard]] std::optional<Bytes> makeDelta(const LogIndex& old, const LogIndex& index,
-                                             ByteView log, std::uint64_t first,
-                                             std::uint64_t most);
+                                             ByteView log, std::uint64_t first, std::uint64_t most);
 
 /// Reads a delta that arrives piece by piece, and gives the new log's bytes piece by piece.
 class DeltaReader {

@@ -17,11 +17,11 @@ double volume(const Vector& a, const Vector& b, const Vector& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-bool isNearBox(const Corners& corners) {
+bool isNearBox(const Corners& corners, double near) {
   for (std::size_t a = 0; a < 3; ++a) {
     const auto [low, high] =
         std::minmax({corners[0][a], corners[1][a], corners[2][a], corners[3][a]});
-    if (low > kNearSteps || high < -kNearSteps) return false;
+    if (low > near || high < -near) return false;
   }
   return true;
 }
@@ -95,14 +95,14 @@ bool hasVolume(const Corners& p) {
 
 std::optional<PointInCell> cellAtPoint(std::span<const LatticePoint> points,
                                        std::span<const Tetrahedron> cells,
-                                       const std::array<double, 3>& point) {
+                                       const std::array<double, 3>& point, double near) {
   std::optional<PointInCell> nearest;
-  double least = kNearSteps;
+  double least = near;
   for (CellId cell = 0; cell < cells.size(); ++cell) {
     Corners corners;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t a = 0; a < 3; ++a) corners[i][a] = points[cells[cell][i]][a] - point[a];
-    if (!isNearBox(corners)) continue;
+    if (!isNearBox(corners, least)) continue;
     if (const auto inside = weightsInside(corners)) return PointInCell{cell, *inside};
     if (!hasVolume(corners)) continue;
     const Weights weights = nearestOutside(corners);
@@ -110,6 +110,21 @@ std::optional<PointInCell> cellAtPoint(std::span<const LatticePoint> points,
     if (distance <= least) nearest = PointInCell{cell, weights}, least = distance;
   }
   return nearest;
+}
+
+double nearStepsOf(std::span<const LatticePoint> points, const std::optional<LevelError>& error) {
+  if (!error || points.empty()) return kNearSteps;
+  LatticePoint low = points.front(), high = low;
+  for (const LatticePoint& p : points)
+    for (std::size_t a = 0; a < 3; ++a)
+      low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  Vector box{};
+  for (std::size_t a = 0; a < 3; ++a) box[a] = static_cast<double>(high[a]) - low[a];
+  // The error is a share of the original's diagonal D. Each side of its box is longer than the
+  // level's by at most 2 e D, so D is at most the level's diagonal over 1 - 2 sqrt(3) e.
+  constexpr double kMostError = 0.2;
+  const double e = std::min(error->toLevel.max, kMostError);
+  return kNearSteps + e * std::sqrt(dot(box, box)) / (1 - 2 * std::sqrt(3.0) * e);
 }
 
 }  // namespace qtet

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "codec/mesh/mesh.h"
+#include "proto/level_error.h"
 
 namespace qtet {
 
@@ -20,10 +21,16 @@ struct PointInCell {
 };
 
 /// The first cell that holds `point` (lattice coordinates, not rounded). If none does, the nearest
-/// cell within kNearSteps, with the weights of its point nearest to `point`. Else nullopt. Cells
+/// cell within `near` steps, with the weights of its point nearest to `point`. Else nullopt. Cells
 /// without volume hold nothing. Looks at every cell. REQUIRES: indices within range.
 [[nodiscard]] std::optional<PointInCell> cellAtPoint(std::span<const LatticePoint> points,
                                                      std::span<const Tetrahedron> cells,
-                                                     const std::array<double, 3>& point);
+                                                     const std::array<double, 3>& point,
+                                                     double near = kNearSteps);
+
+/// How far from a level's points a point of the original may lie, in lattice steps: kNearSteps, and
+/// as far as the level's boundary is known to be from the original's.
+[[nodiscard]] double nearStepsOf(std::span<const LatticePoint> points,
+                                 const std::optional<LevelError>& error);
 
 }  // namespace qtet

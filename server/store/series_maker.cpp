@@ -170,7 +170,8 @@ Result<Bytes> makeSeries(const LevelRequest& request, const std::stop_token& sto
   for (std::size_t a = 0; a < 3; ++a)
     point[a] = ((*request.point)[a] - lattice.origin[a]) / lattice.step;
   const std::optional<PointInCell> place =
-      cellAtPoint(refiner.points(), refiner.tetrahedra(), point);
+      cellAtPoint(refiner.points(), refiner.tetrahedra(), point,
+                  nearStepsOf(refiner.points(), manifest.levels[request.level].error));
   if (!place) return isOutside(request, refiner.points(), lattice);
 
   std::string name;

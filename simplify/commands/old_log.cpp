@@ -57,8 +57,7 @@ Result<OldLog> fetchOldLog(const HttpUrl& server, const HttpRequest& request) {
   if (!index) return std::unexpected(index.error());
   if (const std::uint64_t later = std::min<std::uint64_t>(index->unreadBytes(), fileBytes)) {
     Bytes part;
-    if (Status s = fetch(part, fileBytes - later, fileBytes); !s)
-      return std::unexpected(s.error());
+    if (Status s = fetch(part, fileBytes - later, fileBytes); !s) return std::unexpected(s.error());
     if (Status s = index->readLater(part); !s) return std::unexpected(s.error());
   }
   out.index = std::move(*index);

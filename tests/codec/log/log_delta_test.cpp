@@ -98,8 +98,7 @@ TEST_F(LogDelta, isMadeUpToTheLimit) {
 TEST_F(LogDelta, thatEndsWithinAnInstructionIsNotWhole) {
   const Bytes made = delta().value();
   for (const std::size_t bytes : {std::size_t{1}, DeltaReader::kHeadBytes, made.size() - 1})
-    EXPECT_FALSE(
-        apply(ByteView(made).first(bytes), old_.bytes(), new_.bytes().size(), 100).isWhole)
+    EXPECT_FALSE(apply(ByteView(made).first(bytes), old_.bytes(), new_.bytes().size(), 100).isWhole)
         << bytes;
 }
 

@@ -78,6 +78,23 @@ TEST(CellAtPoint, theCellThatHoldsItGoesBeforeANearOne) {
   EXPECT_EQ(found->cell, 1u);
 }
 
+TEST(CellAtPoint, aLevelWithAKnownErrorHoldsThePointsThatItLost) {
+  EXPECT_EQ(nearStepsOf(kPoints, std::nullopt), kNearSteps);
+  LevelError error;
+  EXPECT_EQ(nearStepsOf(kPoints, error), kNearSteps);
+  error.toLevel.max = 0.1;
+  EXPECT_EQ(nearStepsOf({}, error), kNearSteps);
+  // A sphere of radius 100 whose level is the octahedron inside: its faces are 42.3 steps away.
+  const std::vector<LatticePoint> level{{0, 100, 100},   {200, 100, 100}, {100, 0, 100},
+                                        {100, 200, 100}, {100, 100, 0},   {100, 100, 200}};
+  error.toLevel.max = 42.3 / (200 * std::sqrt(3.0));
+  EXPECT_GE(nearStepsOf(level, error), 42.3);
+  EXPECT_LE(nearStepsOf(level, error), 2 * 42.3);
+  const double near = nearStepsOf(kPoints, error);
+  EXPECT_TRUE(cellAtPoint(kPoints, kCell, {10 + near, 0, 0}, near));
+  EXPECT_FALSE(cellAtPoint(kPoints, kCell, {10.01 + near, 0, 0}, near));
+}
+
 TEST(CellAtPoint, nothingIsNearAnEmptyMeshOrACellWithoutVolume) {
   EXPECT_FALSE(cellAtPoint({}, {}, {0, 0, 0}));
   const std::vector<LatticePoint> flat = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {5, 5, 0}};
