@@ -28,8 +28,8 @@ struct PointInCell {
                                                      const std::array<double, 3>& point,
                                                      double near = kNearSteps);
 
-/// How far from a level's points a point of the original may lie, in lattice steps: kNearSteps, and
-/// as far as the level's boundary is known to be from the original's.
+/// How far outside a level a point of the original may lie, in lattice steps: kNearSteps, and the
+/// known distance from the original's boundary to the level's.
 [[nodiscard]] double nearStepsOf(std::span<const LatticePoint> points,
                                  const std::optional<LevelError>& error);
 
