@@ -28,8 +28,8 @@ struct PointInCell {
                                                      const std::array<double, 3>& point,
                                                      double near = kNearSteps);
 
-/// How far outside a level a point of the original may lie, in lattice steps: kNearSteps, and the
-/// known distance from the original's boundary to the level's.
+/// Lattice steps. A point of the original may lie so far outside a level: kNearSteps, and the known
+/// distance from the original's boundary to the level's.
 [[nodiscard]] double nearStepsOf(std::span<const LatticePoint> points,
                                  const std::optional<LevelError>& error);
 
