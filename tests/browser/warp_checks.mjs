@@ -88,13 +88,23 @@ async function deformsABeam(context) {
   );
   assert.ok(Math.hypot(...way) > 0.1, `the middle moves by ${way}`);
 
+  const lineCount = () => viewer.inView(({parts}) => parts.restEdges.lines.length / 6);
+  assert.equal(await lineCount(), 0);
+  await page.getByRole('switch', {name: 'Edges at rest'}).click();
+  await viewer.settle();
+  assert.equal(parameter(viewer, 'rest-edges'), 'on');
+  assert.ok((await lineCount()) > 0, 'no edges at rest');
+  const lined = await pictureOf(viewer, 'warp-rest-edges');
+  assert.ok(differingShare(moved, lined) > 0.002, 'the edges at rest are not seen');
+
   const again = await opened(context, page.url());
-  assert.ok(differingShare(moved, await pictureOf(again, 'warp-link')) < 0.002, 'a link differs');
+  assert.ok(differingShare(lined, await pictureOf(again, 'warp-link')) < 0.002, 'a link differs');
   await page.locator('qtet-viewer .scene').focus();
-  for (let i = 0; i < 2; ++i) await page.keyboard.press('Control+z');
+  for (let i = 0; i < 3; ++i) await page.keyboard.press('Control+z');
   await viewer.settle();
   await refit(viewer);
-  assert.deepEqual([parameter(viewer, 'warp'), parameter(viewer, 'warp-scale')], [null, null]);
+  for (const name of ['warp', 'warp-scale', 'rest-edges'])
+    assert.equal(parameter(viewer, name), null);
   assert.ok(differingShare(plain, await pictureOf(viewer, 'warp-undone')) < 0.002, 'undo differs');
   assert.deepEqual([...viewer.problems, ...again.problems], []);
 }

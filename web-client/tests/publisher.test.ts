@@ -372,3 +372,59 @@ test('colourAndWarpOfTwoSeriesChangeTogether', () => {
   codec.applyField(3, 0);
   expect(seen()).toEqual([1, 3, 6]);
 });
+
+describe('theEdgesAtRest', () => {
+  const kUp: FieldInfo = {
+    name: 'u',
+    components: 3,
+    association: 'point',
+    step: 1,
+    bits: 3,
+    minimum: [0, 0, 0],
+    range: [0, 8],
+  };
+  /** A line for each of the triangle's sides that comes from its lower end. */
+  const kLines = 2;
+  let codec: FakeCodec;
+
+  beforeEach(() => {
+    codec = new FakeCodec({fields: ['u'], chunks: 1});
+    codec.open();
+    codec.chunksApplied = 1;
+    vi.spyOn(codec, 'points').mockReturnValue(Int32Array.of(0, 0, 0, 10, 0, 0, 0, 10, 0));
+    vi.spyOn(codec, 'boundary').mockReturnValue(Uint32Array.of(0, 1, 2));
+    const manifest = {fields: [kUp], lattice: {step: 1}};
+    const assembler = {codec, manifest, statistics: () => kNoStatistics};
+    publisher = new Publisher(
+      assembler as unknown as Assembler,
+      (snapshot) => void pictures.push(snapshot),
+    );
+    publisher.useCreases(() => Uint8Array.of(7, 7, 7));
+  });
+
+  /** The count of the lines; undefined: none are drawn. */
+  function linesOf(change: Partial<Display>): number | undefined {
+    publisher.show({...kPlainDisplay, warp: {field: 0, scale: 5}, restEdges: true, ...change});
+    untilNext(1500);
+    publisher.shown();
+    const lines = pictures.at(-1)!.warp?.restEdges;
+    return lines && lines.length / 6;
+  }
+
+  test('areDrawnOnlyWhileAWarpMovesTheMesh', () => {
+    expect(linesOf({})).toBeUndefined(); // the vectors are not here yet
+    codec.applyField(0, 0);
+    publisher.changed(true);
+    expect(linesOf({})).toBe(kLines);
+    expect(linesOf({restEdges: false})).toBeUndefined();
+    expect(linesOf({warp: null})).toBeUndefined();
+  });
+
+  test('endAtPlanesAndStayWholeRoundSlices', () => {
+    codec.applyField(0, 0);
+    expect(linesOf({})).toBe(kLines);
+    const planes = [{normal: [1, 0, 0] as [number, number, number], offset: -1e6}];
+    expect([linesOf({planes}), linesOf({planes, mode: 'cells'})]).toEqual([0, 0]);
+    expect(linesOf({planes, mode: 'slice'})).toBe(kLines);
+  });
+});

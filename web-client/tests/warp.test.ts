@@ -201,6 +201,18 @@ describe('theCamera', () => {
     expect(its.orbit.lens.far).toBeGreaterThan(distance(its) + radius);
   });
 
+  test('makesRoomForTheEdgesAtRestWhileTheyAreSeen', () => {
+    const its = camera();
+    const aside = [0, 900, 0, 200, 1000, 50];
+    its.growTo({bounds: aside, warp});
+    const near = distance(its);
+    const restEdges = Float32Array.of(0, 0, 0, 200, 100, 50);
+    its.growTo({bounds: aside, warp: {...warp, restEdges}});
+    expect(distance(its)).toBeGreaterThan(3 * near);
+    its.growTo({bounds: aside, warp});
+    expect(distance(its)).toBeCloseTo(near, 9);
+  });
+
   test('staysWideWhileASeriesMovesTheMesh', () => {
     const its = camera();
     its.growTo({bounds: far, warp});

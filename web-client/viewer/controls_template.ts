@@ -158,6 +158,7 @@ export const kControls = `    ${section(
           <button type="button" class="true-size">True size</button>
           <button type="button" class="automatic">Automatic</button>
         </div>
+        ${toggle('rest-edges', 'Edges at rest')}
       </div>`,
     )}
     ${section(

@@ -17,6 +17,7 @@
 //   opacity      of the surface: above 0, at most 1.
 //   warp         name of a point field of vectors that move the mesh: its deformed shape.
 //   warp-scale   the factor of the vectors. 1 is the true size; by default they are well visible.
+//   rest-edges   "on" draws the edges of the mesh at rest while `warp` moves it.
 //   clip         up to three planes. Each is an axis x, y or z or a direction "1,0,1", then a share
 //                of the extent after a colon. "-" before an axis means the other side: "y",
 //                "-x:0.3 z:0.5". A mesh may open with a plane; "none" opens it whole.

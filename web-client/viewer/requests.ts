@@ -49,6 +49,7 @@ export function displayOf(
     mode: settings.planes.length > 0 ? settings.mode : 'cut',
     planes: planesOf(settings, mesh),
     warp: warpOf(settings, mesh),
+    restEdges: settings.restEdges,
     volume: settings.volume !== null,
     ...(mesh.ahead.length > 0 && {ahead: mesh.ahead}),
   };

@@ -7,7 +7,7 @@ import {checkedDirection, type Direction} from './directions';
 import type {Eye, Lens} from './lens';
 import {difference, inverse, lengthOf, product, scaled, sum, type Matrix} from './matrix';
 import {OrbitControls} from './orbit_controls';
-import {cornersOf, farthestOf, outlineOf} from './outline';
+import {cornersOf, farthestOf, outlineOf, outlineOfLines} from './outline';
 import {checkedCamera, type Pose} from './pose';
 import type {Part} from './tiles';
 import type {Frame, Insets} from './view';
@@ -24,7 +24,7 @@ export interface Sight {
 
 type Seen = Pick<Snapshot, 'bounds' | 'surface' | 'warp'>;
 
-const kNoReach = {bounds: [] as number[], scale: 0};
+const kNoReach = {bounds: [] as number[], scale: 0, isAtRestToo: false};
 
 export class MeshCamera {
   readonly orbit = new OrbitCamera();
@@ -35,7 +35,10 @@ export class MeshCamera {
   /** Those of the largest mesh at rest so far, in lattice coordinates; empty: there is no mesh. */
   bounds: number[] = [];
   focus: number[] | null = null;
-  /** Bounds of all that was seen under the present warp, and its factor; 0: there is none. */
+  /**
+   * Bounds of all that was seen under the present warp, its factor (0: there is none), and whether
+   * the mesh at rest is seen, too.
+   */
   private reach = kNoReach;
   /** Lattice points that the mesh lies between. */
   private outline: Vector[] = [];
@@ -64,14 +67,17 @@ export class MeshCamera {
     const bounds = union(this.bounds, warp?.restBounds ?? seen);
     const scale = warp?.scale ?? 0;
     // A series that moves the mesh keeps the picture wide enough for all that was seen.
-    const isSameWarp = scale === this.reach.scale;
-    const reach = union(isSameWarp ? this.reach.bounds : [], seen);
+    const isAtRestToo = (warp?.restEdges?.length ?? 0) > 0;
+    const isSameWarp = scale === this.reach.scale && isAtRestToo === this.reach.isAtRestToo;
+    const now = isAtRestToo ? union(seen, warp!.restBounds) : seen;
+    const reach = union(isSameWarp ? this.reach.bounds : [], now);
     if (isSame(bounds, this.bounds) && isSameWarp && isSame(reach, this.reach.bounds)) return;
-    const outline = outlineOf(surface, reach);
+    const lines = outlineOfLines(warp?.restEdges ?? new Float32Array(0));
+    const outline = [...outlineOf(surface, reach), ...lines];
     const isMoving = isSameWarp && scale !== 0 && !isFirst;
     this.outline = isMoving ? farthestOf([...this.outline, ...outline]) : outline;
     this.bounds = bounds;
-    this.reach = {bounds: reach, scale};
+    this.reach = {bounds: reach, scale, isAtRestToo};
     this.placeLattice();
     if (!isFirst) {
       this.refit();

@@ -1,4 +1,5 @@
-// The triangles of a picture: surface, cuts and layers, with the look that they share.
+// The triangles of a picture: surface, cuts and layers, with the look that they share. The lines of
+// the mesh at rest lie among them.
 
 import {colorTable, kColorMapEntries} from '../core/picture/color_maps';
 import {linearPart} from '../core/picture/log_scale';
@@ -10,6 +11,7 @@ import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
 import {Texture} from './gl/texture';
 import {isOutside, type Eye} from './lens';
+import {LineParts, type LineLook} from './line_parts';
 import type {Matrix} from './matrix';
 import type {Size} from './pose';
 import {kSoupAttributes, Soup} from './soup';
@@ -37,6 +39,7 @@ export class MeshParts {
   /** By name. */
   private readonly layers = new Map<string, Soup>();
   private readonly cuts: readonly Soup[];
+  private readonly restEdges: LineParts;
   private readonly program: Program;
   private readonly table = new Uint8Array(4 * kColorMapEntries);
   private readonly colorMap: Texture;
@@ -44,6 +47,8 @@ export class MeshParts {
   private edgeStrength = 0;
   private creaseStrength = 0;
   private creaseFade = 1;
+  /** That below a picture that is drawn apart from the canvas; null: none is drawn. */
+  groundOfFrame: {onDark: boolean} | null = null;
   /** The surface's, in lattice coordinates. */
   private bounds: readonly number[] = [];
   /** No plane cuts the surface. */
@@ -54,6 +59,7 @@ export class MeshParts {
   constructor(private readonly graphics: Graphics) {
     this.surface = new Soup(graphics, true);
     this.cuts = Array.from({length: kMaxPlanes}, () => new Soup(graphics, false));
+    this.restEdges = new LineParts(graphics);
     this.program = new Program(
       graphics,
       `${kVertexHead}${kFieldVertexShader}`,
@@ -82,6 +88,7 @@ export class MeshParts {
     for (const [name, soup] of Object.entries(changed)) this.layer(name).show(soup);
     for (const soup of this.layers.values()) soup.setClip(snapshot.planes);
     this.surface.setClip(snapshot.planes);
+    this.restEdges.show(snapshot.warp?.restEdges ?? new Float32Array(0));
     this.bounds = snapshot.bounds;
     this.isClosed = snapshot.planes.length === 0;
     this.cuts.forEach((soup, i) => {
@@ -92,6 +99,7 @@ export class MeshParts {
 
   clear(): void {
     for (const soup of this.all) soup.show(null);
+    this.restEdges.show(new Float32Array(0));
   }
 
   setLook({map, reversed, edges, creases, opacity, onDark = false}: Look): void {
@@ -145,8 +153,7 @@ export class MeshParts {
     const isClear = ({look}: Soup): boolean => Number(look.opacity) < 1;
     const visible = this.all.filter((soup) => soup.visible);
     const seen = {...this.look, modelViewMatrix: toEye, projectionMatrix: toCube};
-    // Soups that can be seen through come last, and hide nothing.
-    for (const soup of [...visible.filter((one) => !isClear(one)), ...visible.filter(isClear)]) {
+    const drawSoup = (soup: Soup): void => {
       const clear = isClear(soup);
       this.graphics.use({
         depths: clear ? 'tested' : 'written',
@@ -160,7 +167,20 @@ export class MeshParts {
         creaseStrength: soup.hasEdges ? this.creaseStrength * this.creaseFade : 0,
       });
       soup.draw();
-    }
+    };
+    visible.filter((soup) => !isClear(soup)).forEach(drawSoup);
+    this.restEdges.draw({toEye, toCube}, this.lineLook);
+    // Soups that can be seen through come last, and hide nothing.
+    visible.filter(isClear).forEach(drawSoup);
+  }
+
+  private get lineLook(): LineLook {
+    const {onDark} = this.groundOfFrame ?? this.look;
+    return {
+      onDark: Boolean(onDark),
+      opacity: this.creaseFade,
+      pixelRatio: Number(this.look.pixelRatio),
+    };
   }
 
   private get all(): Soup[] {
@@ -175,6 +195,7 @@ export class MeshParts {
 
   dispose(): void {
     for (const soup of this.all) soup.dispose();
+    this.restEdges.dispose();
     this.program.dispose();
     this.colorMap.dispose();
   }

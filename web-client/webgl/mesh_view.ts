@@ -298,9 +298,10 @@ export class MeshView implements View {
     return tiles;
   }
 
-  private async drawTile(lens: Lens, target: Target, {pixelRatio}: Frame): Promise<void> {
+  private async drawTile(lens: Lens, target: Target, frame: Frame): Promise<void> {
     const {parts} = this;
-    parts.setPixelRatio(pixelRatio);
+    parts.setPixelRatio(frame.pixelRatio);
+    parts.groundOfFrame = {onDark: frame.onDark ?? false};
     if (this.drawsVolume) await this.volume!.drawWhole(this.pictureOf(lens, target));
     else {
       target.begin();
@@ -308,6 +309,7 @@ export class MeshView implements View {
       parts.draw(this.camera.eyeOf(lens));
     }
     parts.setPixelRatio(this.pixelRatio);
+    parts.groundOfFrame = null;
   }
 
   /** Returns false and reports the error if the network fails. */

@@ -17,6 +17,10 @@ export function outlineOf(surface: TriangleSoup | undefined, bounds: number[]): 
   return positions.length === 0 ? cornersOf(bounds) : farthest(positions);
 }
 
+/** Those of the ends of lines, 6 coordinates each, that are the farthest in many directions. */
+export const outlineOfLines = (lines: Float32Array): Vector[] =>
+  lines.length === 0 ? [] : farthest(lines);
+
 /** Those of the points that are the farthest in many directions. */
 export const farthestOf = (points: Vector[]): Vector[] => farthest(points.flat());
 

@@ -27,6 +27,8 @@ export interface Frame {
   margin: number;
   /** How many pixels a cell's edge takes where it takes one on the canvas. */
   pixelRatio: number;
+  /** It will lie on a dark ground: lines beside the mesh are light. */
+  onDark?: boolean;
 }
 
 /** A part of such a picture, without ground. `x` and `y` are those of its upper left corner. */

@@ -29,6 +29,8 @@ export interface Display {
   threshold: {scalar: Scalar; low: number; high: number} | null;
   /** Moves the vertices. Everything else is made of the moved mesh; null: it is at rest. */
   warp: Warp | null;
+  /** Draws the creases of the mesh at rest as lines while a warp moves it. */
+  restEdges: boolean;
   /** Shows the cells themselves, translucent, coloured by `color`. */
   volume: boolean;
   /** Fields that may be shown soon: they are fetched and decoded behind all else. */
@@ -45,6 +47,7 @@ export const kPlainDisplay: Display = {
   isosurfaces: null,
   threshold: null,
   warp: null,
+  restEdges: false,
   volume: false,
 };
 

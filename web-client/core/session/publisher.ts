@@ -17,6 +17,7 @@ import {noSoup, pointBounds, type CreasesOf} from '../picture/triangle_soup';
 import {volumeCells, type VolumeCells} from '../picture/volume';
 import type {Warp} from '../picture/warp';
 import type {FieldInfo} from '../protocol/fields';
+import {KeptCreases} from './kept_creases';
 import {PicturePace} from './picture_pace';
 import type {Snapshot} from './worker_messages';
 
@@ -28,9 +29,7 @@ export class Publisher {
   /** Called after the first picture of a mesh has been sent. */
   onFirst: () => void = () => undefined;
   /** Null: pictures have no creases yet. */
-  private creasesOf: CreasesOf | null = null;
-  /** Those of the last surface, and which one that was. */
-  private creases: {of: string; creases: Uint8Array} | null = null;
+  private creases: KeptCreases | null = null;
   /** The colour of the last picture; null: it had none. */
   private drawnColor: Scalar | null = null;
   /** The warp of the last picture; null: the mesh was at rest. */
@@ -80,8 +79,7 @@ export class Publisher {
 
   /** Draws creases from the next picture on. */
   useCreases(creasesOf: CreasesOf): void {
-    this.creasesOf = creasesOf;
-    this.creases = null;
+    this.creases = new KeptCreases(this.assembler.codec, creasesOf);
     this.renew(this.isLast);
   }
 
@@ -177,7 +175,8 @@ export class Publisher {
     this.bounds = [];
     this.middles.clear();
     this.amounts.clear();
-    this.creases = this.drawnColor = this.drawnWarp = null;
+    this.creases?.forget();
+    this.drawnColor = this.drawnWarp = null;
     this.display = kPlainDisplay;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -223,7 +222,7 @@ export class Publisher {
     if (this.meshChanged) {
       snapshot.surface =
         display.body && display.mode !== 'slice'
-          ? surfaceOf(mesh, display, kept, this.creasesOf && this.keptCreases)
+          ? surfaceOf(mesh, display, kept, this.creases?.of(mesh))
           : noSoup();
       Object.assign(snapshot, layerSoups(mesh, display, kept));
       snapshot.volume = this.volumeOf(mesh, display, kept);
@@ -240,19 +239,6 @@ export class Publisher {
     this.hasPublished = true;
     this.onFirst();
   }
-
-  /**
-   * Instants of a series share a surface, and its creases take longer than its values. They are
-   * those of the mesh at rest, so that no line comes or goes while it moves.
-   */
-  private readonly keptCreases: CreasesOf = (_, triangles) => {
-    const {assembler, creases} = this;
-    const of = [assembler.codec.chunksApplied, triangles.length, triangles[0]].join();
-    const its =
-      creases?.of === of ? creases.creases : this.creasesOf!(assembler.codec.points(), triangles);
-    this.creases = {of, creases: its};
-    return its.slice(); // it is transferred
-  };
 
   private volumeOf(
     mesh: MeshArrays,
@@ -279,10 +265,17 @@ export class Publisher {
       : this.bounds;
   }
 
-  private frame(
+  private restEdges(
     mesh: MeshArrays,
-    {color, volume, warp}: Display,
-  ): Omit<Snapshot, 'cuts' | 'planes'> {
+    {restEdges, mode, planes}: Display,
+  ): {restEdges?: Float32Array} {
+    if (!restEdges || !this.creases) return {};
+    // Planes cut them like the mesh, so that none lie before a cut. Round slices they stay whole.
+    return {restEdges: this.creases.lines(mesh, mode === 'slice' ? [] : planes)};
+  }
+
+  private frame(mesh: MeshArrays, display: Display): Omit<Snapshot, 'cuts' | 'planes'> {
+    const {color, volume, warp} = display;
     const scale = color && mesh.scale(color);
     const info = color && this.assembler.manifest!.fields[color.field];
     const isComponent = info && info.components > 1 && color.component >= 0;
@@ -290,7 +283,9 @@ export class Publisher {
     if (this.meshChanged || this.bounds.length === 0) this.measure(mesh, warp);
     return {
       bounds: this.bounds,
-      ...(this.isWarped(warp) && {warp: {...warp, restBounds: this.restBounds}}),
+      ...(this.isWarped(warp) && {
+        warp: {...warp, restBounds: this.restBounds, ...this.restEdges(mesh, display)},
+      }),
       color: scale ? color : null,
       statistics: this.assembler.statistics(fieldsOf(this.display)),
       costMs: 0,

@@ -6,7 +6,7 @@ import {buffersOfVolume} from '../picture/volume';
 import type {Snapshot} from './worker_messages';
 
 export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
-  const {surface, cuts, volume} = snapshot;
+  const {surface, cuts, volume, warp} = snapshot;
   const soups = [surface, ...cuts, ...kLayers.map((layer) => soupOf(snapshot, layer))].filter(
     (soup) => soup !== undefined,
   );
@@ -17,6 +17,7 @@ export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
   ]);
   return [
     ...arrays.map(({buffer}) => buffer as ArrayBuffer),
+    ...(warp?.restEdges ? [warp.restEdges.buffer as ArrayBuffer] : []),
     ...(volume ? buffersOfVolume(volume) : []),
   ];
 }

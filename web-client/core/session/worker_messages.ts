@@ -63,6 +63,14 @@ export type Question =
   /** Asks for a volume with few cells. The page has version `have`. */
   | {type: 'coarse'; have: number};
 
+/** The mesh without its warp. */
+export interface AtRest {
+  /** The surface's. */
+  restBounds: number[];
+  /** The ends of the lines along its creases, 6 lattice coordinates each; absent: not drawn. */
+  restEdges?: Float32Array;
+}
+
 /** One consistent picture. Parts that have not changed are absent. */
 export interface Snapshot extends LayerSoups {
   surface?: TriangleSoup;
@@ -73,8 +81,8 @@ export interface Snapshot extends LayerSoups {
   planes: Plane[];
   /** Bounds of the surface in lattice coordinates: [x0, y0, z0, x1, y1, z1]. */
   bounds: number[];
-  /** How the vertices are moved, and the surface's bounds without that; absent: they rest. */
-  warp?: Warp & {restBounds: number[]};
+  /** How the vertices are moved; absent: they rest. */
+  warp?: Warp & AtRest;
   /** The quantity that the soups' values show; null if there are none yet. */
   color: Scalar | null;
   /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */

@@ -1,4 +1,5 @@
-// The controls of the deformed shape: the vectors that move the mesh, and their scale.
+// The controls of the deformed shape: the vectors that move the mesh, their scale, and the edges at
+// rest.
 
 import {parseNumbers, scalarText} from '../../core/layers/field_values';
 import {kMagnitude} from '../../core/picture/field_scale';
@@ -19,6 +20,7 @@ export class WarpPanel implements Panel {
   private readonly select: HTMLSelectElement;
   private readonly slider: HTMLInputElement;
   private readonly number: HTMLInputElement;
+  private readonly restEdges: HTMLInputElement;
   /** The keys of the fields that can move the mesh. */
   private keys: string[] = [];
   /** The scale at the slider's end. */
@@ -34,6 +36,7 @@ export class WarpPanel implements Panel {
     this.select = find(this.body, 'select');
     this.slider = find(this.body, 'input[type=range]');
     this.number = find(this.body, 'input[type=text]');
+    this.restEdges = find(this.body, 'input[name=rest-edges]');
     this.slider.max = String(kSteps);
     this.on.addEventListener('change', () =>
       this.choose(this.on.checked ? (this.keys[0] ?? null) : null),
@@ -43,6 +46,9 @@ export class WarpPanel implements Panel {
       this.scale((Number(this.slider.value) / kSteps) * this.end),
     );
     this.number.addEventListener('change', () => this.type());
+    this.restEdges.addEventListener('change', () =>
+      attributes.write('rest-edges', this.restEdges.checked ? 'on' : null),
+    );
     onClick(this.body, '.true-size', () => this.scale(1));
     onClick(this.body, '.automatic', () => attributes.write('warp-scale', null));
   }
@@ -55,6 +61,7 @@ export class WarpPanel implements Panel {
     const warp = scene && warpOf(settings, scene);
     this.on.checked = warp !== null;
     this.body.hidden = warp === null;
+    this.restEdges.checked = settings.restEdges;
     if (!warp) return;
     const titles = usable.map((scalar) => scalarTitle(scalar, fields).replace(/, magnitude$/, ''));
     fillSelect(

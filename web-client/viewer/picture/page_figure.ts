@@ -1,12 +1,14 @@
 // The figure of what the page shows now.
 
 import type {Frame, View} from '../../webgl/view';
+import {isOnDark} from '../page/ground';
 import type {Page} from '../page/page';
 import {draw, frameOf, legendOf, type Figure, type Looks} from './figure';
 
 /** The frame in which the figure's mesh is drawn, with the page's legend of now. */
 export function pageFrame(page: Page, view: View, figure: Figure): Frame {
-  return frameOf(figure, legendOf(page.root), view.canvas);
+  const onDark = figure.ground === 'seen' && isOnDark(page.element);
+  return {...frameOf(figure, legendOf(page.root), view.canvas), onDark};
 }
 
 export async function drawPage(

@@ -27,7 +27,14 @@ const kBeforeLayers = [
   'surface',
   'opacity',
 ] as const;
-const kAfterLayers = ['warp', 'warp-scale', 'quality', 'projection', 'camera'] as const;
+const kAfterLayers = [
+  'warp',
+  'warp-scale',
+  'rest-edges',
+  'quality',
+  'projection',
+  'camera',
+] as const;
 export type ViewAttribute =
   (typeof kBeforeLayers)[number] | LayerAttribute | (typeof kAfterLayers)[number];
 
@@ -65,6 +72,8 @@ export interface Settings {
   warp: string | null;
   /** The factor of the vectors; null: it is for the mesh to choose. */
   warpScale: number | null;
+  /** A warp shows the edges of the mesh at rest, too. */
+  restEdges: boolean;
   /** The time that is shown of series; null: the first. */
   time: number | null;
 }
@@ -91,6 +100,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     camera: parseCamera(get('camera')),
     warp: get('warp'),
     warpScale: parseNumber(get('warp-scale')),
+    restEdges: get('rest-edges') === 'on',
     time: parseNumber(get('time')),
   };
 }

@@ -76,6 +76,7 @@ const kTitles: Record<string, string> = {
   'clip-mode': 'clip',
   warp: 'deformed shape',
   'warp-scale': 'deformed shape',
+  'rest-edges': 'edges at rest',
   iso: 'isosurfaces',
   quality: 'level of detail',
 };

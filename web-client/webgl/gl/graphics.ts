@@ -15,6 +15,8 @@ export class Graphics {
   readonly gl: WebGL2RenderingContext;
   /** Infinity if the graphics are lost already. */
   readonly maxTextureSize: number;
+  /** Width and height of what is drawn onto, in pixels. */
+  size: readonly [number, number] = [1, 1];
   /** Counts how often the browser has given the graphics back. */
   generation = 0;
 
@@ -56,7 +58,13 @@ export class Graphics {
   beginCanvas(): void {
     const {gl, surface} = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, surface.width, surface.height);
+    this.fill(surface);
+  }
+
+  /** The next drawing fills all of a target of this size. */
+  fill({width, height}: {width: number; height: number}): void {
+    this.size = [width, height];
+    this.gl.viewport(0, 0, width, height);
   }
 }
 

@@ -55,7 +55,7 @@ export class Target {
   begin(): void {
     const {gl} = this.graphics;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.things.framebuffer);
-    gl.viewport(0, 0, this.width, this.height);
+    this.graphics.fill(this);
   }
 
   /** Everything becomes 0, and infinitely far. REQUIRES: it has begun. */
