@@ -96,6 +96,8 @@ Status DeltaReader::readHead() {
   const auto from = in.read<std::uint64_t>();
   copyBytes_ = in.read<std::uint64_t>();
   literalBytes_ = in.read<std::uint64_t>();
+  if (copyBytes_ == 0 && literalBytes_ == 0)
+    return fail(ErrorCode::kBadValue, "an instruction of a delta gives no byte");
   if (copyBytes_ > 0 &&
       (from < copyFrom_ || from > base_.size() || copyBytes_ > base_.size() - from))
     return fail(ErrorCode::kBadValue, "a delta's piece lies before the last one, or beyond the " +

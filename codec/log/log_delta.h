@@ -34,7 +34,8 @@ class DeltaReader {
   /// needsBytes().
   void feed(ByteView delta);
   /// The next bytes of the new log, at most `most` of them; none: the reader needs bytes. Errors:
-  /// bad-value (a piece beyond the old log's end or before the last one, more bytes than promised).
+  /// bad-value (a piece beyond the old log's end or before the last one, an instruction without a
+  /// byte, more bytes than promised).
   /// After an error the reader is of no use.
   [[nodiscard]] Result<ByteView> next(std::size_t most);
   /// Everything that was fed is used up, and the bytes that it names are given.

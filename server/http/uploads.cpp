@@ -82,8 +82,9 @@ Reply Upload::diskTrouble(const std::string& what, int number) {
 std::optional<Reply> Upload::append(ByteView bytes) {
   if (!delta_) return write(bytes);
   if (!bytes.empty()) delta_->feed(bytes);
-  for (std::uint64_t done = 0; isBusy() && done < limits::kDeltaPiece;) {
-    const Result<ByteView> piece = delta_->next(limits::kDeltaPiece - done);
+  const std::size_t most = uploads_.options_.deltaPiece;
+  for (std::size_t done = 0; isBusy() && done < most;) {
+    const Result<ByteView> piece = delta_->next(most - done);
     if (!piece) return problem(400, "bad-request", piece.error().message);
     if (std::optional<Reply> trouble = write(*piece)) return trouble;
     done += piece->size();

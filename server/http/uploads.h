@@ -81,6 +81,7 @@ class Upload {
 
 struct UploadOptions {
   std::uintmax_t maxBytes = limits::kMaxUploadBytes;  ///< of a log
+  std::size_t deltaPiece = limits::kDeltaPiece;       ///< bytes of one call of Upload::append
   CheckLimits checkLimits{};
   LogCheck check = checkLog;
   PartQuota parts{};  ///< of those that are kept

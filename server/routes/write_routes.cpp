@@ -4,6 +4,8 @@
 #include <charconv>
 
 #include "proto/json_reader.h"
+#include "server/http/part_lock.h"
+#include "server/http/upload_limits.h"
 #include "server/routes/access_routes.h"
 
 namespace qtet {
@@ -48,10 +50,6 @@ std::optional<Reply> authorise(const RequestView& request, const std::string& me
   return refusalOf(access.tokens()->may(kScope, bearerDigest(request.authorization), mesh), kScope);
 }
 
-bool isDigest(std::string_view text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
 Reply badRequest(std::string_view detail) { return problem(400, "bad-request", detail); }
 
 Answer routePut(const RequestView& request, const RequestTarget& target, UploadRequest out) {
@@ -64,10 +62,10 @@ Answer routePut(const RequestView& request, const RequestTarget& target, UploadR
   out.bodyBytes = parseNumber(*request.contentLength).value_or(~std::uint64_t{0});
   out.totalBytes = out.bodyBytes;
   out.digest = target.parameter("digest");
-  if (out.digest && !isDigest(*out.digest))
+  if (out.digest && !isLogDigest(*out.digest))
     return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
   out.from = target.parameter("from");
-  if (out.from && !isDigest(*out.from))
+  if (out.from && !isLogDigest(*out.from))
     return badRequest("from is the old log's SHA-256, 64 hexadecimal digits in lower case");
   if ((request.contentRange || out.from) && !out.digest)
     return badRequest("a part of a log is sent with ?digest= of the whole");
@@ -77,6 +75,9 @@ Answer routePut(const RequestView& request, const RequestTarget& target, UploadR
     return badRequest(
         "Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes; or bytes */SIZE, "
         "and it has none");
+  if (out.from && out.bodyBytes / limits::kMaxDeltaBytesAByte > out.totalBytes - out.first)
+    return problem(413, "content-too-large",
+                   "a delta has at most 25 bytes for each byte that it gives");
   return Answer(std::move(out));
 }
 
@@ -110,7 +111,7 @@ Reply partialReply(const RequestView& request, const RequestTarget& target,
   if (std::optional<Reply> refusal = authorise(request, target.segments[2], writing.access))
     return std::move(*refusal);
   const std::optional<std::string> digest = target.parameter("digest");
-  if (!digest || !isDigest(*digest))
+  if (!digest || !isLogDigest(*digest))
     return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
   const std::string& id = target.segments[2];
   if (!pathOfMesh("", id)) return problem(404, "not-found", "this cannot be the name of a mesh");

@@ -74,19 +74,37 @@ asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const Re
   co_return out;
 }
 
+/// The result of `work`, which may wait for the disk, on a thread of the pool.
+template <class Outcome, class Work>
+asio::awaitable<Outcome> runOn(asio::thread_pool& pool, Work work) {
+  auto start = [&pool, &work, executor = co_await asio::this_coro::executor](auto handler) {
+    asio::post(pool, [&work, executor, handler = std::move(handler)]() mutable {
+      Outcome outcome = work();
+      asio::post(executor, [handler = std::move(handler), outcome = std::move(outcome)]() mutable {
+        handler(std::move(outcome));
+      });
+    });
+  };
+  co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Outcome)>(
+      std::move(start), use_awaitable);
+}
+
 /// Reads the body into the upload; the answer, if it ends before its time.
 asio::awaitable<std::optional<Reply>> receiveBody(HttpInput& input, Upload& upload,
-                                                  std::uint64_t bytes) {
+                                                  std::uint64_t bytes, const Peer& peer,
+                                                  const Services& services) {
   Bytes piece(limits::kBodyPiece);
-  const auto executor = co_await asio::this_coro::executor;
   while (bytes > 0) {
     const std::size_t wanted = std::min<std::uint64_t>(bytes, piece.size());
     const std::size_t have = co_await input.readBody(std::span(piece).first(wanted));
     if (std::optional<Reply> trouble = upload.append(ByteView(piece).first(have)))
       co_return trouble;
     while (upload.isBusy()) {
-      co_await asio::post(executor, use_awaitable);  // others have their turn
-      if (std::optional<Reply> trouble = upload.append({})) co_return trouble;
+      if (peer.connection->ending())
+        co_return busyReply("the server ends; go on with the next one");
+      const auto goOn = [&upload] { return upload.append({}); };
+      if (auto trouble = co_await runOn<std::optional<Reply>>(*services.writers, goOn))
+        co_return trouble;
     }
     if (have < wanted)
       co_return problem(408, "request-timeout",
@@ -94,21 +112,6 @@ asio::awaitable<std::optional<Reply>> receiveBody(HttpInput& input, Upload& uplo
     bytes -= have;
   }
   co_return std::nullopt;
-}
-
-asio::awaitable<Reply> remove(const UploadRequest& upload, ClientSocket& socket,
-                              const Services& services) {
-  auto start = [&services, &upload, executor = socket.get_executor()](auto handler) {
-    asio::post(
-        *services.writers, [&services, &upload, executor, handler = std::move(handler)]() mutable {
-          Reply reply = services.uploads->remove(upload);
-          asio::post(executor, [handler = std::move(handler), reply = std::move(reply)]() mutable {
-            handler(std::move(reply));
-          });
-        });
-  };
-  co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Reply)>(
-      std::move(start), use_awaitable);
 }
 
 /// Has the log checked and published. kClientGone: the check was broken off.
@@ -148,7 +151,7 @@ asio::awaitable<std::optional<Reply>> takeUpload(const UploadRequest& upload, bo
                                          services.unpaced);
     if (!sent.whole) co_return std::nullopt;
   }
-  std::optional<Reply> out = co_await receiveBody(input, **begun, upload.bodyBytes);
+  std::optional<Reply> out = co_await receiveBody(input, **begun, upload.bodyBytes, peer, services);
   if (out)
     out->close = true;  // some of the body may still come
   else
@@ -167,7 +170,8 @@ asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& r
     out = co_await makeReply(std::move(answer.reply), *level, request, peer, services.jobs);
   } else if (const auto* upload = std::get_if<UploadRequest>(&answer.work)) {
     if (upload->kind == UploadRequest::Kind::kDelete)
-      out = co_await remove(*upload, peer.socket, services);
+      out = co_await runOn<Reply>(*services.writers,
+                                  [&] { return services.uploads->remove(*upload); });
     else
       out = co_await takeUpload(*upload, request.expect.has_value(), peer, input, services);
   } else {

@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <optional>
 #include <thread>
 
 #include "codec/log/log_delta.h"
@@ -89,12 +88,18 @@ struct Sending {
   std::string from{};  ///< the other log's digest; empty: the log's own bytes
 };
 
-/// A delta to the log that the server has, if it is known and at most half as long as the log.
-Sending sendingFrom(const Push& push, std::uint64_t first, const std::optional<OldLog>& old) {
+/// A delta to the log that the server has. The log's own bytes where there is no such log, where it
+/// cannot be had, or where a delta would not be shorter.
+Sending sendingFrom(const Push& push, std::uint64_t first, bool mayUseDelta) {
   Sending out{.first = first};
   const ByteView log = push.log.bytes();
-  if (!old || first == log.size()) return out;
-  const std::uint64_t most = std::min<std::uint64_t>(kMaxDeltaBytes, (log.size() - first) / 2);
+  if (!mayUseDelta || first == log.size()) return out;
+  const Result<OldLog> old = fetchOldLog(push.server, {.method = "GET",
+                                                       .target = push.target,
+                                                       .headers = {push.authorization},
+                                                       .authorities = push.authorities});
+  if (!old) return out;
+  const std::uint64_t most = std::min<std::uint64_t>(kMaxDeltaBytes, log.size() - first - 1);
   if (auto delta = makeDelta(old->index, push.log.index(), log, first, most)) {
     out.delta = std::move(*delta);
     out.from = old->digest;
@@ -102,7 +107,9 @@ Sending sendingFrom(const Push& push, std::uint64_t first, const std::optional<O
   return out;
 }
 
-Result<HttpAnswer> send(const Push& push, const Sending& sending, Progress& progress) {
+/// Adds the bytes of the body that were sent to `sent`.
+Result<HttpAnswer> send(const Push& push, const Sending& sending, Progress& progress,
+                        std::uint64_t& sent) {
   const std::uint64_t size = push.log.bytes().size(), first = sending.first;
   const bool isDelta = !sending.from.empty();
   const ByteView body = isDelta ? ByteView(sending.delta) : push.log.bytes().subspan(first);
@@ -117,7 +124,7 @@ Result<HttpAnswer> send(const Push& push, const Sending& sending, Progress& prog
                  : isDelta    ? "sending what is new"
                  : first > 0  ? "sending the rest"
                               : "sending");
-  const std::uint64_t there = isDelta ? 0 : first;
+  const std::uint64_t there = isDelta ? 0 : first, before = sent;
   return exchange(push.server, {.method = "PUT",
                                 .target = push.target + "?digest=" + push.log.digest() +
                                           (isDelta ? "&from=" + sending.from : ""),
@@ -126,22 +133,13 @@ Result<HttpAnswer> send(const Push& push, const Sending& sending, Progress& prog
                                 .authorities = push.authorities,
                                 .patience = {.answering = kCheckTime},
                                 .progress =
-                                    [&](std::uint64_t sent) {
-                                      progress.update(static_cast<double>(there + sent) /
+                                    [&](std::uint64_t bytes) {
+                                      sent = before + bytes;
+                                      progress.update(static_cast<double>(there + bytes) /
                                                       static_cast<double>(there + body.size()));
-                                      if (sent == body.size()) progress.stage(kChecking);
+                                      if (bytes == body.size()) progress.stage(kChecking);
                                     },
                                 .waiting = [&] { progress.working(); }});
-}
-
-/// Nothing if it cannot be had: then the log is sent whole.
-std::optional<OldLog> oldLogOf(const Push& push) {
-  const HttpRequest request{.method = "GET",
-                            .target = push.target,
-                            .headers = {push.authorization},
-                            .authorities = push.authorities};
-  Result<OldLog> old = fetchOldLog(push.server, request);
-  return old ? std::optional(std::move(*old)) : std::nullopt;
 }
 
 /// Whether another attempt may go better: the server had no time or no place, or disagreed about
@@ -151,7 +149,7 @@ bool worthAnother(const HttpAnswer& answer) {
          answer.status == 503;
 }
 
-/// The last answer to the log, and the bytes that were sent for it.
+/// The last answer to the log, and the bytes of all bodies that were sent for it.
 struct Pushed {
   HttpAnswer answer;
   std::uint64_t bytes = 0;
@@ -160,20 +158,22 @@ struct Pushed {
 /// Sends the log as often as it takes.
 Result<Pushed> pushLog(const Push& push, Console& console) {
   Progress progress(console);
-  std::optional<OldLog> old = oldLogOf(push);
+  std::uint64_t sent = 0;
+  bool mayUseDelta = true, usedDelta = false;
   Result<HttpAnswer> answer = fail(ErrorCode::kIo, "");
-  Sending sending;
-  for (int attempt = 1; attempt <= kMaxAttempts; ++attempt) {
+  for (int attempt = 1;;) {
     const Result<std::uint64_t> first = bytesThere(push);
-    if (first) sending = sendingFrom(push, *first, old);
-    answer =
-        first ? send(push, sending, progress) : Result<HttpAnswer>(std::unexpected(first.error()));
+    if (first) {
+      const Sending sending = sendingFrom(push, *first, mayUseDelta);
+      usedDelta = usedDelta || !sending.from.empty();
+      answer = send(push, sending, progress, sent);
+    } else {
+      answer = std::unexpected(first.error());
+    }
     progress.clear();
-    // A server without deltas, another log by now, or blocks whose checksums agree by chance.
-    if (answer && !sending.from.empty() &&
-        (answer->status == 400 || answer->status == 409 ||
-         (answer->status == 422 && sending.first == 0))) {
-      old.reset();
+    // The server knows no deltas, or the checksums of two blocks agree by chance.
+    if (answer && (answer->status == 400 || answer->status == 422) && usedDelta && mayUseDelta) {
+      mayUseDelta = false;
       continue;
     }
     const bool again = answer ? worthAnother(*answer) : answer.error().code == ErrorCode::kIo;
@@ -181,10 +181,10 @@ Result<Pushed> pushLog(const Push& push, Console& console) {
     console.err << "qtet: " << printable(answer ? reasonOf(*answer) : answer.error().message)
                 << "; trying again\n";
     std::this_thread::sleep_for(kFirstPause * (1 << (attempt - 1)));
+    ++attempt;
   }
   if (!answer) return std::unexpected(answer.error());
-  return Pushed{std::move(*answer), sending.from.empty() ? push.log.bytes().size() - sending.first
-                                                         : sending.delta.size()};
+  return Pushed{std::move(*answer), sent};
 }
 
 }  // namespace
@@ -243,10 +243,7 @@ int runPush(const Words& words, Console& console) {
               console);
   else
     console.out << address << "  " << (status == 200 ? "replaced" : "new") << ", " << bytes
-                << " bytes"
-                << (pushed->bytes < bytes ? ", " + std::to_string(pushed->bytes) + " of them sent"
-                                          : "")
-                << "\n";
+                << " bytes, " << pushed->bytes << " sent\n";
   return kExitOk;
 }
 

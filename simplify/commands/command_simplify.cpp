@@ -236,10 +236,11 @@ Result<Made> makeAtOnce(const Request& request, const std::vector<double>& times
 Result<Made> makeInWindows(const Request& request, const std::vector<double>& times,
                            const PipelineOptions& options, Stopwatch& watch) {
   ReadReport report;
+  ReadOptions reading = request.read;
   const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
     std::vector<double> some;
     for (const std::size_t step : steps) some.push_back(times[step]);
-    Result<ReadMesh> window = readTimes(request.input, request.read, some, times.front());
+    Result<ReadMesh> window = readTimes(request.input, reading, some, times.front());
     if (!window) return std::unexpected(window.error());
     if (request.read.weld && !window->report.motion.empty())
       return fail(ErrorCode::kBadValue,
@@ -253,6 +254,7 @@ Result<Made> makeInWindows(const Request& request, const std::vector<double>& ti
   };
   Result<TetMesh> sample = read(sampledSteps(times.size()));
   if (!sample) return std::unexpected(sample.error());
+  reading.moves = !report.motion.empty();
   watch.lap("read");
   Result<PipelineOutput> made = simplifySeries(std::move(*sample), times.size(), read, options);
   if (!made) return std::unexpected(made.error());

@@ -9,6 +9,9 @@ namespace {
 
 /// Bytes of one request; an answer is at most 4 MiB.
 constexpr std::uint64_t kRangeBytes = 1u << 20;
+/// Bytes of a front, and of the later instants: a hundred thousand instants. A delta that needs more
+/// is not worth it, whatever the server says.
+constexpr std::uint64_t kMaxIndexBytes = 32u << 20;
 
 Result<std::string> bodyOf(const HttpUrl& server, const HttpRequest& request, unsigned status) {
   Result<HttpAnswer> answer = exchange(server, request);
@@ -30,8 +33,13 @@ Result<OldLog> fetchOldLog(const HttpUrl& server, const HttpRequest& request) {
       !json.value("bytes", OrderedJson()).is_number_unsigned())
     return fail(ErrorCode::kIo, request.target + ": this is no mesh's description");
   OldLog out{.digest = json["digest"].get<std::string>(), .index = {}};
+  if (out.digest.size() != 64 ||
+      out.digest.find_first_not_of("0123456789abcdef") != std::string::npos)
+    return fail(ErrorCode::kIo, request.target + ": the digest is none");
   const auto fileBytes = json["bytes"].get<std::uint64_t>();
   const auto fetch = [&](Bytes& into, std::uint64_t first, std::uint64_t end) -> Status {
+    if (first > end || end > fileBytes || end - first > kMaxIndexBytes)
+      return fail(ErrorCode::kLimitExceeded, "the log's front or its later instants are too long");
     for (; first < end; first += std::min(kRangeBytes, end - first)) {
       const std::uint64_t last = std::min(end, first + kRangeBytes) - 1;
       HttpRequest part = request;
@@ -51,10 +59,11 @@ Result<OldLog> fetchOldLog(const HttpUrl& server, const HttpRequest& request) {
     return std::unexpected(s.error());
   const Result<std::uint64_t> headBytes = LogIndex::headBytesOf(head);
   if (!headBytes) return std::unexpected(headBytes.error());
-  if (Status s = fetch(head, head.size(), std::min(*headBytes, fileBytes)); !s)
-    return std::unexpected(s.error());
+  if (Status s = fetch(head, head.size(), *headBytes); !s) return std::unexpected(s.error());
   Result<LogIndex> index = LogIndex::parseHead(head);
   if (!index) return std::unexpected(index.error());
+  if (index->fileBytes != fileBytes)
+    return fail(ErrorCode::kIo, request.target + ": the log has another length than is said");
   if (const std::uint64_t later = std::min<std::uint64_t>(index->unreadBytes(), fileBytes)) {
     Bytes part;
     if (Status s = fetch(part, fileBytes - later, fileBytes); !s) return std::unexpected(s.error());

@@ -15,7 +15,7 @@ struct OldLog {
 
 /// Fetches the front of a mesh's log and its later instants, by ranges. `request` is that for the
 /// mesh's description, and all are made like it. Errors: exchange's, not-found (no such mesh), io
-/// (another answer than is expected), LogIndex's.
+/// (another answer than is expected), limit-exceeded, LogIndex's.
 [[nodiscard]] Result<OldLog> fetchOldLog(const HttpUrl& server, const HttpRequest& request);
 
 }  // namespace qtet

@@ -66,7 +66,7 @@ Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesy
   if (!steps) return std::unexpected(steps.error());
   if (steps->size() == 1 && !(options.namesTime && !steps->front().time.empty()))
     return std::move(steps->front().cells);
-  return joinSteps(std::move(*steps), path, options.fields, report);
+  return joinSteps(std::move(*steps), path, options.fields, report, options.moves);
 }
 
 Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std::string& kind,

@@ -62,8 +62,10 @@ Result<ReadMesh> readTimesInParts(const std::filesystem::path& path, const ReadO
   Result<ReadMesh> out = readTimes(path, options, part(0));
   for (std::size_t at = atOnce; out && at < times.size(); at += atOnce) {
     const bool moves = !out->report.motion.empty();
+    ReadOptions ofPart = options;
+    ofPart.moves = moves;
     Result<ReadMesh> more =
-        readTimes(path, options, part(at), moves ? std::optional(times.front()) : std::nullopt);
+        readTimes(path, ofPart, part(at), moves ? std::optional(times.front()) : std::nullopt);
     if (!more) return more;
     if (more->mesh.points != out->mesh.points || more->mesh.tetrahedra != out->mesh.tetrahedra ||
         (!moves && !more->report.motion.empty()))

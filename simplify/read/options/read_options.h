@@ -35,6 +35,8 @@ struct ReadOptions {
   std::string time = "last";
   /// Fields are called NAME@TIME also where one step is read, if the file knows its time.
   bool namesTime = false;
+  /// The points move at other steps: these get displacements even if none of them moves.
+  bool moves = false;
   /// The file's kind as an ending without dot; empty: as its name says.
   std::string format;
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.

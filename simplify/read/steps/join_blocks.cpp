@@ -187,12 +187,13 @@ std::string shortText(double x) {
 class Motion {
  public:
   /// REQUIRES: steps of the same cells.
-  Motion(std::span<const TimedCells> steps, const FieldNames& names) : steps_(steps.size()) {
+  Motion(std::span<const TimedCells> steps, const FieldNames& names, bool moves)
+      : steps_(steps.size()) {
     const CellMesh& rest = steps.front().cells;
     const auto isElsewhere = [&](const TimedCells& step) {
       return !areSamePoints(rest.points, step.cells.points);
     };
-    moves_ = std::ranges::any_of(steps, isElsewhere);
+    moves_ = moves || std::ranges::any_of(steps, isElsewhere);
     if (!moves_) return;
     name_ = displacementName(rest);
     type_ = "float32";
@@ -284,11 +285,11 @@ CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& r
 }
 
 Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem::path& path,
-                           const FieldNames& names, ReadReport& report) {
+                           const FieldNames& names, ReadReport& report, bool moves) {
   for (const TimedCells& step : steps)
     if (Status same = checkSameCells(steps.front(), step, path, report); !same)
       return std::unexpected(same.error());
-  Motion motion(steps, names);
+  Motion motion(steps, names, moves);
   CellMesh& rest = steps.front().cells;
   std::vector<MeshField> fields;
   for (TimedCells& step : steps) {

@@ -106,6 +106,7 @@ TEST(DeltaReader, refusesPiecesOutsideTheOldLogOrBackwards) {
   const Bytes base(100, 1);
   const auto errorOf = [&](const Bytes& delta) { return apply(delta, base, 1000, 64).error; };
   EXPECT_EQ(errorOf(instruction(0, 100, 0, 0)), std::nullopt);
+  EXPECT_EQ(errorOf(instruction(0, 0, 0, 0)), ErrorCode::kBadValue);
   EXPECT_EQ(errorOf(instruction(0, 101, 0, 0)), ErrorCode::kBadValue);
   EXPECT_EQ(errorOf(instruction(100, 1, 0, 0)), ErrorCode::kBadValue);
   EXPECT_EQ(errorOf(instruction(~std::uint64_t{0}, 2, 0, 0)), ErrorCode::kBadValue);

@@ -96,12 +96,13 @@ class UploadTest : public ::testing::Test {
   std::unique_ptr<MeshStore> store_ =
       std::make_unique<MeshStore>(*MeshStore::open(folder_.logFolder()));
   const std::string log_ = textOf(testing::logBytes(testing::soundMesh(8, 77)));
-  test::RunningServer server_{*store_,
-                              folder_.viewer(),
-                              {.threads = 2,
-                               .timeouts = {.body = test::kNever},
-                               .access = &access_,
-                               .uploads = {.maxBytes = 1 << 20, .check = std::ref(check_)}}};
+  test::RunningServer server_{
+      *store_,
+      folder_.viewer(),
+      {.threads = 2,
+       .timeouts = {.body = test::kNever},
+       .access = &access_,
+       .uploads = {.maxBytes = 1 << 20, .deltaPiece = 1000, .check = std::ref(check_)}}};
 };
 
 TEST_F(UploadTest, aSoundLogIsServedOnceItIsWhole) {
@@ -439,6 +440,11 @@ TEST_F(UploadTest, aDeltaToTheMeshsLogGivesTheNewOne) {
   EXPECT_EQ(put("/v1/meshes/new?from=" + digestOf(old), delta).status, 400u) << "without digest";
 
   EXPECT_EQ(send(digestOf(old), 0, instruction(0, old.size() + 1, "")).status, 400u);
+  EXPECT_EQ(send(digestOf(old), 0, instruction(0, 0, "")).status, 400u) << "gives no byte";
+  const std::size_t last = log_.size() - 1;
+  EXPECT_EQ(send(digestOf(old), last, std::string(25, 'x')).status, 409u) << "long, not too long";
+  EXPECT_EQ(send(digestOf(old), last, std::string(49, 'x')).status, 409u);
+  EXPECT_EQ(send(digestOf(old), last, std::string(50, 'x')).status, 413u);
   const HttpResponse short1 = send(digestOf(old), 0, delta + "and half an instruction");
   EXPECT_EQ(short1.status, 400u) << short1.body;
   EXPECT_EQ(send(digestOf(old), 0, delta).status, 202u);

@@ -73,7 +73,8 @@ TEST_F(PushTest, itGoesOnWhereAnEarlierOneStopped) {
   std::ofstream(part, std::ios::binary)
       .write(reinterpret_cast<const char*>(wrong.data()),
              static_cast<std::streamsize>(wrong.size() / 2));
-  const Outcome refused = push(url());
+  std::filesystem::rename(part, folder_.logFolder() / (".upload-" + digest_ + "-other.part"));
+  const Outcome refused = push(url("/v1/meshes/other"));
   EXPECT_EQ(refused.code, 1);
   EXPECT_NE(refused.text.find("422"), std::string::npos) << refused.text;
   EXPECT_EQ(push(url()).code, 0) << "what was wrong is gone";
@@ -114,7 +115,13 @@ TEST_F(PushTest, whatTheServersLogHasIsNotSentAgain) {
     ASSERT_TRUE(store_->rescan());
     const Outcome pushed = push(url);
     EXPECT_EQ(pushed.code, 0) << pushed.text;
-    EXPECT_EQ(pushed.text.find(" of them sent") != std::string::npos, isDelta) << pushed.text;
+    const std::size_t place = pushed.text.find(" bytes, ");
+    ASSERT_NE(place, std::string::npos) << pushed.text;
+    const auto sent = std::stoul(pushed.text.substr(place + 8));
+    if (isDelta)
+      EXPECT_LT(sent, log_.size() / 2);
+    else
+      EXPECT_GT(sent, log_.size()) << "the delta and the log";
     EXPECT_EQ(test::RawClient(server.port()).get("/v1/logs/" + digest_ + "/log").body,
               std::string(log_.begin(), log_.end()));
   }

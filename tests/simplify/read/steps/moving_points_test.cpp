@@ -237,8 +237,10 @@ TEST(MovingPoints, pointsThatPartAreNotWelded) {
 
 TEST(MovingPoints, aFewStepsAtATimeAreAsAllAtOnce) {
   const std::vector<TetMesh> resting{stepOf(0, {}), stepOf(1, {}), stepOf(2, {0, 0, 1})};
+  const std::vector<TetMesh> returning{stepOf(0, {}), stepOf(1, {0, 0, 1}), stepOf(2, {}),
+                                       stepOf(3, {})};
   for (const std::vector<TetMesh>& steps :
-       {movingSteps(), resting, std::vector<TetMesh>{resting[0], resting[1]}}) {
+       {movingSteps(), resting, returning, std::vector<TetMesh>{resting[0], resting[1]}}) {
     const fs::path path = seriesOf(steps);
     const ReadMesh all = readAll(path).value();
     ReadOptions options;
