@@ -9,8 +9,8 @@ namespace {
 
 /// Bytes of one request; an answer is at most 4 MiB.
 constexpr std::uint64_t kRangeBytes = 1u << 20;
-/// Bytes of a front, and of the later instants: a hundred thousand instants. A delta that needs more
-/// is not worth it, whatever the server says.
+/// Bytes of a front, and of the later instants. A hundred thousand instants take as many. No delta
+/// is worth more, whatever the server says.
 constexpr std::uint64_t kMaxIndexBytes = 32u << 20;
 
 Result<std::string> bodyOf(const HttpUrl& server, const HttpRequest& request, unsigned status) {

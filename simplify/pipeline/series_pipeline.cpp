@@ -58,7 +58,15 @@ Status addStatistics(std::size_t steps, const InstantsReader& read, const std::s
     if (!mesh) return std::unexpected(mesh.error());
     if (Status added = statistics.add(mesh->fields); !added) return added;
   }
-  std::ranges::move(statistics.take(), std::back_inserter(sample));
+  // Series that the sample shows once, or not at all, have statistics as well.
+  for (MeshField& made : statistics.take()) {
+    if (std::ranges::find(sample, made.name, &MeshField::name) != sample.end())
+      return fail(ErrorCode::kBadValue,
+                  "two fields would have the name " + made.name +
+                      ", one of them for the statistics over time; rename the input's field or "
+                      "series, or leave out `time-statistics`");
+    sample.push_back(std::move(made));
+  }
   return {};
 }
 

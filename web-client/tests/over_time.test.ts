@@ -208,7 +208,7 @@ describe('a plot over time from a server', () => {
       at: [0, 1],
       values: [5, NaN],
       time: 0,
-      status: '18.0\u00a0kB from the server, at most 1\u202f% off (rms), level 3 of 7.',
+      status: '18.0\u00a0kB from the server, rms error at most 1\u202f%, level 3 of 7.',
     });
     expect([isExactOffered, announced]).toEqual([true, [curve!.status]]);
     expect([asked, mesh.ahead, fake.requests.length]).toEqual([[], [], 1]);

@@ -50,6 +50,11 @@ test('whoIsMovedLeadsAndEachChangesOnce', () => {
   expect(viewers.map(({changes}) => changes)).toEqual([3, 3, 3]);
 });
 
+test('aTimeThatTheGroupDoesNotKnowYetIsTheJoiners', () => {
+  const first = new FakeViewer().join();
+  expect(timesOf(first, new FakeViewer('5').join())).toEqual(['5', '5']);
+});
+
 test('whoJoinsTakesTheTimeOfTheGroupAndGoesOnPlaying', () => {
   const first = new FakeViewer('2').join();
   const second = new FakeViewer('5');

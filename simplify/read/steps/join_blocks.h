@@ -21,10 +21,10 @@ namespace qtet {
 
 /// The first step's mesh with every step's fields, called NAME@TIME. If the points of a later step
 /// lie elsewhere, every step gets the point field displacementName (moving_points.h). It says how
-/// far they are from those of the first step. `moves` says that those of another step lie elsewhere,
-/// which is not among these. The field is left out unless `names` means it. The report's notes and
-/// its `motion` say so. Errors: bad-input where a step has other cells than the first, another
-/// number of points, or a point of a cell that is not finite.
+/// far they are from those of the first step. With `moves` those of some other step lie elsewhere.
+/// The field is left out unless `names` means it. The report's notes and its `motion` say so.
+/// Errors: bad-input where a step has other cells than the first, another number of points, or a
+/// point of a cell that is not finite.
 [[nodiscard]] Result<CellMesh> joinSteps(std::vector<TimedCells> steps,
                                          const std::filesystem::path& path, const FieldNames& names,
                                          ReadReport& report, bool moves);

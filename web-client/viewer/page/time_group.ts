@@ -6,7 +6,7 @@ export interface TimeMember {
   readonly time: string | null;
   /** Shows the instant nearest to this time; null: its first one. */
   take(time: string | null): void;
-  /** Ends to play. */
+  /** Stops playing. */
   stop(): void;
 }
 
@@ -27,7 +27,10 @@ class TimeGroup {
   join(member: TimeMember): void {
     const [first] = this.members;
     this.members.add(member);
-    if (first) this.pass(() => member.take(this.time ?? first.time));
+    if (!first) return;
+    const time = this.time ?? first.time;
+    if (time === null && member.time !== null) this.lead(member);
+    else this.pass(() => member.take(time));
   }
 
   lead(member: TimeMember): void {
@@ -56,7 +59,10 @@ class TimeGroup {
 
 const groupsIn = new WeakMap<object, Map<string, TimeGroup>>();
 
-/** The member takes the time of those that are in the document's group of this name. */
+/**
+ * The member takes the time of the document's group of this name. Where that is not known yet, the
+ * group takes the member's.
+ */
 export function joinTimeGroup(document: object, name: string, member: TimeMember): Membership {
   const groups = groupsIn.get(document) ?? new Map<string, TimeGroup>();
   groupsIn.set(document, groups);

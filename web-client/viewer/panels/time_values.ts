@@ -141,7 +141,7 @@ export class ServerValues implements TimeValues {
   get status(): string {
     const {here, isExact} = this;
     if (!here) return 'The server is asked for the values.';
-    const quality = isExact ? 'exact' : `at most ${formatError(kSeriesError)} off (rms)`;
+    const quality = isExact ? 'exact' : `rms error at most ${formatError(kSeriesError)}`;
     const level = `level ${here.level} of ${this.question.lastLevel}`;
     const more = {
       unasked: '',
