@@ -133,12 +133,12 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     name = f"{NAME}-{version()}-{_tag()}.whl"
     day = time.gmtime(date())[:6]
     out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as wheel:
         for path, content, executable in members:
             info = zipfile.ZipInfo(path, day)
             info.compress_type = zipfile.ZIP_DEFLATED
             info.external_attr = (0o100755 if executable else 0o100644) << 16
-            wheel.writestr(info, content)
+            wheel.writestr(info, content, compresslevel=9)  # a ZipInfo ignores the file's level
     target = pathlib.Path(wheel_directory) / name
     target.parent.mkdir(parents=True, exist_ok=True)
     part = target.with_suffix(".part")
