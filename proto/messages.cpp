@@ -2,22 +2,17 @@
 
 #include "proto/json_reader.h"
 #include "proto/limits.h"
+#include "proto/log_digest.h"
 #include "proto/stream_request_json.h"
 
 namespace qtet {
 namespace {
 
-constexpr std::size_t kDigestCharacters = 64;
 constexpr std::size_t kMaxTextBytes = 4096;  // of an error's detail
-
-bool isDigest(std::string_view text) {
-  return text.size() == kDigestCharacters &&
-         text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
 
 std::string readDigest(const JsonCursor& json) {
   std::string out = json.text(kDigestCharacters);
-  if (json.present() && !isDigest(out)) json.fail("must be 64 lower-case hexadecimal digits");
+  if (json.present() && !isLogDigest(out)) json.fail("must be 64 lower-case hexadecimal digits");
   return out;
 }
 

@@ -20,7 +20,7 @@ struct Piece {
 /// Smaller pieces cost more as an instruction than they save.
 constexpr std::uint32_t kLeastPiece = 64;
 
-/// Non-empty blocks in file order.
+/// The blocks of at least kLeastPiece bytes, in file order.
 std::vector<BlockEntry> blocksOf(const LogIndex& index) {
   std::vector<BlockEntry> out;
   const auto add = [&out](const BlockEntry& block) {

@@ -21,11 +21,14 @@ struct LogIndex;
 [[nodiscard]] std::optional<Bytes> makeDelta(const LogIndex& old, const LogIndex& index,
                                              ByteView log, std::uint64_t first, std::uint64_t most);
 
+/// Bytes of a delta for each byte that it gives: an instruction's three u64, and the byte itself.
+inline constexpr std::uint64_t kMaxDeltaBytesAByte = 25;
+
 /// Reads a delta that arrives piece by piece, and gives the new log's bytes piece by piece.
 class DeltaReader {
  public:
   /// The three integers of an instruction, before its own bytes.
-  static constexpr std::size_t kHeadBytes = 24;
+  static constexpr std::size_t kHeadBytes = kMaxDeltaBytesAByte - 1;
 
   /// `base` is the old log, which must outlive the reader. The delta may give `most` bytes.
   DeltaReader(ByteView base, std::uint64_t most) : base_(base), left_(most) {}
@@ -35,8 +38,7 @@ class DeltaReader {
   void feed(ByteView delta);
   /// The next bytes of the new log, at most `most` of them; none: the reader needs bytes. Errors:
   /// bad-value (a piece beyond the old log's end or before the last one, an instruction without a
-  /// byte, more bytes than promised).
-  /// After an error the reader is of no use.
+  /// byte, more bytes than promised). After an error the reader is of no use.
   [[nodiscard]] Result<ByteView> next(std::size_t most);
   /// Everything that was fed is used up, and the bytes that it names are given.
   [[nodiscard]] bool needsBytes() const { return fed_.empty() && copyBytes_ == 0; }

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <string_view>
 
 namespace qtet {
 
@@ -22,11 +21,6 @@ namespace qtet {
   struct stat opened{}, named{};
   return ::fstat(file, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
          opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-}
-
-/// 64 lower-case hexadecimal digits.
-[[nodiscard]] inline bool isLogDigest(std::string_view text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
 }  // namespace qtet

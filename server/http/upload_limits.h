@@ -29,8 +29,6 @@ inline constexpr std::size_t kCheckThreads = 1;
 inline constexpr std::uintmax_t kMaxCheckBytes = std::uintmax_t{4} << 30;
 /// Bytes of the old log that a delta copies at a time, on a thread that may wait for the disk.
 inline constexpr std::size_t kDeltaPiece = 1u << 20;
-/// Bytes of a delta for each byte that it gives: three u64 and the byte itself.
-inline constexpr std::uint64_t kMaxDeltaBytesAByte = 25;
 /// From a check's beginning to its end. That many tetrahedra take a minute.
 inline constexpr auto kCheckTime = 10min;
 /// The part of an interrupted upload is kept for so long, so that the upload can be resumed.

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <iterator>
 
+#include "proto/log_digest.h"
 #include "server/http/part_lock.h"
 #include "server/http/upload_limits.h"
 

@@ -13,6 +13,7 @@
 #include <new>
 
 #include "proto/json_reader.h"
+#include "proto/log_digest.h"
 #include "server/http/http_resource.h"
 #include "server/http/part_lock.h"
 #include "server/http/publishing.h"

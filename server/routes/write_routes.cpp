@@ -3,9 +3,9 @@
 #include <cassert>
 #include <charconv>
 
+#include "codec/log/log_delta.h"
 #include "proto/json_reader.h"
-#include "server/http/part_lock.h"
-#include "server/http/upload_limits.h"
+#include "proto/log_digest.h"
 #include "server/routes/access_routes.h"
 
 namespace qtet {
@@ -75,9 +75,10 @@ Answer routePut(const RequestView& request, const RequestTarget& target, UploadR
     return badRequest(
         "Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes; or bytes */SIZE, "
         "and it has none");
-  if (out.from && out.bodyBytes / limits::kMaxDeltaBytesAByte > out.totalBytes - out.first)
+  if (out.from && out.bodyBytes / kMaxDeltaBytesAByte > out.totalBytes - out.first)
     return problem(413, "content-too-large",
-                   "a delta has at most 25 bytes for each byte that it gives");
+                   "a delta has at most " + std::to_string(kMaxDeltaBytesAByte) +
+                       " bytes for each byte that it gives");
   return Answer(std::move(out));
 }
 

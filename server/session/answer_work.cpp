@@ -117,23 +117,12 @@ asio::awaitable<std::optional<Reply>> receiveBody(HttpInput& input, Upload& uplo
 /// Has the log checked and published. kClientGone: the check was broken off.
 asio::awaitable<Reply> finish(Upload& upload, ClientSocket& socket, const Services& services) {
   std::stop_source stop;
-  auto start = [&services, &socket, &upload, &stop,
-                executor = socket.get_executor()](auto handler) {
-    // while it is, the coroutine waits here, and with it the socket
-    const auto pending = std::make_shared<bool>(true);
-    watchForEnd(socket, [pending] { return *pending; }, [&stop] { stop.request_stop(); });
-    asio::post(*services.checkers, [&upload, token = stop.get_token(), pending, executor,
-                                    handler = std::move(handler)]() mutable {
-      Reply reply = upload.finish(token);
-      asio::post(executor,
-                 [pending, handler = std::move(handler), reply = std::move(reply)]() mutable {
-                   *pending = false;
-                   handler(std::move(reply));
-                 });
-    });
-  };
-  Reply out = co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Reply)>(
-      std::move(start), use_awaitable);
+  // while it is, the coroutine waits here, and with it the socket
+  const auto pending = std::make_shared<bool>(true);
+  watchForEnd(socket, [pending] { return *pending; }, [&stop] { stop.request_stop(); });
+  Reply out = co_await runOn<Reply>(
+      *services.checkers, [&upload, token = stop.get_token()] { return upload.finish(token); });
+  *pending = false;
   socket.cancel();  // the watch, if it still stands
   co_return stop.stop_requested() ? clientGone() : std::move(out);
 }

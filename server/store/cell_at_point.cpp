@@ -112,12 +112,17 @@ std::optional<PointInCell> cellAtPoint(std::span<const LatticePoint> points,
   return nearest;
 }
 
-double nearStepsOf(std::span<const LatticePoint> points, const std::optional<LevelError>& error) {
-  if (!error || points.empty()) return kNearSteps;
-  LatticePoint low = points.front(), high = low;
+std::array<LatticePoint, 2> boxOf(std::span<const LatticePoint> points) {
+  LatticePoint low = points.empty() ? LatticePoint() : points.front(), high = low;
   for (const LatticePoint& p : points)
     for (std::size_t a = 0; a < 3; ++a)
       low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  return {low, high};
+}
+
+double nearStepsOf(std::span<const LatticePoint> points, const std::optional<LevelError>& error) {
+  if (!error) return kNearSteps;
+  const auto [low, high] = boxOf(points);
   Vector box{};
   for (std::size_t a = 0; a < 3; ++a) box[a] = static_cast<double>(high[a]) - low[a];
   // The error is a share of the original's diagonal D. Each side of its box is longer than the

@@ -28,6 +28,9 @@ struct PointInCell {
                                                      const std::array<double, 3>& point,
                                                      double near = kNearSteps);
 
+/// Low and high corner of the points' box; both 0 without points.
+[[nodiscard]] std::array<LatticePoint, 2> boxOf(std::span<const LatticePoint> points);
+
 /// Lattice steps. A point of the original may lie so far outside a level: kNearSteps, and the known
 /// distance from the original's boundary to the level's.
 [[nodiscard]] double nearStepsOf(std::span<const LatticePoint> points,

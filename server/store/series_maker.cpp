@@ -75,10 +75,7 @@ Status eachField(const LevelRequest& request, Refiner& refiner, const std::stop_
 
 std::unexpected<Error> isOutside(const LevelRequest& request, std::span<const LatticePoint> points,
                                  const Lattice& lattice) {
-  LatticePoint low = points.empty() ? LatticePoint() : points.front(), high = low;
-  for (const LatticePoint& p : points)
-    for (std::size_t a = 0; a < 3; ++a)
-      low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  const auto [low, high] = boxOf(points);
   const auto text = [](const std::array<double, 3>& p) {
     return "(" + shortest(p[0]) + ", " + shortest(p[1]) + ", " + shortest(p[2]) + ")";
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "proto/log_digest.h"
 #include "simplify/commands/command_line.h"
 
 namespace qtet {
@@ -33,8 +34,7 @@ Result<OldLog> fetchOldLog(const HttpUrl& server, const HttpRequest& request) {
       !json.value("bytes", OrderedJson()).is_number_unsigned())
     return fail(ErrorCode::kIo, request.target + ": this is no mesh's description");
   OldLog out{.digest = json["digest"].get<std::string>(), .index = {}};
-  if (out.digest.size() != 64 ||
-      out.digest.find_first_not_of("0123456789abcdef") != std::string::npos)
+  if (!isLogDigest(out.digest))
     return fail(ErrorCode::kIo, request.target + ": the digest is none");
   const auto fileBytes = json["bytes"].get<std::uint64_t>();
   const auto fetch = [&](Bytes& into, std::uint64_t first, std::uint64_t end) -> Status {

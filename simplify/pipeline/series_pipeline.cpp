@@ -44,6 +44,12 @@ std::size_t fieldsOfAll(std::span<const MeshField> sample, std::size_t steps) {
   return out;
 }
 
+Result<TetMesh> readSteps(const InstantsReader& read, std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> window(end - begin);
+  std::iota(window.begin(), window.end(), begin);
+  return read(window);
+}
+
 /// Puts the statistics of all steps behind the fields of the sample.
 Status addStatistics(std::size_t steps, const InstantsReader& read, const std::stop_token& stop,
                      std::vector<MeshField>& sample) {
@@ -52,9 +58,7 @@ Status addStatistics(std::size_t steps, const InstantsReader& read, const std::s
   TimeStatistics statistics;
   for (std::size_t begin = 0; begin < steps; begin += kWindow) {
     if (stop.stop_requested()) return cancelled();
-    std::vector<std::size_t> window(std::min(kWindow, steps - begin));
-    std::iota(window.begin(), window.end(), begin);
-    const Result<TetMesh> mesh = read(window);
+    const Result<TetMesh> mesh = readSteps(read, begin, std::min(begin + kWindow, steps));
     if (!mesh) return std::unexpected(mesh.error());
     if (Status added = statistics.add(mesh->fields); !added) return added;
   }
@@ -77,9 +81,7 @@ Status addAll(std::size_t steps, const InstantsReader& read, const PipelineOptio
     if (options.stop.stop_requested()) return cancelled();
     if (options.progress)
       options.progress(Stage::kEncode, static_cast<double>(begin) / static_cast<double>(steps));
-    std::vector<std::size_t> window(std::min(end, steps) - begin);
-    std::iota(window.begin(), window.end(), begin);
-    Result<TetMesh> mesh = read(window);
+    Result<TetMesh> mesh = readSteps(read, begin, std::min(end, steps));
     if (!mesh) return std::unexpected(mesh.error());
     std::erase_if(mesh->fields, [](const MeshField& field) { return !instantName(field.name); });
     if (const auto cleaned = cleanMesh(*mesh, options.stop); !cleaned)
