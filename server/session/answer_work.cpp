@@ -9,6 +9,7 @@
 #include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <span>
+#include <type_traits>
 
 #include "server/http/client_watch.h"
 #include "server/http/http_resource.h"
@@ -75,7 +76,10 @@ asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const Re
 }
 
 /// The result of `work`, which may wait for the disk, on a thread of the pool.
+/// `work` captures references alone: GCC 12 destroys a temporary closure in the operand of co_await
+/// twice.
 template <class Outcome, class Work>
+  requires std::is_trivially_destructible_v<Work>
 asio::awaitable<Outcome> runOn(asio::thread_pool& pool, Work work) {
   auto start = [&pool, &work, executor = co_await asio::this_coro::executor](auto handler) {
     asio::post(pool, [&work, executor, handler = std::move(handler)]() mutable {
@@ -120,8 +124,8 @@ asio::awaitable<Reply> finish(Upload& upload, ClientSocket& socket, const Servic
   // while it is, the coroutine waits here, and with it the socket
   const auto pending = std::make_shared<bool>(true);
   watchForEnd(socket, [pending] { return *pending; }, [&stop] { stop.request_stop(); });
-  Reply out = co_await runOn<Reply>(
-      *services.checkers, [&upload, token = stop.get_token()] { return upload.finish(token); });
+  Reply out =
+      co_await runOn<Reply>(*services.checkers, [&] { return upload.finish(stop.get_token()); });
   *pending = false;
   socket.cancel();  // the watch, if it still stands
   co_return stop.stop_requested() ? clientGone() : std::move(out);
