@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <span>
 
@@ -162,18 +163,16 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
     Item& item = out.emplace_back();
     item.values = inLogOrder(quantised->values, info.components, logs);
     if (!isCellField(info)) item.values = fused_->of(std::move(item.values), info.components);
-    item.completed =
-        quantised->missing.empty()
-            ? item.values
-            : withMissing(history_->history, info,
-                          inLogOrder(quantised->missing, info.components, logs), item.values);
+    if (!quantised->missing.empty())
+      item.missing = inLogOrder(quantised->missing, info.components, logs);
     item.info = info;
   }
   return out;
 }
 
-/// Gives each field its errors, where the log knows some of its levels.
-Status FieldAdder::measure(std::vector<Item>& items) {
+/// Gives each field its errors, where the log knows some of its levels. REQUIRES: the items' fields
+/// are the history's last ones.
+Status FieldAdder::measure(std::span<Item> items) {
   MeasureOptions measure;
   for (const ManifestLevel& level : manifest_.levels)
     measure.levels.push_back(level.error.has_value());
@@ -183,11 +182,18 @@ Status FieldAdder::measure(std::vector<Item>& items) {
   measure.threads = options_.threads;
   measure.progress = options_.progress;
   FusionHistory& h = history_->history;
-  for (Item& item : items)
-    h.fields.push_back(item.info), h.values.push_back(std::move(item.values));
+  // the others may have missing values
+  const auto others = static_cast<std::ptrdiff_t>(h.fields.size() - items.size());
+  std::vector<FieldInfo> fields(h.fields.begin(), h.fields.begin() + others);
+  std::vector<std::vector<std::int32_t>> values;
+  std::move(h.values.begin(), h.values.begin() + others, std::back_inserter(values));
+  h.fields.erase(h.fields.begin(), h.fields.begin() + others);
+  h.values.erase(h.values.begin(), h.values.begin() + others);
   const Result<LevelErrors> errors = measureLevels(h, measure);
-  h.fields.clear(), h.values.clear();
   if (!errors) return std::unexpected(errors.error());
+  h.fields.insert(h.fields.begin(), fields.begin(), fields.end());
+  h.values.insert(h.values.begin(), std::move_iterator(values.begin()),
+                  std::move_iterator(values.end()));
   for (std::size_t f = 0; f < items.size(); ++f)
     for (const std::optional<LevelError>& level : *errors)
       items[f].errors.push_back(level ? level->fields[f] : FieldError());
@@ -208,44 +214,71 @@ Status FieldAdder::fetch(Last& last) {
   return {};
 }
 
-Status FieldAdder::code(std::vector<Item> items) {
+/// The history gets the log's instants that the items may be predicted from.
+Status FieldAdder::addParents(const std::vector<Item>& items, Numbers& numbers) {
   FusionHistory& h = history_->history;
-  std::vector<std::size_t> numbers;  // of the history's fields, as NewField::prediction counts
-  std::vector<std::size_t> rows;     // depths of those that are there already
   for (const Item& item : items) {
     Last* const last = lastBefore(item.info);
     if (last == nullptr || !mayBeParent(*last) ||
-        std::ranges::find(numbers, last->number) != numbers.end())
+        std::ranges::find(numbers.all, last->number) != numbers.all.end())
       continue;
     if (Status s = fetch(*last); !s) return s;
     h.fields.push_back(last->info), h.values.push_back(last->values);
-    numbers.push_back(last->number), rows.push_back(depths_[last->number]);
+    numbers.all.push_back(last->number), numbers.rows.push_back(depths_[last->number]);
   }
-  for (const std::size_t place : decodingOrderOf(h.fields, items)) {
-    Item& item = items[place];
-    numbers.push_back(manifest_.fields.size() + added_.fields.size());
-    h.fields.push_back(item.info), h.values.push_back(item.completed);
+  return {};
+}
+
+/// The items' missing values are missing, and the items are numbered and known as last instants.
+void FieldAdder::complete(std::vector<Item>& items, Numbers& numbers) {
+  FusionHistory& h = history_->history;
+  for (Item& item : items) {
+    std::vector<std::int32_t>& values = h.values[numbers.all.size()];
+    if (!item.missing.empty())
+      values = withMissing(h, item.info, std::move(item.missing), std::move(values));
+    numbers.all.push_back(manifest_.fields.size() + added_.fields.size());
     added_.fields.push_back({manifestFieldOf(item.info), {}, std::move(item.errors), {}});
     const auto name = instantName(item.info.name);
     if (!name) continue;
     Last& last = last_[{item.info.association, std::string(name->series)}];
     if (last.info.name.empty() || last.time < name->time)
-      last = {item.info, name->time, numbers.back(), std::move(item.completed)};
+      last = {item.info, name->time, numbers.all.back(), values};
   }
-  const Result<std::size_t> differences = toTimeDifferences(h, {}, {}, rows);
-  if (!differences) return std::unexpected(differences.error());
-  for (std::size_t i = rows.size(); i < numbers.size(); ++i) {
+}
+
+/// The blocks of the history's fields that the log does not have.
+Status FieldAdder::encode(const Numbers& numbers) {
+  const FusionHistory& h = history_->history;
+  for (std::size_t i = numbers.rows.size(); i < numbers.all.size(); ++i) {
     TimePrediction prediction = h.fields[i].prediction;
     for (std::size_t p = 0; p < prediction.count; ++p)
       prediction.parents[p].field =
-          static_cast<std::uint16_t>(numbers[prediction.parents[p].field]);
+          static_cast<std::uint16_t>(numbers.all[prediction.parents[p].field]);
     depths_.push_back(depthOf(prediction, depths_));
-    NewField& field = added_.fields[numbers[i] - manifest_.fields.size()];
+    NewField& field = added_.fields[numbers.all[i] - manifest_.fields.size()];
     field.prediction = prediction;
     Result<std::vector<Bytes>> blocks = encodeFieldBlocks(*history_, h.fields[i], h.values[i]);
     if (!blocks) return std::unexpected(blocks.error());
     field.blocks = std::move(*blocks);
   }
+  return {};
+}
+
+Status FieldAdder::code(std::vector<Item> items) {
+  FusionHistory& h = history_->history;
+  Numbers numbers;
+  if (Status s = addParents(items, numbers); !s) return s;
+  std::vector<Item> ordered;
+  for (const std::size_t place : decodingOrderOf(h.fields, items))
+    ordered.push_back(std::move(items[place]));
+  for (Item& item : ordered)
+    h.fields.push_back(item.info), h.values.push_back(std::move(item.values));
+  const Result<std::size_t> predicted = predictInTime(h, {}, {}, numbers.rows);
+  if (!predicted) return std::unexpected(predicted.error());
+  if (Status s = measure(ordered); !s) return s;
+  complete(ordered, numbers);
+  toTimeDifferences(h);
+  if (Status s = encode(numbers); !s) return s;
   h.fields.clear(), h.values.clear();
   return {};
 }
@@ -256,7 +289,6 @@ Status FieldAdder::add(const TetMesh& mesh) {
   if (Status s = matchTo(mesh); !s) return s;
   Result<std::vector<Item>> items = itemsOf(mesh);
   if (!items) return std::unexpected(items.error());
-  if (Status s = measure(*items); !s) return s;
   return code(std::move(*items));
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,9 +57,9 @@ class FieldAdder {
   /// A field on its way into the log.
   struct Item {
     FieldInfo info;
-    std::vector<std::int32_t> values;     // of the history's elements, a number everywhere
-    std::vector<std::int32_t> completed;  // the same with the missing values missing
-    std::vector<FieldError> errors;       // one a level
+    std::vector<std::int32_t> values;   // of the history's elements, a number everywhere
+    std::vector<std::uint8_t> missing;  // of the last level's elements; empty if none is
+    std::vector<FieldError> errors;     // one a level
   };
   /// The last instant of a series: `number` as NewField::prediction counts.
   struct Last {
@@ -67,13 +68,21 @@ class FieldAdder {
     std::size_t number = 0;
     std::vector<std::int32_t> values;  // completed; empty until they are needed
   };
+  /// The fields of the history while new ones are coded: those that the log has come first.
+  struct Numbers {
+    std::vector<std::size_t> all;   // as NewField::prediction counts
+    std::vector<std::size_t> rows;  // depths of those that the log has
+  };
   using SeriesKey = std::pair<std::string, std::string>;  // association, name
 
   FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest manifest,
              std::unique_ptr<LogHistory> history);
   [[nodiscard]] Status matchTo(const TetMesh& mesh);
   [[nodiscard]] Result<std::vector<Item>> itemsOf(const TetMesh& mesh);
-  [[nodiscard]] Status measure(std::vector<Item>& items);
+  [[nodiscard]] Status addParents(const std::vector<Item>& items, Numbers& numbers);
+  [[nodiscard]] Status measure(std::span<Item> items);
+  void complete(std::vector<Item>& items, Numbers& numbers);
+  [[nodiscard]] Status encode(const Numbers& numbers);
   [[nodiscard]] Status code(std::vector<Item> items);
   void keepScale(const SeriesKey& key, FieldInfo info);
   [[nodiscard]] Last* lastBefore(const FieldInfo& info);

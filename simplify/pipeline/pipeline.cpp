@@ -45,7 +45,7 @@ class Stages {
     start_ = now;
   }
 
-  /// For the stage's own options; `from` is the share of the stage that is done already.
+  /// For the stage's own options: work that is the share from `from` to `to` of the stage.
   [[nodiscard]] std::function<void(double)> progress(double from = 0, double to = 1) {
     return [this, from, to](double fraction) { tell(from + (to - from) * fraction); };
   }
@@ -120,16 +120,27 @@ Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run
   return std::move(fused->history);
 }
 
+// Share of simplifying that goes into fusing, where a log has series.
+constexpr double kFusingShare = 0.8;
+
+/// The history, with predictions of instants from others in the order of orderSeries().
 Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
   Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
   if (!options) return std::unexpected(options.error());
-  options->progress = run.stages.progress();
+  const bool hasSeries = !seriesOf(std::span<const FieldInfo>(quantised.mesh.fields)).empty();
+  options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
   options->stop = run.options.stop;
   if (run.options.algorithm != Algorithm::kPaper &&
       !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
     run.report.boundaryWeight = options->cost.boundaryWeight;
-  return fuse(std::move(quantised.mesh), *options, run);
+  Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
+  if (!history) return history;
+  // before measuring, since it moves values
+  const Result<std::size_t> predicted =
+      predictInTime(*history, run.options.stop, run.stages.progress(kFusingShare, 1));
+  if (!predicted) return std::unexpected(predicted.error());
+  return history;
 }
 
 /// Where the base mesh is: by a rule, unless its size or the error of all levels was asked for.
@@ -154,29 +165,15 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   return measureLevels(history, options);
 }
 
-// Share of the encoding that goes into differences in time, where a log has series.
-constexpr double kDifferencesShare = 0.5;
-
-/// The instants of series become differences, in the order in which orderSeries() put them. Returns
-/// the share of the encoding that is done then.
-Result<double> differInTime(FusionHistory& history, Run& run) {
+Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& run) {
   if (Status s = run.stages.begin(Stage::kEncode); !s) return std::unexpected(s.error());
-  if (seriesOf(std::span<const FieldInfo>(history.fields)).empty()) return 0;
-  const Result<std::size_t> count =
-      toTimeDifferences(history, run.options.stop, run.stages.progress(0, kDifferencesShare));
-  if (!count) return std::unexpected(count.error());
-  return kDifferencesShare;
-}
-
-/// `done`: the share of the stage that is done already.
-Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, double done, Run& run) {
   Result<std::unique_ptr<ByteSpool>> spool =
       run.options.spool ? run.options.spool() : std::make_unique<MemorySpool>();
   if (!spool) return std::unexpected(spool.error());
   LogWriterOptions options;
   options.source = run.options.source;
   options.generator = "qtet " QTET_VERSION;
-  options.progress = run.stages.progress(done);
+  options.progress = run.stages.progress();
   options.stop = run.options.stop;
   options.errors = std::move(errors);
   options.focus = run.focus;
@@ -253,9 +250,8 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
     run.note({"no cell of the base mesh is inside out at the " +
               std::to_string(run.flips.instants) + " instants of " + std::string(kDisplacement)});
   restoreMissing(*history, quantised->missing);
-  const Result<double> done = differInTime(*history, run);
-  if (!done) return std::unexpected(done.error());
-  Result<MadeLog> log = encode(*history, std::move(*errors), *done, run);
+  toTimeDifferences(*history);
+  Result<MadeLog> log = encode(*history, std::move(*errors), run);
   if (!log) return std::unexpected(log.error());
   run.stages.end();
   if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());

@@ -1,15 +1,19 @@
 #include "simplify/series/time_differences.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "simplify/clean/quantise_field.h"
+#include "simplify/mesh/moved_place.h"
+#include "simplify/mesh/tet_mesh.h"
 #include "simplify/series/series.h"
+#include "simplify/series/time_weights.h"
 
 namespace qtet {
 namespace {
@@ -23,40 +27,27 @@ std::int32_t differenceOf(const FusionHistory& history, std::size_t f,
                                  kMissing));
 }
 
-/// About the bits that the field takes: those of what a prey vertex has beyond its fused vertex, or
-/// a cell beyond the one before.
-std::uint64_t bitsOf(const FusionHistory& history, std::size_t f,
-                     const TimePrediction& prediction) {
-  const std::size_t n = history.fields[f].components;
-  std::uint64_t bits = 0;
-  const auto count = [&](std::size_t element, std::size_t from) {
-    for (std::size_t c = 0; c < n; ++c) {
-      const std::int32_t a = differenceOf(history, f, prediction, element * n + c),
-                         b = differenceOf(history, f, prediction, from * n + c);
-      if (a == kMissing || b == kMissing) continue;
-      bits += static_cast<std::uint64_t>(
-          std::bit_width(static_cast<std::uint32_t>(std::abs(std::int64_t{a} - b))));
-    }
-  };
-  if (isCellField(history.fields[f])) {
-    for (std::size_t t = 1; t < history.values[f].size() / n; ++t) count(t, t - 1);
-  } else {
-    for (const Fusion& fusion : history.fusions)
-      for (std::size_t i = 0; i < fusion.k; ++i) count(fusion.prey[i], fusion.fused);
-  }
-  return bits;
-}
+// A choice looks at so many fusions or cells, evenly spread. So its time does not grow with the
+// mesh.
+constexpr std::size_t kMostLookedAt = 1 << 14;
 
-/// The value at `time` of the polynomial through the values at `times`, as weights of these.
-std::vector<double> lagrange(std::span<const double> times, double time) {
-  std::vector<double> out;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    double weight = 1;
-    for (std::size_t j = 0; j < times.size(); ++j)
-      if (j != i) weight *= (time - times[j]) / (times[i] - times[j]);
-    out.push_back(weight);
+/// Calls visit(i, j) for places in the field's values: about what is coded is the value at i less
+/// that at j. They are a prey vertex and its fused vertex, or a cell and the one before.
+template <class Visit>
+void eachPair(const FusionHistory& history, std::size_t f, const Visit& visit) {
+  const std::size_t n = history.fields[f].components;
+  const bool ofCells = isCellField(history.fields[f]);
+  const std::size_t count = ofCells ? history.values[f].size() / n : history.fusions.size();
+  const std::size_t step = count / kMostLookedAt + 1;
+  for (std::size_t at = ofCells ? 1 : 0; at < count; at += step) {
+    if (ofCells) {
+      for (std::size_t c = 0; c < n; ++c) visit(at * n + c, (at - 1) * n + c);
+      continue;
+    }
+    const Fusion& fusion = history.fusions[at];
+    for (std::size_t i = 0; i < fusion.k; ++i)
+      for (std::size_t c = 0; c < n; ++c) visit(fusion.prey[i] * n + c, fusion.fused * n + c);
   }
-  return out;
 }
 
 /// Equal integers of both are equal values.
@@ -64,70 +55,147 @@ bool haveOneScale(const FieldInfo& a, const FieldInfo& b) {
   return a.step == b.step && a.minimum == b.minimum;
 }
 
+/// A fused vertex's value is an estimate that may be another by a little.
+bool maySettle(const FieldInfo& field) {
+  const auto name = instantName(field.name);
+  return !isCellField(field) && isFloatType(field.type) && !field.hasMissing &&
+         !(name && name->series == kDisplacement);
+}
+
 class Chooser {
  public:
   Chooser(FusionHistory& history, const Series& series, std::span<const std::size_t> rows)
-      : history_(history), series_(series), rows_(rows) {}
+      : history_(history), series_(series), rows_(rows) {
+    for (const Fusion& fusion : history.fusions) fused_.push_back(fusion.fused);
+    if (!fused_.empty()) firstFused_ = *std::ranges::min_element(fused_);
+  }
 
   void choose(const InstantStep& step) {
-    const std::size_t f = series_.fields[step.instant];
-    if (f < rows_.size()) {
-      anchorsInARow_ = rows_[f];
+    f_ = series_.fields[step.instant];
+    if (f_ < rows_.size()) {
+      anchorsInARow_ = rows_[f_];
       return;
     }
     // with more a difference could leave what a value block holds
-    if (history_.fields[f].bits > kMostScaleBits) return;
+    if (history_.fields[f_].bits > kMostScaleBits) return;
     best_ = {};
-    least_ = bitsOf(history_, f, best_);
-    if (step.isAnchor) {
-      anchorsInARow_ = anchorsInARow_ + 1 < kAnchorsInARow ? anchorsInARow_ + 1 : 0;
-      if (anchorsInARow_ > 0) tryOut(f, step.around, step.instant);
-      if (best_.isNone()) anchorsInARow_ = 0;
-    } else {
-      tryAround(f, step);
-    }
-    history_.fields[f].prediction = best_;
+    least_ = bitsOf(best_, 0);
+    if (step.isAnchor)
+      tryBefore(step);
+    else
+      tryAround(step);
+    history_.fields[f_].prediction = best_;
+    if (!best_.isNone() && maySettle(history_.fields[f_])) settle(bestTolerance());
   }
 
  private:
-  void tryAround(std::size_t f, const InstantStep& step) {
+  void tryBefore(const InstantStep& step) {
+    anchorsInARow_ = anchorsInARow_ + 1 < kAnchorsInARow ? anchorsInARow_ + 1 : 0;
+    if (anchorsInARow_ > 0) tryOut(step.around, step.instant);
+    // the anchor before rests on the one before that, so it is decoded anyway
+    if (anchorsInARow_ > 1 && step.around[0] >= kWindow)
+      tryOut({step.around[0], step.around[0] - kWindow}, step.instant);
+    if (best_.isNone()) anchorsInARow_ = 0;
+  }
+
+  void tryAround(const InstantStep& step) {
     const auto right = std::ranges::lower_bound(step.around, step.instant);
     const std::size_t before = *(right - 1), after = *right;
     const double time = series_.times[step.instant];
     const bool isLeft = time - series_.times[before] <= series_.times[after] - time;
-    tryOut(f, {isLeft ? before : after}, step.instant);
-    tryOut(f, {before, after}, step.instant);
-    if (step.around.size() > 2) tryOut(f, step.around, step.instant);
+    tryOut({isLeft ? before : after}, step.instant);
+    tryOut({before, after}, step.instant);
+    if (step.around.size() > 2) tryOut(step.around, step.instant);
   }
 
-  /// Prediction from these instants, if all are fields that come before and the weights fit.
-  void tryOut(std::size_t f, const std::vector<std::size_t>& instants, std::size_t instant) {
+  /// Prediction from these instants, if all are fields that come before.
+  void tryOut(const std::vector<std::size_t>& instants, std::size_t instant) {
     std::vector<double> times;
-    for (const std::size_t i : instants) times.push_back(series_.times[i]);
-    const std::vector<double> shares = lagrange(times, series_.times[instant]);
-    TimePrediction prediction;
-    int rest = TimePrediction::kOne;
-    for (std::size_t i = 0; i < instants.size(); ++i) {
-      const std::size_t parent = series_.fields[instants[i]];
-      const auto weight = static_cast<int>(std::lround(shares[i] * TimePrediction::kOne));
-      if (parent >= f || !haveOneScale(history_.fields[parent], history_.fields[f]) ||
-          std::abs(weight) > 4 * TimePrediction::kOne)
-        return;
-      rest -= weight;
-      prediction.parents[prediction.count++] = {static_cast<std::uint16_t>(parent),
-                                                static_cast<std::int8_t>(weight)};
+    std::vector<std::uint16_t> parents;
+    for (const std::size_t i : instants) {
+      const std::size_t parent = series_.fields[i];
+      if (parent >= f_ || !haveOneScale(history_.fields[parent], history_.fields[f_])) return;
+      parents.push_back(static_cast<std::uint16_t>(parent));
+      times.push_back(series_.times[i]);
     }
-    // what rounding leaves goes to the largest
-    const auto largest = std::ranges::max_element(
-        prediction.parents, {}, [](const TimePrediction::Parent& p) { return std::abs(p.weight); });
-    largest->weight = static_cast<std::int8_t>(largest->weight + rest);
-    if (const std::uint64_t bits = bitsOf(history_, f, prediction); bits < least_)
+    tryWeights(parents, polynomialWeights(times, series_.times[instant]));
+    const std::vector<double> even = fitted(parents, WeightFit(parents.size()));
+    tryWeights(parents, even);
+    tryWeights(parents, fitted(parents, WeightFit(even)));
+  }
+
+  void tryWeights(std::span<const std::uint16_t> parents, std::span<const double> weights) {
+    const std::vector<int> rounded = roundedWeights(weights);
+    if (rounded.empty()) return;
+    TimePrediction prediction;
+    for (std::size_t i = 0; i < parents.size(); ++i)
+      prediction.parents[prediction.count++] = {parents[i], static_cast<std::int8_t>(rounded[i])};
+    if (const std::uint64_t bits = bitsOf(prediction, 0); bits < least_)
       least_ = bits, best_ = prediction;
+  }
+
+  [[nodiscard]] std::vector<double> fitted(std::span<const std::uint16_t> parents,
+                                           WeightFit fit) const {
+    std::array<double, TimePrediction::kMostParents> row{};
+    eachPair(history_, f_, [&](std::size_t i, std::size_t j) {
+      bool isMissing = false;
+      const auto change = [&](std::size_t field) {
+        const std::int32_t a = history_.values[field][i], b = history_.values[field][j];
+        isMissing |= a == kMissing || b == kMissing;
+        return static_cast<double>(a) - b;
+      };
+      for (std::size_t p = 0; p < parents.size(); ++p) row[p] = change(parents[p]);
+      const double target = change(f_);
+      if (!isMissing) fit.add(std::span(row).first(parents.size()), target);
+    });
+    return fit.solve();
+  }
+
+  /// About the bits that the field takes, if it settles within the tolerance.
+  [[nodiscard]] std::uint64_t bitsOf(const TimePrediction& prediction,
+                                     std::int32_t tolerance) const {
+    const std::size_t fixed = std::size_t{firstFused_} * history_.fields[f_].components;
+    const auto left = [&](std::size_t i) {
+      const std::int32_t out = differenceOf(history_, f_, prediction, i);
+      return tolerance > 0 && i >= fixed && std::abs(out) <= tolerance ? 0 : out;
+    };
+    std::uint64_t bits = 0;
+    eachPair(history_, f_, [&](std::size_t i, std::size_t j) {
+      const std::int32_t a = left(i), b = left(j);
+      if (a == kMissing || b == kMissing) return;
+      bits += static_cast<std::uint64_t>(
+          std::bit_width(static_cast<std::uint32_t>(std::abs(std::int64_t{a} - b))));
+    });
+    return bits;
+  }
+
+  [[nodiscard]] std::int32_t bestTolerance() {
+    std::int32_t out = 0;
+    for (std::int32_t tolerance = 1; tolerance <= kMostSettled; ++tolerance)
+      if (const std::uint64_t bits = bitsOf(best_, tolerance); bits < least_)
+        least_ = bits, out = tolerance;
+    return out;
+  }
+
+  void settle(std::int32_t tolerance) {
+    const FieldInfo& field = history_.fields[f_];
+    const std::int64_t end = std::int64_t{1} << field.bits;
+    std::vector<std::int32_t>& values = history_.values[f_];
+    for (const VertexId fused : fused_)
+      for (std::size_t i = fused * field.components;
+           i < (fused + std::size_t{1}) * field.components; ++i) {
+        const std::int64_t left = differenceOf(history_, f_, best_, i), to = values[i] - left;
+        if (std::abs(left) <= tolerance && to >= 0 && to < end)
+          values[i] = static_cast<std::int32_t>(to);
+      }
   }
 
   FusionHistory& history_;
   const Series& series_;
   std::span<const std::size_t> rows_;
+  std::vector<VertexId> fused_;
+  VertexId firstFused_ = 0;
+  std::size_t f_ = 0;  // the field that is predicted
   TimePrediction best_;
   std::uint64_t least_ = 0;
   std::size_t anchorsInARow_ = 0;
@@ -135,9 +203,9 @@ class Chooser {
 
 }  // namespace
 
-Result<std::size_t> toTimeDifferences(FusionHistory& history, const std::stop_token& stop,
-                                      const std::function<void(double)>& progress,
-                                      std::span<const std::size_t> rows) {
+Result<std::size_t> predictInTime(FusionHistory& history, const std::stop_token& stop,
+                                  const std::function<void(double)>& progress,
+                                  std::span<const std::size_t> rows) {
   const std::vector<Series> all = seriesOf(std::span<const FieldInfo>(history.fields));
   std::size_t instants = 0, done = 0;
   for (const Series& series : all) instants += series.fields.size();
@@ -149,16 +217,17 @@ Result<std::size_t> toTimeDifferences(FusionHistory& history, const std::stop_to
       if (progress) progress(static_cast<double>(++done) / static_cast<double>(instants));
     }
   }
-  std::size_t count = 0;
+  return std::ranges::count_if(history.fields,
+                               [](const FieldInfo& f) { return !f.prediction.isNone(); });
+}
+
+void toTimeDifferences(FusionHistory& history) {
   for (std::size_t f = history.fields.size(); f-- > 0;) {  // parents keep their values until then
     const TimePrediction& prediction = history.fields[f].prediction;
     if (prediction.isNone()) continue;
-    if (stop.stop_requested()) return cancelled();
-    ++count;
     for (std::size_t i = 0; i < history.values[f].size(); ++i)
       history.values[f][i] = differenceOf(history, f, prediction, i);
   }
-  return count;
 }
 
 }  // namespace qtet

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <stop_token>
@@ -12,15 +13,24 @@
 
 namespace qtet {
 
-/// Chooses how each instant of each series is predicted, so that least is left. The choices are
-/// nothing, the nearest decoded instant, the two around it, and the polynomial through up to four.
-/// Only instants of one bits, step and minimum predict each other. Its values become what is left,
-/// and its FieldInfo says of what. `progress` gets fractions of the work. Returns how many instants
-/// became differences. Errors: cancelled; the history is then of no use. REQUIRES: series in the
-/// order of decoding (orderSeries). The first rows.size() fields stay as they are: instants that a
-/// log has already. rows[f] is how many predictions field f rests on there, one on the other.
-[[nodiscard]] Result<std::size_t> toTimeDifferences(
-    FusionHistory& history, const std::stop_token& stop = {},
-    const std::function<void(double)>& progress = {}, std::span<const std::size_t> rows = {});
+/// A fused vertex's value of an instant may be moved by so many steps, to the value that other
+/// instants predict. It is an estimate, and at the default 12 bits this is 1 / 2,048 of the range.
+inline constexpr std::int32_t kMostSettled = 2;
+
+/// Chooses how each instant of each series is predicted, so that least is left; the field's
+/// FieldInfo says it (SERIES.md, "Predictions in time"). Only instants of one bits, step and minimum
+/// predict each other. Where it saves bits, fused vertices' values settle: those predicted within
+/// kMostSettled become the prediction. Values of integer types, displacements and fields with
+/// missing values stay. `progress` gets fractions of the work. Returns how many instants are
+/// predicted. Errors: cancelled; the history is then of no use. REQUIRES: series in the order of
+/// decoding (orderSeries). The first rows.size() fields stay as they are: instants that a log has
+/// already. rows[f] is how many predictions field f rests on there, one on the other.
+[[nodiscard]] Result<std::size_t> predictInTime(FusionHistory& history,
+                                                const std::stop_token& stop = {},
+                                                const std::function<void(double)>& progress = {},
+                                                std::span<const std::size_t> rows = {});
+
+/// The values of predicted instants become what is left of them.
+void toTimeDifferences(FusionHistory& history);
 
 }  // namespace qtet

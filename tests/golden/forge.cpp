@@ -61,7 +61,8 @@ Bytes logOfSeries() {
   for (std::size_t i = 0; i < mesh.values[2].size(); ++i) missing[2].push_back(i % 7 == 0);
   FusionHistory history = simplify(mesh, {}).value();
   restoreMissing(history, missing);
-  (void)toTimeDifferences(history).value();
+  (void)predictInTime(history).value();
+  toTimeDifferences(history);
   LogWriterOptions options;
   options.source = "golden.pvd";
   options.generator = "qtet golden";

@@ -37,7 +37,8 @@ class AddSteps : public ::testing::Test {
     LogWriterOptions writer;
     writer.chunkBytes = 400;
     writer.errors = measureLevels(history, {}).value();
-    (void)toTimeDifferences(history).value();
+    (void)predictInTime(history).value();
+    toTimeDifferences(history);
     bytes_ = encodeLog(history, writer).value().bytes;
   }
 

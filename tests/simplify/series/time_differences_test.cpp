@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <functional>
 #include <numeric>
 #include <stop_token>
 
@@ -36,9 +39,11 @@ class TimeDifferences : public ::testing::Test {
           missing[f].push_back(i % (5 + f) == 0);
       }
     history_ = simplify(mesh, {}).value();
+    count_ = predictInTime(history_).value();
     restoreMissing(history_, missing);
     FusionHistory differences = history_;
-    count_ = toTimeDifferences(differences).value();
+    toTimeDifferences(differences);
+    for (FieldInfo& field : history_.fields) field.prediction = {};
     LogWriterOptions options;
     options.chunkBytes = 600;
     bytes_ = encodeLog(differences, options).value().bytes;
@@ -75,9 +80,50 @@ TEST_F(TimeDifferences, everyLevelHasEveryInstant) {
 
 TEST_F(WithGaps, everyLevelHasEveryInstant) { expectEveryLevel(log(), history_); }
 
+/// The most that a value of the field moves, of the last level's vertices and of fused ones.
+std::array<std::int32_t, 2> movedBy(const FusionHistory& before, const FusionHistory& after,
+                                    std::size_t f) {
+  std::array<std::int32_t, 2> out{};
+  const std::size_t fixed = std::size_t{before.fusions.front().fused} * before.fields[f].components;
+  for (std::size_t i = 0; i < before.values[f].size(); ++i)
+    out[i >= fixed] = std::max(out[i >= fixed], std::abs(after.values[f][i] - before.values[f][i]));
+  return out;
+}
+
+TEST(SettledValues, onlyFusedOnesOfFloatFieldsMoveAndByALittle) {
+  const FusionHistory before = simplify(testing::seriesMesh(5, 1, 11), {}).value();
+  FusionHistory after = before;
+  ASSERT_TRUE(predictInTime(after));
+  std::int32_t most = 0;
+  for (std::size_t f = 0; f < before.fields.size(); ++f) {
+    const auto [fixed, fused] = movedBy(before, after, f);
+    EXPECT_EQ(fixed, 0) << before.fields[f].name;
+    if (isCellField(before.fields[f])) continue;
+    EXPECT_LE(fused, kMostSettled) << before.fields[f].name;
+    most = std::max(most, fused);
+  }
+  EXPECT_GT(most, 0) << "nothing settles";
+}
+
+TEST(SettledValues, labelsDisplacementsAndGapsStay) {
+  const FusionHistory settled = simplify(testing::seriesMesh(5, 1, 11), {}).value();
+  const auto expectStill = [&](const std::function<void(FieldInfo&)>& change) {
+    FusionHistory before = settled;
+    for (FieldInfo& field : before.fields) change(field);
+    FusionHistory after = before;
+    ASSERT_TRUE(predictInTime(after));
+    EXPECT_EQ(after.values, before.values);
+  };
+  expectStill([](FieldInfo& field) { field.type = "int32"; });
+  expectStill([](FieldInfo& field) { field.hasMissing = true; });
+  expectStill([](FieldInfo& field) {
+    field.name = "Displacement" + field.name.substr(field.name.find('@'));
+  });
+}
+
 TEST_F(TimeDifferences, instantsOfAnotherScaleDoNotPredict) {
   history_.fields[0].minimum = {-4};
-  ASSERT_TRUE(toTimeDifferences(history_));
+  ASSERT_TRUE(predictInTime(history_));
   for (const FieldInfo& field : history_.fields)
     for (const TimePrediction::Parent& parent : field.prediction.all())
       EXPECT_NE(parent.field, 0) << field.name;
@@ -87,7 +133,7 @@ TEST_F(TimeDifferences, workIsToldAndStopped) {
   std::vector<double> fractions;
   std::stop_source source;
   const Result<std::size_t> stopped =
-      toTimeDifferences(history_, source.get_token(), [&](double fraction) {
+      predictInTime(history_, source.get_token(), [&](double fraction) {
         fractions.push_back(fraction);
         if (fractions.size() == 3) source.request_stop();
       });
