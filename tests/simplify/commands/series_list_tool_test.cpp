@@ -1,0 +1,125 @@
+// Lists of logs: series whose cells change.
+#include <gtest/gtest.h>
+
+#include "proto/series_list.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/read/options/time_steps.h"
+#include "simplify/read/read_mesh.h"
+#include "tests/simplify/commands/tool_run.h"
+
+namespace qtet {
+namespace {
+
+/// Five steps 0, 0.1 ... of a box with the field T, which is 10 times the step everywhere. The
+/// cells of the steps 3 and 4 are others.
+class SeriesListTool : public Tool {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+    TetMesh mesh = readMesh(folder_ / "box.vtu").value().mesh;
+    mesh.fields.resize(1);
+    mesh.fields[0].name = "T";
+    for (int step = 0; step < kSteps; ++step) {
+      if (step == 3) mesh.tetrahedra.pop_back();
+      std::ranges::fill(mesh.fields[0].values, 10. * step);
+      mesh.fields[0].values[0] += 1;
+      write("step-" + std::to_string(step) + ".vtu", mesh);
+    }
+    put("run.pvd", collection(0, kSteps));
+  }
+  static std::string collection(int first, int end) {
+    std::string out = R"(<VTKFile type="Collection"><Collection>)";
+    for (int step = first; step < end; ++step)
+      out += "<DataSet timestep=\"" + timeText(step / 10.) + "\" file=\"step-" +
+             std::to_string(step) + ".vtu\"/>";
+    return out + "</Collection></VTKFile>";
+  }
+  void makeList() {
+    const Ran ran = run("simplify run.pvd --time all --measure none -o run.json");
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+  SeriesList list(const std::string& name = "run.json") {
+    return parseSeriesList(contentOf(folder_ / name)).value();
+  }
+  std::vector<std::string> fieldsOf(const std::string& log) {
+    const Result<OpenedLog> opened = openLog(folder_ / log);
+    EXPECT_TRUE(opened) << log;
+    std::vector<std::string> out;
+    for (const ManifestField& field : opened->manifest.fields) out.push_back(field.name);
+    std::ranges::sort(out);
+    return out;
+  }
+  /// The names of all files in the test's folder that begin so, ascending.
+  std::vector<std::string> filesLike(const std::string& begin) {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (entry.path().filename().string().starts_with(begin))
+        out.push_back(entry.path().filename().string());
+    std::ranges::sort(out);
+    return out;
+  }
+
+  static constexpr int kSteps = 5;
+};
+
+TEST_F(SeriesListTool, eachRunOfEqualCellsIsALog) {
+  const Ran ran = run("simplify run.pvd --time all --measure none -o run.json --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  ASSERT_EQ(list().segments.size(), 2u);
+  EXPECT_EQ(list().segments[0].log, "run.0.qtet");
+  EXPECT_EQ(list().segments[0].times, (std::vector<double>{0, 0.1, 0.2}));
+  EXPECT_EQ(list().segments[1].log, "run.1.qtet");
+  EXPECT_EQ(list().segments[1].times, (std::vector<double>{0.3, 0.4}));
+  EXPECT_EQ(fieldsOf("run.0.qtet"), (std::vector<std::string>{"T@0", "T@0.1", "T@0.2"}));
+  EXPECT_EQ(fieldsOf("run.1.qtet"), (std::vector<std::string>{"T@0.3", "T@0.4"}));
+  EXPECT_EQ(ran.json()["times"].size(), 5u);
+  EXPECT_EQ(ran.json()["segments"][1]["made"]["output"], "run.1.qtet");
+  EXPECT_EQ(filesLike(".run"), std::vector<std::string>{}) << "unpublished logs";
+}
+
+TEST_F(SeriesListTool, aSegmentOfOneStepHasItsFieldAsAnInstant) {
+  ASSERT_EQ(run("simplify run.pvd --time 0:0.3:3 --measure none -o run.json").code, 0);
+  ASSERT_EQ(list().segments.size(), 2u);
+  EXPECT_EQ(list().segments[0].times, std::vector<double>{0});
+  EXPECT_EQ(fieldsOf("run.0.qtet"), std::vector<std::string>{"T@0"});
+  EXPECT_EQ(fieldsOf("run.1.qtet"), std::vector<std::string>{"T@0.3"});
+}
+
+TEST_F(SeriesListTool, stepsWithTheSameCellsAreOneSegment) {
+  ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.json").code, 0);
+  ASSERT_EQ(list().segments.size(), 1u);
+  ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.qtet").code, 0);
+  EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), contentOf(folder_ / "run.qtet"));
+}
+
+TEST_F(SeriesListTool, oneLogOfChangingCellsIsRefused) {
+  expectFailure("simplify run.pvd --time all -o run.qtet", 1,
+                "the mesh at time 0.3 is not that of time 0");
+  expectFailure("simplify run.pvd --time all -o run.qtet", 1, "-o NAME.json");
+}
+
+TEST_F(SeriesListTool, afterAnErrorAnOlderListStays) {
+  makeList();
+  const std::string before = contentOf(folder_ / "run.json"),
+                    log = contentOf(folder_ / "run.0.qtet");
+  put("step-4.vtu", "no mesh");
+  expectFailure("simplify run.pvd --time all --measure none --fields none -o run.json", 1,
+                "step-4.vtu");
+  TetMesh other = readMesh(folder_ / "box.vtu").value().mesh;
+  other.fields.clear();  // so it has no T
+  write("step-4.vtu", other);
+  expectFailure("simplify run.pvd --time all --measure none --fields T -o run.json", 1, "T");
+  EXPECT_EQ(contentOf(folder_ / "run.json"), before);
+  EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), log);
+  EXPECT_EQ(filesLike(".run"), std::vector<std::string>{});
+}
+
+TEST_F(SeriesListTool, aListNeedsTimesAndANameThatItCanHold) {
+  expectFailure("simplify box.vtu -o box.json", 1, "box.vtu has no times");
+  EXPECT_EQ(filesLike("box."), std::vector<std::string>{"box.vtu"});
+  expectFailure("simplify run.pvd --time all -o a..b.json", 1, "a..b.0.qtet");
+  expectFailure("simplify run.pvd --time all -o run.json --time-statistics", 2, "-o NAME.qtet");
+}
+
+}  // namespace
+}  // namespace qtet
