@@ -121,5 +121,69 @@ TEST_F(SeriesListTool, aListNeedsTimesAndANameThatItCanHold) {
   expectFailure("simplify run.pvd --time all -o run.json --time-statistics", 2, "-o NAME.qtet");
 }
 
+TEST_F(SeriesListTool, infoShowsEachSegment) {
+  makeList();
+  const nlohmann::json info = run("info run.json --json").json();
+  ASSERT_EQ(info["segments"].size(), 2u);
+  EXPECT_EQ(info["instants"], 5);
+  EXPECT_EQ(info["timeRange"], nlohmann::json({0., 0.4}));
+  EXPECT_EQ(info["segments"][1]["log"], "run.1.qtet");
+  EXPECT_EQ(info["segments"][0]["tetrahedra"].get<int>() - 1, info["segments"][1]["tetrahedra"]);
+  const Ran ran = run("info run.json");
+  EXPECT_NE(ran.out.find("2 logs, 5 instants, 0 to 0.4"), std::string::npos) << ran.out;
+}
+
+TEST_F(SeriesListTool, extractTakesTheLogThatHasTheTime) {
+  ASSERT_EQ(run("simplify run.pvd --time 0.1:0.3 --measure none -o run.json").code, 0);
+  for (int step = 1; step <= 3; ++step) {  // the last one is alone in its log
+    const Ran ran =
+        run("extract run.json --ratio 1 --time " + timeText(step / 10.) + " -o out.vtu --json");
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.json()["log"], step < 3 ? "run.0.qtet" : "run.1.qtet");
+    const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
+    ASSERT_EQ(mesh.fields.size(), 1u);
+    EXPECT_EQ(mesh.fields[0].name, "T");
+    EXPECT_NEAR(std::ranges::min(mesh.fields[0].values), 10 * step, 1e-2);
+  }
+  ASSERT_EQ(run("extract run.json --ratio 0.5 --time last -o out.vtu").code, 0);
+  expectFailure("extract run.json --ratio 1 --time 0.25 -o out.vtu", 1,
+                "run.json has no time step 0.25; it has 0.1, 0.2, 0.3");
+  expectFailure("extract run.json --ratio 1 -o out.vtu", 2, "--time T");
+  expectFailure("extract run.json --ratio 1 --time all -o out.vtu", 2, "3 instants");
+}
+
+TEST_F(SeriesListTool, allTimesAreOneCollection) {
+  makeList();
+  const Ran ran = run("extract run.json --ratio 1 --time all -o out.pvd --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.json()["files"].size(), 5u);
+  EXPECT_EQ(ran.json()["segments"][1]["times"], nlohmann::json({0.3, 0.4}));
+  // the collection is a series whose cells change in the same place
+  ASSERT_EQ(run("simplify out.pvd --time all --measure none -o out.json").code, 0);
+  EXPECT_EQ(list("out.json").times(), list().times());
+  EXPECT_EQ(list("out.json").segments[1].times, list().segments[1].times);
+  std::filesystem::remove_all(folder_ / "out");
+  std::filesystem::remove(folder_ / "run.1.qtet");
+  expectFailure("extract run.json --ratio 1 -o out.pvd", 1, "run.1.qtet");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(SeriesListTool, aListThatIsDamagedIsRefused) {
+  expectFailure("info run.json", 1, "there is no list run.json");
+  put("run.json", R"({"qtet":"series","segments":[{"log":"../a.qtet","times":[0]}]})");
+  expectFailure("info run.json", 1, "run.json: /segments/0/log");
+  put("run.json", std::string(kMaxSeriesListBytes + 1, ' '));
+  expectFailure("extract run.json --ratio 1 --time 0 -o out.vtu", 1, "limit-exceeded");
+  makeList();
+  SeriesList other = list();
+  other.segments[0].times = {0, 0.15};
+  put("run.json", seriesListText(other).value());
+  expectFailure("info run.json", 1, "the log run.0.qtet has no instant at time 0.15");
+  put("run.0.qtet", "no log");
+  expectFailure("info run.json", 1, "run.json names it");
+  std::filesystem::remove(folder_ / "run.0.qtet");
+  expectFailure("info run.json", 1, "run.json names the log run.0.qtet, which is not beside it");
+}
+
 }  // namespace
 }  // namespace qtet
