@@ -8,9 +8,9 @@
 namespace qtet {
 
 Instants::Instants(const std::vector<ManifestField>& fields,
-                   const std::vector<std::uint32_t>& wanted)
+                   const std::vector<std::uint32_t>& wanted, std::size_t fewest)
     : fields_(fields), wanted_(wanted) {
-  for (const Series& series : seriesOf(std::span(fields)))
+  for (const Series& series : seriesOf(std::span(fields), fewest))
     for (std::size_t i = 0; i < series.fields.size(); ++i)
       if (std::ranges::binary_search(wanted, series.fields[i])) {
         instants_[static_cast<std::uint32_t>(series.fields[i])] = {series.times[i], series.name};

@@ -29,8 +29,10 @@ struct InstantFile {
 /// The instants of the series (seriesOf) among some fields of a log.
 class Instants {
  public:
-  /// `wanted`: ascending numbers of `fields`, which outlive the object, as `wanted` does.
-  Instants(const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted);
+  /// `wanted`: ascending numbers of `fields`, which outlive the object, as `wanted` does. A series
+  /// has `fewest` instants at least: in a log of a list (SERIES_LIST.md) 1.
+  Instants(const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
+           std::size_t fewest = 2);
 
   /// Ascending, each once.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }

@@ -25,10 +25,10 @@ struct Series {
   std::vector<double> times;        ///< ascending, as many
 };
 
-/// The series of two and more instants, in the order of their first fields. Instants agree in
+/// The series of `fewest` and more instants, in the order of their first fields. Instants agree in
 /// association, components and type; of two with one time the first counts.
 template <class Field>
-[[nodiscard]] std::vector<Series> seriesOf(std::span<const Field> fields) {
+[[nodiscard]] std::vector<Series> seriesOf(std::span<const Field> fields, std::size_t fewest = 2) {
   std::vector<Series> out;
   std::vector<const Field*> firsts;
   for (std::size_t f = 0; f < fields.size(); ++f) {
@@ -46,7 +46,7 @@ template <class Field>
     out[s].fields.insert(out[s].fields.begin() + (at - out[s].times.begin()), f);
     out[s].times.insert(at, name->time);
   }
-  std::erase_if(out, [](const Series& series) { return series.fields.size() < 2; });
+  std::erase_if(out, [&](const Series& series) { return series.fields.size() < fewest; });
   return out;
 }
 

@@ -1,17 +1,20 @@
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
 
-#include "codec/files/atomic_file.h"
 #include "codec/log/target_choice.h"
 #include "proto/field_key.h"
 #include "proto/level_error_json.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/extract_times.h"
+#include "simplify/commands/instant_collection.h"
+#include "simplify/commands/opened_list.h"
 #include "simplify/log/kept_input.h"
-#include "simplify/log/opened_log.h"
 #include "simplify/log/write_mesh.h"
+#include "simplify/read/options/time_steps.h"
 #include "simplify/split/split_cells.h"
 
 namespace qtet {
@@ -107,81 +110,40 @@ Result<std::vector<std::uint32_t>> wantedFields(const ParsedWords& parsed,
 
 constexpr const char* kCollection = ".pvd";
 
-/// The files of a collection: NAME/NAME_0000.vtu and so on, beside NAME.pvd.
-std::filesystem::path fileOfCollection(const std::filesystem::path& collection,
-                                       std::size_t number) {
-  const std::string name = collection.stem().string(), digits = std::to_string(number);
-  return std::filesystem::path(name) /
-         (name + "_" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits +
-          ".vtu");
+bool isCollection(const MeshOutput& output) { return output.ending == kCollection; }
+
+std::string endingOfFiles(const MeshOutput& output) {
+  return isCollection(output) ? ".vtu" : output.ending;
 }
 
-/// Writes a file of each instant into a new folder, and then the collection. After an error neither
-/// is there.
-template <class BytesOfFile>
-Status writeCollection(const MeshOutput& output, const std::vector<InstantFile>& files,
-                       const BytesOfFile& bytesOfFile, MeshOutputReport& report, Console& console) {
-  namespace fs = std::filesystem;
-  const fs::path parent = output.file.parent_path();
-  const fs::path folder = parent / output.file.stem();
-  std::error_code code;
-  if (!fs::create_directory(folder, code))
-    return fail(ErrorCode::kIo, "the folder " + folder.string() + " for the instants " +
-                                    (code ? "cannot be made: " + code.message()
-                                          : "exists; remove it or choose another output"));
-  std::vector<std::pair<std::optional<double>, std::string>> written;
-  std::uint64_t size = 0;
-  const auto write = [&]() -> Status {
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      const Result<Bytes> bytes = bytesOfFile(files[i], i + 1 == files.size());
-      if (!bytes) return std::unexpected(bytes.error());
-      const fs::path name = fileOfCollection(output.file, i);
-      if (Status s = writeFileAtomically(parent / name, *bytes); !s) return s;
-      written.emplace_back(files[i].time, name.generic_string());
-      report.json["files"].push_back(
-          {{"time", files[i].time.value_or(0)}, {"file", name.generic_string()}});
-      size += bytes->size();
-    }
-    const std::string text = collectionText(written);
-    size += text.size();
-    return writeFileAtomically(
-        output.file, ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-  };
-  if (Status s = write(); !s) {
-    fs::remove_all(folder, code);
-    return s;
-  }
-  report.sentence += ", " + counted(files.size(), "instant", "instants") + " in " + folder.string();
-  reportMeshOutput(output, size, report, console);
-  return {};
-}
+/// Takes each file as it is made.
+using FileTaker = std::function<Status(const InstantFile& file, Bytes&& bytes)>;
 
-/// Writes the mesh with each file's fields; `numbers` are those of its own fields, ascending.
+/// Makes the mesh with each file's fields; `numbers` are those of its own fields, ascending.
 template <class Mesh>
-Status writeFiles(Mesh& mesh, const std::vector<std::uint32_t>& numbers,
-                  const std::vector<InstantFile>& files, const MeshOutput& output,
-                  MeshOutputReport& report, Console& console) {
+Status makeFiles(Mesh& mesh, const std::vector<std::uint32_t>& numbers,
+                 const std::vector<InstantFile>& files, const MeshOutput& output,
+                 const FileTaker& take) {
   auto all = takeFields(mesh);
-  const bool isCollection = output.ending == kCollection;
-  const auto bytesOfFile = [&](const InstantFile& file, bool isLast) {
+  for (const InstantFile& file : files) {
+    const bool isLast = &file == &files.back();
     takeFields(mesh);
     for (const FieldInFile& field : file.fields) {
       const auto at = std::ranges::lower_bound(numbers, field.number) - numbers.begin();
       auto& own = all[static_cast<std::size_t>(at)];
       addField(mesh, field.isInstant || isLast ? std::move(own) : auto(own), field.name);
     }
-    return bytesOf(mesh, isCollection ? ".vtu" : output.ending, output.options);
-  };
-  if (isCollection) return writeCollection(output, files, bytesOfFile, report, console);
-  const Result<Bytes> bytes = bytesOfFile(files.front(), true);
-  if (!bytes) return std::unexpected(bytes.error());
-  return writeMeshOutput(output, *bytes, report, console);
+    Result<Bytes> bytes = bytesOf(mesh, endingOfFiles(output), output.options);
+    if (!bytes) return std::unexpected(bytes.error());
+    if (Status s = take(file, std::move(*bytes)); !s) return s;
+  }
+  return {};
 }
 
-/// At the last level the input itself is written, as far as the log kept it.
-Status writeInput(const OpenedLog& log, const LatticeMesh& finest,
-                  const std::vector<InstantFile>& files, const MeshOutput& output,
-                  MeshOutputReport& report, Console& console) {
+/// At the last level the files are the input itself, as far as the log kept it.
+Status makeInput(const OpenedLog& log, const LatticeMesh& finest,
+                 const std::vector<InstantFile>& files, const MeshOutput& output,
+                 const FileTaker& take) {
   Result<RestoredInput> input = restoreInput(log.file, finest);
   if (!input) return std::unexpected(input.error());
   const bool exact = input->exactPositions ||
@@ -190,25 +152,29 @@ Status writeInput(const OpenedLog& log, const LatticeMesh& finest,
   std::vector<std::uint32_t> numbers(asRead ? input->mesh.fields.size()
                                             : input->lattice.fields.size());
   std::iota(numbers.begin(), numbers.end(), 0u);
-  return asRead ? writeFiles(input->mesh, numbers, files, output, report, console)
-                : writeFiles(input->lattice, numbers, files, output, report, console);
+  return asRead ? makeFiles(input->mesh, numbers, files, output, take)
+                : makeFiles(input->lattice, numbers, files, output, take);
+}
+
+/// Throws UsageError where one file would hold several instants.
+void checkCount(std::size_t instants, const std::string& asked, const MeshOutput& output) {
+  if (instants > 1 && !isCollection(output))
+    throw UsageError("--time " + asked + " means " + std::to_string(instants) +
+                     " instants; -o NAME.pvd writes a file of each");
 }
 
 /// The files that `--time` and the output's kind ask for.
 Result<std::vector<InstantFile>> filesOf(const ParsedWords& parsed, const MeshOutput& output,
                                          const std::vector<ManifestField>& known,
                                          const std::vector<std::uint32_t>& wanted) {
-  const bool isCollection = output.ending == kCollection;
-  if (!parsed.has("time") && !isCollection) {
+  if (!parsed.has("time") && !isCollection(output)) {
     InstantFile all;
     for (const std::uint32_t f : wanted) all.fields.push_back({f, known[f].name, false});
     return std::vector<InstantFile>{std::move(all)};
   }
   const std::string asked = parsed.has("time") ? parsed.get<std::string>("time") : "all";
   auto files = instantFiles(known, wanted, asked, parsed.get<std::string>("LOG"));
-  if (files && files->size() > 1 && !isCollection)
-    throw UsageError("--time " + asked + " means " + std::to_string(files->size()) +
-                     " instants; -o NAME.pvd writes a file of each");
+  if (files) checkCount(files->size(), asked, output);
   return files;
 }
 
@@ -241,25 +207,22 @@ MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
   return out;
 }
 
-Status extract(const ParsedWords& parsed, Console& console) {
-  const auto input = parsed.get<std::string>("LOG");
-  const Result<MeshOutput> output =
-      meshOutputOf(parsed, input, std::string(kWrittenEndings) + " " + kCollection);
-  if (!output) return std::unexpected(output.error());
-  if (output->isStandardOutput && output->ending == kCollection)
-    throw UsageError(
-        "a .pvd names other files, which the standard output cannot hold; give -o NAME.pvd");
-  const Result<OpenedLog> log = openLog(input);
-  if (!log) return std::unexpected(log.error());
+/// The files that are made of the fields `wanted` among those that are known.
+using FileChooser = std::function<Result<std::vector<InstantFile>>(
+    const std::vector<ManifestField>& known, const std::vector<std::uint32_t>& wanted)>;
 
-  const Result<std::uint32_t> level = chosenLevel(parsed, log->manifest, log->file.index());
+/// Makes the files of one log's level.
+Result<MeshOutputReport> extractLog(const ParsedWords& parsed, const OpenedLog& log,
+                                    const MeshOutput& output, const FileChooser& choose,
+                                    const FileTaker& take) {
+  const Result<std::uint32_t> level = chosenLevel(parsed, log.manifest, log.file.index());
   if (!level) return std::unexpected(level.error());
   const bool restores =
-      *level + 1 == log->manifest.levels.size() && !log->file.closingBlocks().empty();
-  const std::vector<ManifestField> known = fieldsOf(*log, restores);
+      *level + 1 == log.manifest.levels.size() && !log.file.closingBlocks().empty();
+  const std::vector<ManifestField> known = fieldsOf(log, restores);
   const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, known);
   if (!wanted) return std::unexpected(wanted.error());
-  const auto files = filesOf(parsed, *output, known, *wanted);
+  const auto files = choose(known, *wanted);
   if (!files) return std::unexpected(files.error());
   std::vector<std::uint32_t> decoded;
   for (const InstantFile& file : *files)
@@ -267,13 +230,128 @@ Status extract(const ParsedWords& parsed, Console& console) {
   std::ranges::sort(decoded);
   decoded.erase(std::unique(decoded.begin(), decoded.end()), decoded.end());
   Result<LatticeMesh> mesh =
-      meshAtLevel(log->file, *level, restores ? std::nullopt : std::optional(decoded));
+      meshAtLevel(log.file, *level, restores ? std::nullopt : std::optional(decoded));
   if (!mesh) return std::unexpected(mesh.error());
-  const std::string ending = output->ending == kCollection ? ".vtu" : output->ending;
-  MeshOutputReport report = reportOf(log->manifest, *level, known, files->front().fields, ending);
-  report.json["input"] = input;
-  return restores ? writeInput(*log, *mesh, *files, *output, report, console)
-                  : writeFiles(*mesh, decoded, *files, *output, report, console);
+  if (Status s = restores ? makeInput(log, *mesh, *files, output, take)
+                          : makeFiles(*mesh, decoded, *files, output, take);
+      !s)
+    return std::unexpected(s.error());
+  return reportOf(log.manifest, *level, known, files->front().fields, endingOfFiles(output));
+}
+
+/// The one file of an output, or those of a collection.
+class Written {
+ public:
+  explicit Written(const MeshOutput& output) : output_(output), collection_(output.file) {}
+
+  [[nodiscard]] FileTaker taker() {
+    return [this](const InstantFile& file, Bytes&& bytes) -> Status {
+      if (isCollection(output_)) return collection_.add(file.time, bytes);
+      one_ = std::move(bytes);
+      return {};
+    };
+  }
+  [[nodiscard]] Status finish(MeshOutputReport& report, Console& console) {
+    if (!isCollection(output_)) return writeMeshOutput(output_, one_, report, console);
+    if (Status s = collection_.finish(); !s) return s;
+    report.json["files"] = collection_.filesJson();
+    report.sentence += ", " + collection_.sentence();
+    reportMeshOutput(output_, collection_.bytes(), report, console);
+    return {};
+  }
+
+ private:
+  const MeshOutput& output_;
+  InstantCollection collection_;
+  Bytes one_;
+};
+
+/// The report on files of several logs of a list.
+MeshOutputReport joined(const std::vector<MeshOutputReport>& reports, const std::string& list) {
+  if (reports.size() == 1) {
+    MeshOutputReport out = reports.front();
+    out.sentence += " of " + out.json["log"].get<std::string>();
+    return out;
+  }
+  MeshOutputReport out{counted(reports.size(), "log", "logs") + " of " + list,
+                       {{"segments", OrderedJson::array()}}};
+  for (const MeshOutputReport& report : reports) out.json["segments"].push_back(report.json);
+  return out;
+}
+
+/// The times of a segment among those that are asked for, which ascend.
+std::vector<double> timesIn(const Segment& segment, const std::vector<double>& asked) {
+  std::vector<double> out;
+  std::ranges::set_intersection(segment.times, asked, std::back_inserter(out));
+  return out;
+}
+
+/// The times of the list that `--time` means.
+Result<std::vector<double>> askedTimes(const ParsedWords& parsed, const SeriesList& list,
+                                       const std::string& input, const MeshOutput& output) {
+  if (!parsed.has("time") && !isCollection(output))
+    throw UsageError(
+        "a list has a mesh for each of its logs; give --time T, or all of them with -o NAME.pvd");
+  const std::string asked = parsed.has("time") ? parsed.get<std::string>("time") : "all";
+  const std::vector<double> times = list.times();
+  std::vector<std::string> notes;  // "last" was asked for
+  const auto steps = chosenSteps(times, asked, input, notes);
+  if (!steps) return std::unexpected(steps.error());
+  checkCount(steps->size(), asked, output);
+  std::vector<double> out;
+  for (const std::size_t step : *steps) out.push_back(times[step]);
+  return out;
+}
+
+Result<MeshOutputReport> extractList(const ParsedWords& parsed, const std::string& input,
+                                     const MeshOutput& output, const FileTaker& take) {
+  const Result<SeriesList> list = openList(input);
+  if (!list) return std::unexpected(list.error());
+  const auto asked = askedTimes(parsed, *list, input, output);
+  if (!asked) return std::unexpected(asked.error());
+  std::vector<MeshOutputReport> reports;
+  for (const Segment& segment : list->segments) {
+    const std::vector<double> times = timesIn(segment, *asked);
+    if (times.empty()) continue;
+    const Result<OpenedLog> log = openSegment(input, segment);
+    if (!log) return std::unexpected(log.error());
+    const auto choose = [&](const auto& known, const auto& wanted) {
+      return Result<std::vector<InstantFile>>(segmentFiles(known, wanted, times));
+    };
+    Result<MeshOutputReport> report = extractLog(parsed, *log, output, choose, take);
+    if (!report) return report;
+    report->json["log"] = segment.log;
+    report->json["times"] = times;
+    reports.push_back(std::move(*report));
+  }
+  return joined(reports, input);
+}
+
+Result<MeshOutputReport> extractOne(const ParsedWords& parsed, const std::string& input,
+                                    const MeshOutput& output, const FileTaker& take) {
+  const Result<OpenedLog> log = openLog(input);
+  if (!log) return std::unexpected(log.error());
+  const auto choose = [&](const auto& known, const auto& wanted) {
+    return filesOf(parsed, output, known, wanted);
+  };
+  return extractLog(parsed, *log, output, choose, take);
+}
+
+Status extract(const ParsedWords& parsed, Console& console) {
+  const auto input = parsed.get<std::string>("LOG");
+  const Result<MeshOutput> output =
+      meshOutputOf(parsed, input, std::string(kWrittenEndings) + " " + kCollection);
+  if (!output) return std::unexpected(output.error());
+  if (output->isStandardOutput && isCollection(*output))
+    throw UsageError(
+        "a .pvd names other files, which the standard output cannot hold; give -o NAME.pvd");
+  Written written(*output);
+  Result<MeshOutputReport> report = isSeriesList(input)
+                                        ? extractList(parsed, input, *output, written.taker())
+                                        : extractOne(parsed, input, *output, written.taker());
+  if (!report) return std::unexpected(report.error());
+  report->json["input"] = input;
+  return written.finish(*report, console);
 }
 
 }  // namespace
@@ -300,7 +378,8 @@ int runExtract(const Words& words, Console& console) {
   const ParsedWords parsed(
       words,
       {"extract",
-       "extract LOG.qtet (--level K | --tets N | --ratio R | --error NAME=E | --boundary-error E) "
+       "extract LOG.qtet|LIST.json (--level K | --tets N | --ratio R | --error NAME=E | "
+       "--boundary-error E) "
        "[--time T] -o OUT",
        "Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk, .msh (Gmsh "
        "2.2) or .usda (OpenUSD), its boundary as\n"
@@ -308,16 +387,21 @@ int runExtract(const Words& words, Console& console) {
        "points. NAME.pvd (ParaView) names a .vtu for each instant of the log's series, in a new "
        "folder "
        "NAME. Where no level is small enough it is level 0.\n"
+       "A list of logs, NAME.json, gives the mesh of the log that has the time T. Each log chooses "
+       "a "
+       "level of its own. --time is required, but for a .pvd.\n"
        "The last level is the input's mesh, with its own numbering and numbers where the log was "
        "made with --keep-order and --lossless.\n"
        "Errors are those that the log tells, measured when it was made (qtet info shows them).\n"
        "--json: output, kind, bytes, level, levels, tetrahedra, vertices and boundaryTriangles of "
        "the level, fields [{name, association,\ncomponents, type}] that the file holds, error as "
-       "in qtet info with the same fields, input; of a .pvd also files [{time, file}].",
+       "in qtet info with the same fields, input; of a .pvd also files [{time, file}]; of "
+       "a list also log and times, or for a .pvd of several logs segments, an array of these.",
        "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error "
        "Density=0.01 -o near.vtu\n"
        "  qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb\n"
        "  qtet extract wake.qtet --tets 50000 --time 0:1 -o wake.pvd\n"
+       "  qtet extract remeshed.json --ratio 0.1 --time 0.3 -o later.vtu\n"
        "  curl -sL http://HOST/v1/meshes/fin/log | qtet extract - --ratio 0.1 --to vtu -o - "
        ">c.vtu\n"},
       options, {"LOG"});

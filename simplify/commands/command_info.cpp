@@ -8,7 +8,8 @@
 #include "simplify/commands/columns.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/error_table.h"
-#include "simplify/log/opened_log.h"
+#include "simplify/commands/list_info.h"
+#include "simplify/commands/opened_list.h"
 #include "simplify/series/series.h"
 
 namespace qtet {
@@ -131,6 +132,17 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
     console.out << moreFields(info["fields"].size(), "--all shows them");
 }
 
+int showList(const std::string& list, const ParsedWords& parsed, Console& console) {
+  const bool asJson = parsed.has("json");
+  const Result<OrderedJson> info = listInfo(list);
+  if (!info) return reportFailure(info.error(), asJson, console);
+  if (asJson)
+    printJson(*info, console);
+  else
+    console.out << listText(*info, list, parsed.has("all") ? kMaxSegments : kShownLevels);
+  return kExitOk;
+}
+
 }  // namespace
 
 int runInfo(const Words& words, Console& console) {
@@ -140,7 +152,7 @@ int runInfo(const Words& words, Console& console) {
       "all", "show every level and field, not 20 and 10 of them");
   const ParsedWords parsed(
       words,
-      {"info", "info LOG.qtet [--all] [--json]",
+      {"info", "info LOG.qtet|LIST.json [--all] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. "
        "Level 0 is the base mesh,\n"
        "the last level the input's mesh; `cumulative` is the length of the file's prefix that "
@@ -154,12 +166,16 @@ int runInfo(const Words& words, Console& console) {
        "step, minimum, range, missingValues, bytes}], kept, and levels [{level, tetrahedra, "
        "vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
        "fractions and of some levels only: boundary {toLevel {mean, max}, toOriginal {mean, max}}, "
-       "volumeLost, volumeGained, fields [{rms, max}] in the order of the fields above.",
-       "  qtet info fin.qtet\n  qtet info fin.qtet --json | jq '.levels[0]'\n"},
+       "volumeLost, volumeGained, fields [{rms, max}] in the order of the fields above.\n"
+       "A list of logs shows the times, cells and bytes of each. --json: segments [{log, times, "
+       "digest, tetrahedra, vertices, levels, bytes}], instants, timeRange, bytes.",
+       "  qtet info fin.qtet\n  qtet info remeshed.json\n  qtet info fin.qtet --json | jq "
+       "'.levels[0]'\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const bool asJson = parsed.has("json");
   const auto input = parsed.get<std::string>("LOG");
+  if (isSeriesList(input)) return showList(input, parsed, console);
 
   const Result<OpenedLog> log = openLog(input);
   if (!log) return reportFailure(log.error(), asJson, console);

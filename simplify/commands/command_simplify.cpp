@@ -1,35 +1,16 @@
-#include <chrono>
-#include <iomanip>
-#include <map>
-#include <optional>
-#include <span>
+#include <filesystem>
 
-#include "codec/files/file_spool.h"
 #include "proto/limits.h"
-#include "simplify/commands/closing_report.h"
-#include "simplify/commands/columns.h"
 #include "simplify/commands/command_fusion.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
-#include "simplify/commands/error_table.h"
 #include "simplify/commands/progress.h"
-#include "simplify/commands/written_log.h"
-#include "simplify/pipeline/pipeline.h"
-#include "simplify/pipeline/series_pipeline.h"
-#include "simplify/read/read_mesh.h"
-#include "simplify/read/read_times.h"
-#include "simplify/read/steps/step_reports.h"
-#include "simplify/series/series.h"
+#include "simplify/commands/simplified_list.h"
+#include "simplify/commands/simplified_log.h"
 
 namespace qtet {
 namespace {
-
-struct Request {
-  std::string input, output;
-  ReadOptions read;
-  PipelineOptions pipeline;
-};
 
 CodecId valueCodecOf(const std::string& name) {
   if (name == "draco") return CodecId::kDraco;
@@ -43,8 +24,12 @@ Algorithm algorithmOf(const std::string& name) {
   throw UsageError("--algorithm '" + name + "' is not known; give qtet or paper");
 }
 
-Request requestOf(const ParsedWords& parsed) {
-  Request request;
+bool isList(const SimplifyRequest& request) {
+  return std::filesystem::path(request.output).extension() == kSeriesListEnding;
+}
+
+SimplifyRequest requestOf(const ParsedWords& parsed) {
+  SimplifyRequest request;
   request.input = parsed.get<std::string>("IN");
   request.output = parsed.get<std::string>("output");
   PipelineOptions& options = request.pipeline;
@@ -62,277 +47,12 @@ Request requestOf(const ParsedWords& parsed) {
   options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   request.read.originalIds = parsed.has("original-ids");
   options.timeStatistics = parsed.has("time-statistics");
+  if (options.timeStatistics && isList(request))
+    throw UsageError(
+        "--time-statistics needs values of all steps at the same points, which a list of logs does "
+        "not have; give -o NAME.qtet, or leave it out");
   options.keep = {parsed.has("keep-order"), parsed.has("lossless"), request.read.originalIds};
   return request;
-}
-
-/// A stage's name in JSON, and its description for people who wait; kKeep continues what kEncode
-/// began.
-struct StageName {
-  const char* name;
-  const char* doing;
-};
-const std::map<Stage, StageName> kStages{
-    {Stage::kClean, {"clean", "cleaning"}},          {Stage::kQuantise, {"quantise", "quantising"}},
-    {Stage::kSimplify, {"simplify", "simplifying"}}, {Stage::kMeasure, {"measure", "measuring"}},
-    {Stage::kEncode, {"encode", "encoding"}},        {Stage::kKeep, {"keep", nullptr}}};
-
-/// Wall time of each stage, by name, in the order of doing.
-class Stopwatch {
- public:
-  void lap(const std::string& name) {
-    const Clock::time_point now = Clock::now();
-    seconds_[name] = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-  /// The stages of a pipeline that has just ended.
-  void lap(const PipelineReport& report) {
-    for (const auto& [stage, seconds] : report.seconds) {
-      OrderedJson& sum = seconds_[kStages.at(stage).name];
-      sum = seconds + (sum.is_null() ? 0 : sum.get<double>());
-    }
-    last_ = Clock::now();
-  }
-  [[nodiscard]] OrderedJson seconds() const {
-    OrderedJson out = seconds_;
-    out["total"] = std::chrono::duration<double>(last_ - start_).count();
-    return out;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
-  OrderedJson seconds_ = OrderedJson::object();
-};
-
-OrderedJson toJson(const Occurrences& found) {
-  return {{"count", found.count}, {"first", found.first}};
-}
-
-OrderedJson toJson(const CleanReport& report) {
-  OrderedJson edges = toJson(report.nonManifoldEdges);
-  edges["firstOtherEnds"] = report.nonManifoldEdgeEnds;
-  return {{"repeatedVertexCells", toJson(report.repeatedVertexCells)},
-          {"duplicateCells", toJson(report.duplicateCells)},
-          {"flatCells", toJson(report.flatCells)},
-          {"reorientedCells", toJson(report.reorientedCells)},
-          {"invertedCells", toJson(report.invertedCells)},
-          {"unusedPoints", toJson(report.unusedPoints)},
-          {"coincidentPoints", toJson(report.coincidentPoints)},
-          {"nonManifoldEdges", edges},
-          {"nonManifoldVertices", toJson(report.nonManifoldVertices)},
-          {"components", report.components}};
-}
-
-/// Bytes and bits a tetrahedron of each stream.
-void addSizes(const PipelineReport& made, std::uint64_t logBytes, OrderedJson& report) {
-  const LogStatistics& statistics = made.statistics;
-  const Manifest& manifest = made.manifest;
-  const std::uint64_t tetrahedra = manifest.levels.back().tetrahedra;
-  const auto bits = [&](std::uint64_t bytes) {
-    return 8.0 * static_cast<double>(bytes) / static_cast<double>(tetrahedra);
-  };
-  OrderedJson fieldBytes = OrderedJson::object(), fieldBits = OrderedJson::object();
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
-    fieldBytes[fieldKey(manifest, f)] = statistics.fieldBytes[f];
-    fieldBits[fieldKey(manifest, f)] = bits(statistics.fieldBytes[f]);
-  }
-  report["bytes"] = logBytes;
-  report["bytesOf"] = {{"head", statistics.headBytes},
-                       {"connectivity", statistics.structureBytes},
-                       {"positions", statistics.positionBytes},
-                       {"fields", fieldBytes}};
-  report["bitsPerTetrahedron"] = {{"connectivity", bits(statistics.structureBytes)},
-                                  {"positions", bits(statistics.positionBytes)},
-                                  {"fields", fieldBits},
-                                  {"total", bits(logBytes)}};
-}
-
-OrderedJson toJson(const PaperFigures& figures) {
-  const PaperFigures::Refused& refused = figures.refused;
-  const double average = figures.fusions > 0 ? static_cast<double>(figures.removed) /
-                                                   static_cast<double>(figures.fusions)
-                                             : 0;
-  return {{"fusions", figures.fusions},
-          {"interiorFusions", figures.interiorFusions},
-          {"removed", figures.removed},
-          {"averageRemoved", average},
-          {"seconds", {{"initialise", figures.initialiseSeconds}, {"fuse", figures.fuseSeconds}}},
-          {"refused",
-           {{"flip", refused.flip},
-            {"envelope", refused.envelope},
-            {"topology", refused.topology},
-            {"few", refused.few}}}};
-}
-
-/// A pipeline's progress, for the person who waits.
-auto shownBy(Progress& progress) {
-  return [&progress, shown = std::optional<Stage>()](Stage stage, double fraction) mutable {
-    const char* doing = kStages.at(stage).doing;
-    if (doing == nullptr) return;
-    if (stage == shown) return progress.update(fraction);
-    progress.stage(doing);
-    shown = stage;
-  };
-}
-
-/// The counts are those of the bytes written, not of what was meant to be written.
-OrderedJson reportOf(const Request& request, const ReadReport& read, const PipelineReport& from,
-                     const WrittenLog& written, const Stopwatch& watch) {
-  const Manifest& manifest = from.manifest;
-  const std::uint64_t full = manifest.levels.back().tetrahedra,
-                      base = manifest.levels.front().tetrahedra;
-  const bool isPaper = request.pipeline.algorithm == Algorithm::kPaper;
-  OrderedJson report = {
-      {"input", request.input},
-      {"output", request.output},
-      {"algorithm", isPaper ? "paper" : "qtet"},
-      {"digest", written.digest},
-      {"tetrahedra", {{"input", from.tetrahedraIn}, {"full", full}, {"base", base}}},
-      {"vertices", manifest.levels.back().vertices},
-      {"percentRemoved", 100.0 * (1.0 - static_cast<double>(base) / static_cast<double>(full))},
-      {"levels", manifest.levels.size() - 1},
-      {"chunks", from.index.chunks.size()}};
-  report["records"] = from.statistics.records;
-  if (from.boundaryWeight) report["boundaryWeight"] = *from.boundaryWeight;
-  addSizes(from, written.bytes, report);
-  if (!from.index.closing.empty()) report["kept"] = closingJson(from.index.closing, manifest);
-  report["error"] = measureReport(request.pipeline.measure, manifest.levels.front().error);
-  report["lattice"] = {{"bits", manifest.latticeBits},
-                       {"requestedBits", from.quantise.requestedBits},
-                       {"step", manifest.latticeStep},
-                       {"origin", manifest.latticeOrigin},
-                       {"worseCells", toJson(from.quantise.worseCells)}};
-  report["clean"] = toJson(from.clean);
-  report["read"] = readReport(read);
-  report["ignoredCells"] = read.ignoredCells;
-  report["ignoredFields"] = read.ignoredFields;
-  report["nonFiniteValues"] = from.quantise.nonFiniteValues;
-  report["seconds"] = watch.seconds();
-  report["notes"] = withOptionNames(read.notes);
-  for (const std::string& note : withOptionNames(from.notes)) report["notes"].push_back(note);
-  report["warnings"] = withOptionNames(from.warnings);
-  if (from.paper) report["paper"] = toJson(*from.paper);
-  return report;
-}
-
-struct Made {
-  ReadReport read;
-  PipelineOutput output;
-};
-
-Result<Made> makeAtOnce(const Request& request, const std::vector<double>& times,
-                        const PipelineOptions& options, Stopwatch& watch) {
-  Result<ReadMesh> read = times.size() > kWindow
-                              ? readTimesInParts(request.input, request.read, times, kWindow)
-                              : readMesh(request.input, request.read);
-  if (!read) return std::unexpected(read.error());
-  watch.lap("read");
-  Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
-  if (!made) return std::unexpected(made.error());
-  return Made{std::move(read->report), std::move(*made)};
-}
-
-Result<Made> makeInWindows(const Request& request, const std::vector<double>& times,
-                           const PipelineOptions& options, Stopwatch& watch) {
-  ReadReport report;
-  ReadOptions reading = request.read;
-  const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
-    std::vector<double> some;
-    for (const std::size_t step : steps) some.push_back(times[step]);
-    Result<ReadMesh> window = readTimes(request.input, reading, some, times.front());
-    if (!window) return std::unexpected(window.error());
-    if (request.read.weld && !window->report.motion.empty())
-      return fail(ErrorCode::kBadValue,
-                  request.input +
-                      ": its points move, and so many steps cannot be welded: which "
-                      "points stay together is known of a few steps at a time; leave "
-                      "out `weld`, or choose fewer steps with `time`");
-    addNew(report.notes, window->report.notes);
-    report = std::move(window->report);
-    return std::move(window->mesh);
-  };
-  Result<TetMesh> sample = read(sampledSteps(times.size()));
-  if (!sample) return std::unexpected(sample.error());
-  reading.moves = !report.motion.empty();
-  watch.lap("read");
-  Result<PipelineOutput> made = simplifySeries(std::move(*sample), times.size(), read, options);
-  if (!made) return std::unexpected(made.error());
-  return Made{std::move(report), std::move(*made)};
-}
-
-Result<OrderedJson> run(const Request& request, Progress& progress) {
-  Stopwatch watch;
-  progress.stage("reading " + request.input);
-  PipelineOptions options = request.pipeline;
-  options.progress = shownBy(progress);
-  options.spool = [&] { return fileSpoolBeside(request.output); };
-  const Result<ChosenTimes> chosen = chosenTimesOf(request.input, request.read);
-  if (!chosen) return std::unexpected(chosen.error());
-  const std::vector<double>& times = chosen->times;
-  const bool isLong = times.size() > kSampledInstants && !request.pipeline.keep.exact &&
-                      times.size() * chosen->valuesOfAStep > kMaxValuesAtOnce;
-  const Result<Made> all = isLong ? makeInWindows(request, times, options, watch)
-                                  : makeAtOnce(request, times, options, watch);
-  if (!all) return std::unexpected(all.error());
-  const PipelineOutput* const made = &all->output;
-  watch.lap(made->report);
-  const Result<WrittenLog> written =
-      writeLog(request.output, [&](const ByteSink& sink) { return made->log.writeTo(sink); });
-  if (!written) return std::unexpected(written.error());
-  watch.lap("write");
-  return reportOf(request, all->read, made->report, *written, watch);
-}
-
-/// A row a field: its bits a tetrahedron, and the base mesh's error where it was measured.
-std::string fieldTable(const OrderedJson& fields, const OrderedJson& error) {
-  const auto text = [](double number) {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(2) << number;
-    return out.str();
-  };
-  const bool isMeasured = error.contains("base");
-  std::vector<std::vector<std::string>> rows{{"field", "bits a tetrahedron"}};
-  if (isMeasured) rows[0].emplace_back("rms of the base mesh, %");
-  std::size_t f = 0;
-  for (const auto& [name, bits] : fields.items()) {
-    if (rows.size() > kShownFields) break;
-    rows.push_back({printable(name), text(bits.get<double>())});
-    if (isMeasured)
-      rows.back().push_back(percentCell(error["base"]["fields"][f++]["rms"].get<double>()));
-  }
-  return columns(rows) + moreFields(fields.size(), "'qtet info --all' shows them");
-}
-
-void printReport(const OrderedJson& report, std::ostream& out) {
-  const OrderedJson& bits = report["bitsPerTetrahedron"];
-  const std::size_t fields = bits["fields"].size();
-  out << std::fixed << std::setprecision(1) << printable(report["output"].get<std::string>())
-      << ": " << counted(report["tetrahedra"]["full"], "tetrahedron", "tetrahedra")
-      << ", of which the base mesh keeps " << grouped(report["tetrahedra"]["base"]) << " ("
-      << report["percentRemoved"].get<double>() << " % removed), refined in "
-      << counted(report["levels"], "level", "levels") << "\n"
-      << grouped(report["bytes"]) << " bytes, " << std::setprecision(2)
-      << bits["total"].get<double>() << " bits a tetrahedron: connectivity "
-      << bits["connectivity"].get<double>() << ", positions " << bits["positions"].get<double>();
-  if (fields == 1)
-    out << ", " << printable(bits["fields"].begin().key()) << " "
-        << bits["fields"].begin()->get<double>();
-  out << "\n";
-  const OrderedJson& error = report["error"];
-  if (const std::string measured = measureSentence(error); !measured.empty()) {
-    out << measured;
-    if (fields == 1)
-      out << ", " << printable(bits["fields"].begin().key()) << " rms "
-          << percentText(error["base"]["fields"][0]["rms"].get<double>());
-    out << "\n";
-  }
-  if (fields > 1) out << fieldTable(bits["fields"], error);
-  out << "lattice of " << report["lattice"]["bits"] << " bits an axis, step "
-      << report["lattice"]["step"] << "; ";
-  if (report.contains("boundaryWeight"))
-    out << "boundary weight " << report["boundaryWeight"].get<double>() << "; ";
-  out << std::setprecision(1) << report["seconds"]["total"].get<double>() << " s\n";
 }
 
 }  // namespace
@@ -341,7 +61,7 @@ int runSimplify(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(),
-                        "required: the log to write, NAME.qtet")(
+                        "required: NAME.qtet, the log; or NAME.json, the list of logs of a series")(
       "algorithm", po::value<std::string>()->default_value("qtet"),
       "qtet, or paper: the paper's own loop, tetrahedra only, which ends near half of the cells")(
       "fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(
@@ -370,15 +90,17 @@ int runSimplify(const Words& words, Console& console) {
   const ParsedWords parsed(
       words,
       {"simplify",
-       "simplify IN -o OUT.qtet [options]",
+       "simplify IN -o OUT.qtet|OUT.json [options]",
        "Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...:\n"
        "simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them,\n"
        "simplifies them level by level and writes the log, from which every level and the whole\n"
-       "mesh come back.",
+       "mesh come back.\n"
+       "A series whose cells change becomes a list of logs, NAME.json with NAME.0.qtet and so on.",
        "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields "
        "Density,Velocity --field-bits 10 --json\n"
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "
-       "--time all -o run.qtet\n",
+       "--time all -o run.qtet\n"
+       "  qtet simplify remeshed.pvd --time all -o remeshed.json\n",
        {{"input", {"format", "time", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
         {"fields", {"field-bits", "field-weight", "time-statistics"}},
         {"quality and base mesh",
@@ -388,17 +110,21 @@ int runSimplify(const Words& words, Console& console) {
         {"rare", {"algorithm"}}}},
       options, {"IN"});
   if (parsed.helped(console)) return kExitOk;
-  const Request request = requestOf(parsed);
+  const SimplifyRequest request = requestOf(parsed);
   const bool asJson = parsed.has("json");
-  if (Status checked = checkOutput(request.output, ".qtet", request.input); !checked)
+  if (Status checked = checkOutput(request.output, ".qtet .json", request.input); !checked)
     return reportFailure(checked.error(), asJson, console);
 
   Progress progress(console);
-  const Result<OrderedJson> report = run(request, progress);
+  const Result<OrderedJson> report =
+      isList(request) ? makeList(request, progress) : makeLog(request, request.output, progress);
   progress.clear();
   if (!report) return reportFailure(report.error(), asJson, console);
   for (const OrderedJson& note : (*report)["notes"]) console.note(note.get<std::string>());
-  asJson ? printJson(*report, console) : printReport(*report, console.out);
+  if (asJson)
+    printJson(*report, console);
+  else
+    isList(request) ? printMadeList(*report, console.out) : printMadeLog(*report, console.out);
   for (const OrderedJson& warning : (*report)["warnings"]) console.warn(warning.get<std::string>());
   return kExitOk;
 }

@@ -1,6 +1,9 @@
 #include "simplify/commands/extract_times.h"
 
+#include <algorithm>
+
 #include "codec/files/file_names.h"
+#include "proto/series.h"
 #include "simplify/read/options/time_steps.h"
 
 namespace qtet {
@@ -16,6 +19,21 @@ Result<std::vector<InstantFile>> instantFiles(const std::vector<ManifestField>& 
   std::vector<InstantFile> out;
   for (const std::size_t step : *steps) out.push_back(instants.fileAt(times[step]));
   if (times.empty()) out.push_back(instants.fileAt(std::nullopt));
+  return out;
+}
+
+std::vector<InstantFile> segmentFiles(const std::vector<ManifestField>& fields,
+                                      const std::vector<std::uint32_t>& wanted,
+                                      const std::vector<double>& times) {
+  const Instants instants(fields, wanted, 1);
+  std::vector<InstantFile> out;
+  for (const double time : times) {
+    const auto found = std::ranges::find_if(
+        instants.times(), [&](double instant) { return isSameTime(instant, time); });
+    out.push_back(instants.fileAt(found == instants.times().end() ? std::nullopt
+                                                                  : std::optional<double>(*found)));
+    out.back().time = time;
+  }
   return out;
 }
 

@@ -20,6 +20,12 @@ namespace qtet {
     const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
     const std::string& asked, const std::filesystem::path& log);
 
+/// The same of a segment of a list, for each of some of its times. An instant of the log is that of
+/// a time if they are the same to nine digits (isSameTime).
+[[nodiscard]] std::vector<InstantFile> segmentFiles(const std::vector<ManifestField>& fields,
+                                                    const std::vector<std::uint32_t>& wanted,
+                                                    const std::vector<double>& times);
+
 /// A ParaView collection (.pvd) of files by time.
 [[nodiscard]] std::string collectionText(
     const std::vector<std::pair<std::optional<double>, std::string>>& timesAndFiles);

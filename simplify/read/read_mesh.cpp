@@ -241,6 +241,11 @@ void leaveOutIds(CellMesh& cells, std::vector<std::string>& notes) {
 
 }  // namespace
 
+Result<CellMesh> readStoredCells(const std::filesystem::path& path, const ReadOptions& options,
+                                 ReadReport& report) {
+  return readFile(path, options, report);
+}
+
 Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions& options,
                            ReadReport& report) {
   Result<CellMesh> cells = readFile(path, withThresholdField(options), report);

@@ -14,6 +14,11 @@ struct ReadMesh {
   ReadReport report;
 };
 
+/// The file's cells with the fields asked for, as its reader gives them: not even their ids are
+/// checked. Errors: as readMesh's.
+[[nodiscard]] Result<CellMesh> readStoredCells(const std::filesystem::path& path,
+                                               const ReadOptions& options, ReadReport& report);
+
 /// The file's cells before they are split, checked, welded and cut by the threshold as the options
 /// say. Errors: as readMesh's.
 [[nodiscard]] Result<CellMesh> readCells(const std::filesystem::path& path,

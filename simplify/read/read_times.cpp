@@ -17,7 +17,10 @@ Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path, const ReadO
   if (options.time != "all" && options.time.find_first_of(",:") == std::string::npos) return out;
   if (options.threshold) return out;
   ReadOptions first = options;
-  first.time = "first";
+  // a step that is asked for by its time stands for the others, which have the same cells
+  first.time = options.time.contains(',') && !options.time.contains(':')
+                   ? options.time.substr(0, options.time.find(','))
+                   : "first";
   first.fields.reset();
   const Result<ReadMesh> read = readMesh(path, first);
   if (!read) return std::unexpected(read.error());

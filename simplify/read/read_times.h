@@ -14,12 +14,13 @@ namespace qtet {
 /// The steps of a file that the options mean.
 struct ChosenTimes {
   std::vector<double> times;      ///< ascending
-  std::size_t valuesOfAStep = 0;  ///< numbers in all fields of the first step
+  std::size_t valuesOfAStep = 0;  ///< numbers in all fields of one step
 };
 
 /// Empty if `options.time` means one step, and for formats whose reader takes all steps at once.
-/// Also empty with a threshold, and if a field is asked for that the first step does not have: such
-/// steps are read together. Reads the file's first step. Errors: readMesh's.
+/// Also empty with a threshold, and if a field is asked for that the step read does not have: such
+/// steps are read together. Reads one step: the first of times between commas, else the file's
+/// first one. Errors: readMesh's.
 [[nodiscard]] Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path,
                                                 const ReadOptions& options);
 

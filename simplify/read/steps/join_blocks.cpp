@@ -160,16 +160,15 @@ std::string sizeOf(const CellMesh& mesh) {
 Status checkSameCells(const TimedCells& first, const TimedCells& step,
                       const std::filesystem::path& path, const ReadReport& report) {
   const CellMesh &rest = first.cells, &mesh = step.cells;
-  if (mesh.points.size() == rest.points.size() && mesh.types == rest.types &&
-      mesh.vertices == rest.vertices)
-    return {};
+  if (haveSameCells(mesh, rest)) return {};
   const std::string there = sizeOf(mesh), here = sizeOf(rest);
   return fail(ErrorCode::kBadInput,
               path.string() + ": the mesh at time " + step.time + " is not that of time " +
                   first.time +
                   (there == here ? ": its cells have other points"
                                  : ": it has " + there + ", not " + here) +
-                  "; make a log of each step, with `time` " + step.time + " and so on" +
+                  "; 'qtet simplify -o NAME.json' makes a log of each run of steps with the same "
+                  "cells, and a list of these logs" +
                   (report.joinedPoints > 0
                        ? ", or keep pieces apart, which part or meet as they move, with `weld` none"
                        : ""));
@@ -241,6 +240,10 @@ class Motion {
 };
 
 }  // namespace
+
+bool haveSameCells(const CellMesh& a, const CellMesh& b) {
+  return a.points.size() == b.points.size() && a.types == b.types && a.vertices == b.vertices;
+}
 
 CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& report) {
   std::erase_if(blocks, [](const CellMesh& block) { return block.cells() == 0; });

@@ -19,6 +19,10 @@ namespace qtet {
 [[nodiscard]] CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared,
                                   ReadReport& report);
 
+/// Whether both meshes have as many points and the same cells, which their points' places do not
+/// change.
+[[nodiscard]] bool haveSameCells(const CellMesh& a, const CellMesh& b);
+
 /// The first step's mesh with every step's fields, called NAME@TIME. If the points of a later step
 /// lie elsewhere, every step gets the point field displacementName (moving_points.h). It says how
 /// far they are from those of the first step. With `moves` those of some other step lie elsewhere.

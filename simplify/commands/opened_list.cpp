@@ -1,0 +1,79 @@
+#include "simplify/commands/opened_list.h"
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "proto/series.h"
+#include "simplify/read/options/time_steps.h"
+
+namespace qtet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// At most one byte more than a list may have.
+Result<std::string> textOf(const fs::path& path) {
+  std::error_code code;
+  if (!fs::exists(path, code))
+    return fail(ErrorCode::kNotFound,
+                "there is no list " + path.string() + "; 'qtet simplify -o NAME.json' makes one");
+  std::string out(kMaxSeriesListBytes + 1, '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!fs::is_regular_file(path, code) || !file)
+    return fail(ErrorCode::kIo, path.string() + " cannot be read; is it a file that you may read?");
+  file.read(out.data(), static_cast<std::streamsize>(out.size()));
+  out.resize(static_cast<std::size_t>(file.gcount()));
+  return out;
+}
+
+/// The times of the log's instants; empty: all of its fields hold for all times.
+std::vector<double> instantsOf(const Manifest& manifest) {
+  std::vector<double> out;
+  for (const ManifestField& field : manifest.fields)
+    if (const auto name = instantName(field.name)) out.push_back(name->time);
+  return out;
+}
+
+}  // namespace
+
+bool isSeriesList(const fs::path& path) { return path.extension() == kSeriesListEnding; }
+
+Result<SeriesList> openList(const fs::path& path) {
+  const Result<std::string> text = textOf(path);
+  if (!text) return std::unexpected(text.error());
+  Result<SeriesList> out = parseSeriesList(*text);
+  if (!out)
+    return fail(out.error().code, path.string() + ": " + out.error().message +
+                                      "; this is no list of logs, or it is damaged: 'qtet "
+                                      "simplify -o NAME.json' makes one");
+  return out;
+}
+
+Result<OpenedLog> openSegment(const fs::path& list, const Segment& segment) {
+  const fs::path path = list.parent_path() / segment.log;
+  std::error_code code;
+  if (!fs::exists(path, code))
+    return fail(ErrorCode::kNotFound, list.string() + " names the log " + segment.log +
+                                          ", which is not beside it; copy the list together with "
+                                          "its logs, or make both again");
+  Result<OpenedLog> log = openLog(path);
+  if (!log) {
+    log.error().message = list.string() + " names it: " + log.error().message;
+    return log;
+  }
+  const std::vector<double> instants = instantsOf(log->manifest);
+  for (const double time : segment.times) {
+    const auto isSame = [&](double instant) { return isSameTime(instant, time); };
+    if (!instants.empty() && std::ranges::none_of(instants, isSame))
+      return fail(ErrorCode::kNotFound, list.string() + ": the log " + segment.log +
+                                            " has no instant at time " + timeText(time) +
+                                            ", which the list names; one of them belongs to "
+                                            "another series: make both again");
+  }
+  return log;
+}
+
+}  // namespace qtet

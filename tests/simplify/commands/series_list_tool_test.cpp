@@ -1,0 +1,189 @@
+// Lists of logs: series whose cells change.
+#include <gtest/gtest.h>
+
+#include "proto/series_list.h"
+#include "simplify/log/opened_log.h"
+#include "simplify/read/options/time_steps.h"
+#include "simplify/read/read_mesh.h"
+#include "tests/simplify/commands/tool_run.h"
+
+namespace qtet {
+namespace {
+
+/// Five steps 0, 0.1 ... of a box with the field T, which is 10 times the step everywhere. The
+/// cells of the steps 3 and 4 are others.
+class SeriesListTool : public Tool {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
+    TetMesh mesh = readMesh(folder_ / "box.vtu").value().mesh;
+    mesh.fields.resize(1);
+    mesh.fields[0].name = "T";
+    for (int step = 0; step < kSteps; ++step) {
+      if (step == 3) mesh.tetrahedra.pop_back();
+      std::ranges::fill(mesh.fields[0].values, 10. * step);
+      mesh.fields[0].values[0] += 1;
+      write("step-" + std::to_string(step) + ".vtu", mesh);
+    }
+    put("run.pvd", collection(0, kSteps));
+  }
+  static std::string collection(int first, int end) {
+    std::string out = R"(<VTKFile type="Collection"><Collection>)";
+    for (int step = first; step < end; ++step)
+      out += "<DataSet timestep=\"" + timeText(step / 10.) + "\" file=\"step-" +
+             std::to_string(step) + ".vtu\"/>";
+    return out + "</Collection></VTKFile>";
+  }
+  void makeList() {
+    const Ran ran = run("simplify run.pvd --time all --measure none -o run.json");
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+  SeriesList list(const std::string& name = "run.json") {
+    return parseSeriesList(contentOf(folder_ / name)).value();
+  }
+  std::vector<std::string> fieldsOf(const std::string& log) {
+    const Result<OpenedLog> opened = openLog(folder_ / log);
+    EXPECT_TRUE(opened) << log;
+    std::vector<std::string> out;
+    for (const ManifestField& field : opened->manifest.fields) out.push_back(field.name);
+    std::ranges::sort(out);
+    return out;
+  }
+  /// The names of all files in the test's folder that begin so, ascending.
+  std::vector<std::string> filesLike(const std::string& begin) {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (entry.path().filename().string().starts_with(begin))
+        out.push_back(entry.path().filename().string());
+    std::ranges::sort(out);
+    return out;
+  }
+
+  static constexpr int kSteps = 5;
+};
+
+TEST_F(SeriesListTool, eachRunOfEqualCellsIsALog) {
+  const Ran ran = run("simplify run.pvd --time all --measure none -o run.json --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  ASSERT_EQ(list().segments.size(), 2u);
+  EXPECT_EQ(list().segments[0].log, "run.0.qtet");
+  EXPECT_EQ(list().segments[0].times, (std::vector<double>{0, 0.1, 0.2}));
+  EXPECT_EQ(list().segments[1].log, "run.1.qtet");
+  EXPECT_EQ(list().segments[1].times, (std::vector<double>{0.3, 0.4}));
+  EXPECT_EQ(fieldsOf("run.0.qtet"), (std::vector<std::string>{"T@0", "T@0.1", "T@0.2"}));
+  EXPECT_EQ(fieldsOf("run.1.qtet"), (std::vector<std::string>{"T@0.3", "T@0.4"}));
+  EXPECT_EQ(ran.json()["times"].size(), 5u);
+  EXPECT_EQ(ran.json()["segments"][1]["made"]["output"], "run.1.qtet");
+  EXPECT_EQ(filesLike(".run"), std::vector<std::string>{}) << "unpublished logs";
+}
+
+TEST_F(SeriesListTool, aSegmentOfOneStepHasItsFieldAsAnInstant) {
+  ASSERT_EQ(run("simplify run.pvd --time 0:0.3:3 --measure none -o run.json").code, 0);
+  ASSERT_EQ(list().segments.size(), 2u);
+  EXPECT_EQ(list().segments[0].times, std::vector<double>{0});
+  EXPECT_EQ(fieldsOf("run.0.qtet"), std::vector<std::string>{"T@0"});
+  EXPECT_EQ(fieldsOf("run.1.qtet"), std::vector<std::string>{"T@0.3"});
+}
+
+TEST_F(SeriesListTool, stepsWithTheSameCellsAreOneSegment) {
+  ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.json").code, 0);
+  ASSERT_EQ(list().segments.size(), 1u);
+  ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.qtet").code, 0);
+  EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), contentOf(folder_ / "run.qtet"));
+}
+
+TEST_F(SeriesListTool, oneLogOfChangingCellsIsRefused) {
+  expectFailure("simplify run.pvd --time all -o run.qtet", 1,
+                "the mesh at time 0.3 is not that of time 0");
+  expectFailure("simplify run.pvd --time all -o run.qtet", 1, "-o NAME.json");
+}
+
+TEST_F(SeriesListTool, afterAnErrorAnOlderListStays) {
+  makeList();
+  const std::string before = contentOf(folder_ / "run.json"),
+                    log = contentOf(folder_ / "run.0.qtet");
+  put("step-4.vtu", "no mesh");
+  expectFailure("simplify run.pvd --time all --measure none --fields none -o run.json", 1,
+                "step-4.vtu");
+  TetMesh other = readMesh(folder_ / "box.vtu").value().mesh;
+  other.fields.clear();  // so it has no T
+  write("step-4.vtu", other);
+  expectFailure("simplify run.pvd --time all --measure none --fields T -o run.json", 1, "T");
+  EXPECT_EQ(contentOf(folder_ / "run.json"), before);
+  EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), log);
+  EXPECT_EQ(filesLike(".run"), std::vector<std::string>{});
+}
+
+TEST_F(SeriesListTool, aListNeedsTimesAndANameThatItCanHold) {
+  expectFailure("simplify box.vtu -o box.json", 1, "box.vtu has no times");
+  EXPECT_EQ(filesLike("box."), std::vector<std::string>{"box.vtu"});
+  expectFailure("simplify run.pvd --time all -o a..b.json", 1, "a..b.0.qtet");
+  expectFailure("simplify run.pvd --time all -o run.json --time-statistics", 2, "-o NAME.qtet");
+}
+
+TEST_F(SeriesListTool, infoShowsEachSegment) {
+  makeList();
+  const nlohmann::json info = run("info run.json --json").json();
+  ASSERT_EQ(info["segments"].size(), 2u);
+  EXPECT_EQ(info["instants"], 5);
+  EXPECT_EQ(info["timeRange"], nlohmann::json({0., 0.4}));
+  EXPECT_EQ(info["segments"][1]["log"], "run.1.qtet");
+  EXPECT_EQ(info["segments"][0]["tetrahedra"].get<int>() - 1, info["segments"][1]["tetrahedra"]);
+  const Ran ran = run("info run.json");
+  EXPECT_NE(ran.out.find("2 logs, 5 instants, 0 to 0.4"), std::string::npos) << ran.out;
+}
+
+TEST_F(SeriesListTool, extractTakesTheLogThatHasTheTime) {
+  ASSERT_EQ(run("simplify run.pvd --time 0.1:0.3 --measure none -o run.json").code, 0);
+  for (int step = 1; step <= 3; ++step) {  // the last one is alone in its log
+    const Ran ran =
+        run("extract run.json --ratio 1 --time " + timeText(step / 10.) + " -o out.vtu --json");
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.json()["log"], step < 3 ? "run.0.qtet" : "run.1.qtet");
+    const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
+    ASSERT_EQ(mesh.fields.size(), 1u);
+    EXPECT_EQ(mesh.fields[0].name, "T");
+    EXPECT_NEAR(std::ranges::min(mesh.fields[0].values), 10 * step, 1e-2);
+  }
+  ASSERT_EQ(run("extract run.json --ratio 0.5 --time last -o out.vtu").code, 0);
+  expectFailure("extract run.json --ratio 1 --time 0.25 -o out.vtu", 1,
+                "run.json has no time step 0.25; it has 0.1, 0.2, 0.3");
+  expectFailure("extract run.json --ratio 1 -o out.vtu", 2, "--time T");
+  expectFailure("extract run.json --ratio 1 --time all -o out.vtu", 2, "3 instants");
+}
+
+TEST_F(SeriesListTool, allTimesAreOneCollection) {
+  makeList();
+  const Ran ran = run("extract run.json --ratio 1 --time all -o out.pvd --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.json()["files"].size(), 5u);
+  EXPECT_EQ(ran.json()["segments"][1]["times"], nlohmann::json({0.3, 0.4}));
+  // the collection is a series whose cells change in the same place
+  ASSERT_EQ(run("simplify out.pvd --time all --measure none -o out.json").code, 0);
+  EXPECT_EQ(list("out.json").times(), list().times());
+  EXPECT_EQ(list("out.json").segments[1].times, list().segments[1].times);
+  std::filesystem::remove_all(folder_ / "out");
+  std::filesystem::remove(folder_ / "run.1.qtet");
+  expectFailure("extract run.json --ratio 1 -o out.pvd", 1, "run.1.qtet");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(SeriesListTool, aListThatIsDamagedIsRefused) {
+  expectFailure("info run.json", 1, "there is no list run.json");
+  put("run.json", R"({"qtet":"series","segments":[{"log":"../a.qtet","times":[0]}]})");
+  expectFailure("info run.json", 1, "run.json: /segments/0/log");
+  put("run.json", std::string(kMaxSeriesListBytes + 1, ' '));
+  expectFailure("extract run.json --ratio 1 --time 0 -o out.vtu", 1, "limit-exceeded");
+  makeList();
+  SeriesList other = list();
+  other.segments[0].times = {0, 0.15};
+  put("run.json", seriesListText(other).value());
+  expectFailure("info run.json", 1, "the log run.0.qtet has no instant at time 0.15");
+  put("run.0.qtet", "no log");
+  expectFailure("info run.json", 1, "run.json names it");
+  std::filesystem::remove(folder_ / "run.0.qtet");
+  expectFailure("info run.json", 1, "run.json names the log run.0.qtet, which is not beside it");
+}
+
+}  // namespace
+}  // namespace qtet
