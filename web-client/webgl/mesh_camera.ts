@@ -1,6 +1,6 @@
 // The camera of one mesh: where the mesh lies, and from where it is seen.
 
-import type {Vector} from '../core/protocol/geometry';
+import {moved, type LatticeChange, type Vector} from '../core/protocol/geometry';
 import type {Snapshot} from '../core/session/worker_messages';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
@@ -86,6 +86,20 @@ export class MeshCamera {
     if (Array.isArray(this.start)) this.orbit.state = this.start;
     else this.look(this.start);
     this.start = null;
+  }
+
+  /** The mesh lies on another lattice from now on, in the same place. */
+  changeLattice(change: LatticeChange): void {
+    if (!this.hasMesh) return;
+    const ends = (bounds: readonly number[]): number[] => [
+      ...moved(change, bounds.slice(0, 3)),
+      ...moved(change, bounds.slice(3)),
+    ];
+    this.bounds = ends(this.bounds);
+    this.focus &&= ends(this.focus);
+    this.reach = {...this.reach, bounds: ends(this.reach.bounds)};
+    this.outline = this.outline.map((point) => moved(change, point));
+    this.placeLattice();
   }
 
   /** Forgets the mesh; the next one is fitted again. */
