@@ -40,6 +40,18 @@ test.each([false, true])('theSamePlaceIsSeenAtTheSamePixel', (isMoved) => {
   expect(its.pose(0).fitted).toBe(fitted);
 });
 
+test('aMovedCameraStaysInPlaceBesideALargerSegment', () => {
+  const its = camera();
+  its.moveTo([1, -3, 2, 0.1, 0, 0]);
+  const before = project(its.pose(0), kSize, [200, 0, 50]);
+  its.changeLattice(change);
+  its.growTo({bounds: [...moved(change, [0, 0, 0]), ...moved(change, [700, 100, 50])]});
+  const after = project(its.pose(0), kSize, moved(change, [200, 0, 50]));
+  expect(after.x).toBeCloseTo(before.x, 6);
+  expect(after.y).toBeCloseTo(before.y, 6);
+  expect(its.pose(0).fitted).toBe(false);
+});
+
 test('aCameraWithoutAMeshWaitsForOne', () => {
   const its = camera();
   its.clear();

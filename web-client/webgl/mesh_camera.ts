@@ -43,6 +43,8 @@ export class MeshCamera {
   /** Lattice points that the mesh lies between. */
   private outline: Vector[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
+  /** The mesh has followed another one. It may have another size, and the camera stays in place. */
+  private isSuccessor = false;
   /** The next mesh is seen from here first; null: its first view. */
   private start: CameraState | Direction | null = null;
 
@@ -78,8 +80,10 @@ export class MeshCamera {
     this.outline = isMoving ? farthestOf([...this.outline, ...outline]) : outline;
     this.bounds = bounds;
     this.reach = {bounds: reach, scale, isAtRestToo};
+    const before = {scale: this.scale, offset: this.offset};
     this.placeLattice();
     if (!isFirst) {
+      if (this.isSuccessor) this.stayInPlace(before);
       this.refit();
       return;
     }
@@ -99,6 +103,7 @@ export class MeshCamera {
     this.focus &&= ends(this.focus);
     this.reach = {...this.reach, bounds: ends(this.reach.bounds)};
     this.outline = this.outline.map((point) => moved(change, point));
+    this.isSuccessor = true;
     this.placeLattice();
   }
 
@@ -106,6 +111,7 @@ export class MeshCamera {
   clear(): void {
     this.bounds = [];
     this.reach = kNoReach;
+    this.isSuccessor = false;
   }
 
   /** Returns false if they are the same as before. */
@@ -225,6 +231,11 @@ export class MeshCamera {
 
   dispose(): void {
     this.controls.dispose();
+  }
+
+  private stayInPlace(before: {scale: number; offset: Vector}): void {
+    const factor = this.scale / before.scale;
+    this.orbit.goWith(factor, difference(this.offset, scaled(before.offset, factor)));
   }
 
   private refit(): void {
