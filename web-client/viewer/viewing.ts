@@ -350,7 +350,7 @@ export class Viewing implements LaterHost {
 
   /** Returns true if the picture stays, because another segment of its list comes. */
   private replace(isSame: boolean, place: SegmentPlace | null): boolean {
-    const stays = isSame && place !== null && this.view !== null && this.mesh.drawn !== null;
+    const stays = isSame && place !== null && this.view !== null && this.mesh.snapshot !== null;
     this.next = stays ? this.mesh.successor(place) : null;
     this.requests.forget();
     if (!stays) this.forget(isSame, place);
