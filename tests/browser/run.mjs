@@ -23,6 +23,7 @@ import {pictureChecks} from './picture_checks.mjs';
 import {posterChecks} from './poster_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
+import {segmentChecks} from './segment_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
 import {undoChecks} from './undo_checks.mjs';
 import {volumeChecks} from './volume_checks.mjs';
@@ -49,7 +50,7 @@ if (!options.bin || !options.viewer || !options.out) {
 const lists = {
   checks,
   element: {...elementChecks, ...lineChecks},
-  transport: {...transportChecks, ...movieChecks},
+  transport: {...transportChecks, ...movieChecks, ...segmentChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
   edge: {...edgeChecks, ...warpChecks},

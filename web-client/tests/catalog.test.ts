@@ -1,10 +1,11 @@
 import {afterEach, expect, test, vi} from 'vitest';
-import {fetchCatalog, isLogFile, isMeshList, meshOfLog} from '../viewer/page/catalog';
+import {fetchCatalog, isLogFile, isMeshList, meshOfLog, segmentUrl} from '../viewer/page/catalog';
 
-const answer = (meshes: unknown): void => {
+const answer = (meshes: unknown): void => answerText(JSON.stringify({meshes}));
+const answerText = (text: string): void => {
   vi.stubGlobal(
     'fetch',
-    vi.fn(() => Promise.resolve(new Response(JSON.stringify({meshes})))),
+    vi.fn(() => Promise.resolve(new Response(text))),
   );
 };
 afterEach(() => vi.unstubAllGlobals());
@@ -44,4 +45,24 @@ test('aFileInMemoryHasItsNameBehindTheAddress', () => {
   expect(meshOfLog(log)).toBe('my part');
   expect(isMeshList(new URL('blob:null/4f5abc87-9397-4bbe#index.json'))).toBe(true);
   expect(isLogFile(new URL('blob:null/4f5abc87-9397-4bbe'))).toBe(false);
+});
+
+const kFlow = new URL('https://a.org/runs/my%20flow.json');
+
+test('aListOfSegmentsIsOneMeshWithLogsBesideIt', async () => {
+  answerText('{"qtet": "series", "segments": [{"log": "flow #1.qtet", "times": [0, 1]}]}');
+  const [entry] = await fetchCatalog(kFlow);
+  expect([entry!.id, entry!.log]).toEqual(['my flow', undefined]);
+  expect(segmentUrl(kFlow, entry!.segments!, 0)).toBe('https://a.org/runs/flow%20%231.qtet');
+});
+
+test('aWrongListIsRefusedByItsAddressAndItsPlace', async () => {
+  answerText('{"qtet": "series", "segments": [{"log": "/etc/x.qtet", "times": [0]}]}');
+  const refusal = fetchCatalog(kFlow);
+  await expect(refusal).rejects.toThrow(/my%20flow\.json cannot be opened: segments\[0\]\.log is/);
+  await expect(refusal).rejects.toMatchObject({code: 'bad-list'});
+  for (const text of ['{"qtet": "series", "segm', '[]', '{"qtet": "other"}']) {
+    answerText(text);
+    await expect(fetchCatalog(kFlow)).rejects.toThrow('is no list of meshes or segments');
+  }
 });

@@ -246,3 +246,14 @@ test('aFileIsAskedForTheInstantOfASeriesAtTheTime', () => {
   expect(requests.at(-1)!.fields).toEqual(['T@0']);
   expect(errorsOf(told)).toEqual([]);
 });
+
+test.each([
+  [true, 'T'],
+  [false, undefined],
+])('aSingleInstantIsASeriesInASegmentOnly', (isSegment, series) => {
+  start({fields: ['T'], time: 7, isSegment}, {fields: ['T@7'], chunks: 2});
+  const manifests = told.flatMap((message) => (message.type === 'manifest' ? [message] : []));
+  expect(manifests.map(({fields}) => fields)).toEqual([[0]]);
+  expect(manifests[0]!.manifest.fields[0]!.instant?.series).toBe(series);
+  expect(errorsOf(told)).toEqual(isSegment ? [] : ['unknown-field']);
+});

@@ -2,7 +2,8 @@ import {afterEach, beforeEach, expect, test, vi} from 'vitest';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Manifest} from '../core/protocol/manifest';
 import {markSeries} from '../core/protocol/series';
-import type {Snapshot} from '../core/session/worker_messages';
+import {listedInstant, readSegmentList} from '../core/protocol/segment_list';
+import type {Snapshot, StreamState} from '../core/session/worker_messages';
 import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
 import {fieldsAhead, TimeBar} from '../viewer/panels/time_bar';
 
@@ -37,6 +38,7 @@ function field(name: string): FieldInfo {
 }
 
 let mesh: ShownMesh;
+let opening: StreamState | null;
 let bar: TimeBar;
 let root: Part;
 let attributes: Map<string, string>;
@@ -47,6 +49,7 @@ let write: (name: string, value: string | null) => void;
 beforeEach(() => {
   vi.useFakeTimers();
   mesh = new ShownMesh();
+  opening = null;
   const fields = ['T@0', 'T@1', 'S@0', 'S@1', 'p'].map(field);
   markSeries(fields);
   mesh.manifest = {fields} as Manifest;
@@ -55,7 +58,12 @@ beforeEach(() => {
   told = [];
   follow = () => undefined;
   const read = (name: string): string | null => attributes.get(name) ?? null;
-  const apply = (): void => bar.update(settingsFor(mesh, read), mesh);
+  const apply = (): void => {
+    const settings = settingsFor(mesh, read);
+    const {list, segment} = mesh.place ?? {};
+    if (list && listedInstant(list, settings.time).segment !== segment) opening ??= 'connecting';
+    bar.update(settings, mesh);
+  };
   write = (name: string, value: string | null): void => {
     if (value === null) attributes.delete(name);
     else attributes.set(name, value);
@@ -65,7 +73,12 @@ beforeEach(() => {
     root as unknown as ParentNode,
     {read, write},
     {
-      mesh,
+      get mesh() {
+        return mesh;
+      },
+      get opening() {
+        return opening;
+      },
       apply,
       timeChanged: (...change) => {
         told.push(change);
@@ -211,4 +224,93 @@ test('fieldsAheadGoRoundTheEndAndLeaveGapsOut', () => {
   expect(fieldsAhead(fields, 15)).toEqual(fields.slice(0, 32));
   expect(fieldsAhead(fields, 16)).toEqual([...fields.slice(16), ...fields.slice(0, 8)]);
   expect(fieldsAhead([4, -1, 5], 1)).toEqual([4, 5]);
+});
+
+/** Two segments with the instants 0, 1 and 2, 3, 4. The first one is shown, with all instants. */
+function showSegments(): void {
+  const segments = [
+    {log: 'a.qtet', times: [0, 1]},
+    {log: 'b.qtet', times: [2, 3, 4]},
+  ];
+  const list = readSegmentList({qtet: 'series', segments}, 100);
+  mesh = new ShownMesh({list, segment: 0});
+  const fields = ['T@0', 'T@1'].map(field);
+  markSeries(fields);
+  mesh.manifest = {fields} as Manifest;
+  mesh.here = [0, 1];
+  write('range', '0,1');
+  drawn();
+}
+
+/** The second segment is opened, and comes into the picture. */
+function openSecond(): void {
+  mesh = mesh.successor({...mesh.place!, segment: 1});
+  const fields = ['T@3', 'T@2', 'T@4'].map(field);
+  markSeries(fields, 1);
+  mesh.manifest = {fields} as Manifest;
+  mesh.here = [0, 1, 2];
+  mesh.snapshot = {color: {field: 1, component: -1}} as Snapshot;
+  opening = null;
+  write('range', '0,1');
+  drawn();
+}
+
+test('theBarHasTheInstantsOfAllSegments', () => {
+  showSegments();
+  const {max, value} = root.querySelector('.time').querySelector('input') as unknown as {
+    max: string;
+    value: string;
+  };
+  expect([max, value]).toEqual(['4', '0']);
+  bar.step(-1);
+  expect(attributes.get('time')).toBe('4');
+  bar.step(1);
+  expect(attributes.get('time')).toBeUndefined();
+});
+
+test('playingWaitsForASegmentAndGoesOnInIt', () => {
+  showSegments();
+  bar.toggle();
+  vi.advanceTimersByTime(100);
+  drawn();
+  vi.advanceTimersByTime(100);
+  expect(attributes.get('time')).toBe('2');
+  vi.advanceTimersByTime(5000);
+  expect(attributes.get('time')).toBe('2');
+  openSecond();
+  expect([bar.isPlaying, mesh.ahead]).toEqual([true, [1, 0, 2]]);
+  expect(attributes.get('time')).toBe('3');
+});
+
+test('aLateInstantIsPassedOverForTheNextSegment', () => {
+  showSegments();
+  mesh.here = [0];
+  bar.toggle();
+  vi.advanceTimersByTime(100);
+  expect(attributes.get('time')).toBe('1');
+  vi.advanceTimersByTime(1100);
+  expect(attributes.get('time')).toBe('2');
+});
+
+test('playingPassesOverASegmentThatFails', () => {
+  showSegments();
+  bar.toggle();
+  write('time', '2');
+  opening = 'failed';
+  vi.advanceTimersByTime(1100);
+  expect(attributes.get('time')).toBeUndefined();
+});
+
+test('anotherSegmentOpensWithTheFieldAndTheCutOfTheOneBefore', () => {
+  showSegments();
+  mesh.manifest = {
+    fields: [field('S@0'), ...mesh.manifest!.fields],
+    opening: {field: 1, cut: 2},
+  } as Manifest;
+  markSeries(mesh.manifest.fields, 1);
+  openSecond();
+  mesh.manifest = {fields: mesh.manifest.fields, opening: {field: 0, cut: null}} as Manifest;
+  expect([mesh.keptField, mesh.firstField, mesh.firstCut]).toEqual(['T', 1, 2]);
+  mesh.manifest = {fields: [field('q')]} as Manifest;
+  expect([mesh.firstField, mesh.firstCut]).toEqual([0, 2]);
 });

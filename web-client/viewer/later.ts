@@ -108,7 +108,7 @@ export class Later {
       },
       get shown() {
         const {manifest, snapshot} = host.mesh;
-        return manifest && snapshot?.color
+        return manifest && snapshot?.color && host.opening === null
           ? {scalar: snapshot.color, fields: manifest.fields}
           : null;
       },

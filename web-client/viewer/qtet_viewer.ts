@@ -1,8 +1,8 @@
 // <qtet-viewer>: a progressive tetrahedral mesh in a web page.
 //
 // Attributes
-//   src          address of the server, by default the page's own. It may be that of a .qtet file
-//                or of an index.json by `qtet publish`, on any web server.
+//   src          address of the server, by default the page's own. It may be that of a .qtet file,
+//                of an index.json by `qtet publish`, or of a list of segments, on any web server.
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
@@ -42,7 +42,6 @@
 import {kNoStatistics, type Statistics} from '../core/decode/statistics';
 import type {Counts} from '../core/protocol/counts';
 import type {Manifest} from '../core/protocol/manifest';
-import {timesOf} from '../core/protocol/series';
 import {Client} from '../core/session/client';
 import type {StreamState} from '../core/session/worker_messages';
 import type {CameraState} from '../webgl/camera';
@@ -100,7 +99,8 @@ export class QtetViewer extends HTMLElement {
   get state(): StreamState {
     const {viewing} = this;
     const state = viewing?.stream.state ?? 'connecting';
-    return state === 'complete' && !viewing?.mesh.drawn ? 'streaming' : state;
+    const isAhead = !viewing?.mesh.drawn || viewing.opening !== null;
+    return state === 'complete' && isAhead ? 'streaming' : state;
   }
   get statistics(): Statistics {
     return this.viewing?.mesh.statistics ?? kNoStatistics;
@@ -254,7 +254,22 @@ export class QtetViewer extends HTMLElement {
   private joinTimeGroup(): void {
     this.timeGroup?.leave();
     const name = this.getAttribute('time-group');
-    this.timeGroup = name ? joinTimeGroup(this.ownerDocument, name, memberOf(this)) : null;
+    this.timeGroup = name ? joinTimeGroup(this.ownerDocument, name, this.asMember()) : null;
+  }
+
+  private asMember(): TimeMember {
+    const time = (): string | null =>
+      this.getAttribute('time') ?? this.viewing?.mesh.times[0]?.text ?? null;
+    return {
+      get time() {
+        return time();
+      },
+      take: (text) => {
+        if (text === null) this.removeAttribute('time');
+        else this.setAttribute('time', text);
+      },
+      stop: () => void (this.playing = false),
+    };
   }
 
   attributeChangedCallback(name: string, before: string | null, after: string | null): void {
@@ -274,20 +289,6 @@ export class QtetViewer extends HTMLElement {
     if (name === 'transport') viewing.apply();
     if (!isOfStream) this.page.dispatch('view-change', {name, value: after});
   }
-}
-
-function memberOf(element: QtetViewer): TimeMember {
-  return {
-    get time() {
-      const [first] = timesOf(element.manifest?.fields ?? []);
-      return element.getAttribute('time') ?? first?.text ?? null;
-    },
-    take: (time) => {
-      if (time === null) element.removeAttribute('time');
-      else element.setAttribute('time', time);
-    },
-    stop: () => void (element.playing = false),
-  };
 }
 
 function pageOf(element: QtetViewer, root: ShadowRoot): Page {

@@ -5,6 +5,7 @@ import {scalarKey} from '../core/layers/field_values';
 import {fieldLayers} from '../core/layers/layers';
 import {errorCode, errorText, QtetError} from '../core/protocol/errors';
 import {kFull, type Limit} from '../core/protocol/limit';
+import {listedInstant} from '../core/protocol/segment_list';
 import {instantKey, instantName} from '../core/protocol/series';
 import type {Client} from '../core/session/client';
 import type {StreamState} from '../core/session/worker_messages';
@@ -14,10 +15,12 @@ import {
   isLogFile,
   logUrl,
   meshOfLog,
+  segmentUrl,
   streamUrl,
   type MeshEntry,
 } from './page/catalog';
 import type {Kept, Page} from './page/page';
+import type {SegmentPlace} from './page/shown_mesh';
 import {MeshMenu} from './panels/mesh_menu';
 import {hint} from './settings/nearest';
 
@@ -37,8 +40,13 @@ export interface StreamListeners {
   limit(): Limit;
   /** The time of series to begin with; null: the first. */
   time(): number | null;
-  /** A mesh is opened. `isSame`: it is the previous one again. */
-  opens(isSame: boolean): void;
+  /** The key of the field that a list's segment before opened with; empty if there was none. */
+  keptField(): string;
+  /**
+   * A mesh is opened. `isSame`: it is the previous one again, or another segment of its list.
+   * `place` is null for a log that stands alone.
+   */
+  opens(isSame: boolean, place: SegmentPlace | null): void;
   changed(state: StreamState, attempt: number, delayMs: number): void;
   failed(code: string, message: string): void;
 }
@@ -55,6 +63,8 @@ export class StreamControl {
   private started = false;
   /** The address of the log that is open, as a file; empty: there is none. */
   logAddress = '';
+  /** The log's place in the list of segments that is open; null: it is none's. */
+  private place: SegmentPlace | null = null;
 
   constructor(
     private readonly page: Page,
@@ -80,6 +90,17 @@ export class StreamControl {
       this.listeners.failed(errorCode(thrown), errorText(thrown));
       this.enter('failed');
     }
+  }
+
+  /** Opens the segment that has the listeners' time, unless it is open. */
+  follow(): void {
+    const {kept, place, started} = this;
+    if (!place || !started) return;
+    if (listedInstant(place.list, this.listeners.time()).segment === place.segment) return;
+    const isPaused = this.state === 'paused';
+    kept.paused = isPaused;
+    this.openMesh(meshOfLog(this.base));
+    if (!isPaused) this.enter('connecting');
   }
 
   pause(): void {
@@ -150,7 +171,8 @@ export class StreamControl {
   /** Fills the menu. Throws `not-found`. */
   private firstMesh(): string {
     const names = this.catalog.map(({id}) => id);
-    const named = isLogFile(this.base) ? null : this.page.read('mesh');
+    const isOne = isLogFile(this.base) || this.catalog[0]?.segments !== undefined;
+    const named = isOne ? null : this.page.read('mesh');
     const mesh = named ?? names[0];
     if (mesh === undefined) {
       throw new QtetError(
@@ -170,12 +192,15 @@ export class StreamControl {
 
   private openMesh(mesh: string): void {
     const {base, client, kept, listeners, page} = this;
+    const entry = this.catalog.find(({id}) => id === mesh);
+    const list = entry?.segments;
+    const instant = list && listedInstant(list, listeners.time());
+    this.place = list && instant ? {list, segment: instant.segment} : null;
     const opened = `${base.href} ${mesh}`;
-    listeners.opens(opened === kept.opened);
+    listeners.opens(opened === kept.opened, this.place);
     kept.opened = opened;
     this.menu.name(mesh);
-    const entry = this.catalog.find(({id}) => id === mesh);
-    const file = isLogFile(base) ? base.href : entry?.log;
+    const file = list && instant ? segmentUrl(base, list, instant.segment) : this.fileOf(entry);
     const transport = page.element.getAttribute('transport');
     const fields = this.firstFields(mesh);
     this.logAddress = file ?? logUrl(base, mesh);
@@ -187,7 +212,8 @@ export class StreamControl {
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
       fields,
-      time: listeners.time(),
+      time: instant?.time ?? listeners.time(),
+      isSegment: instant !== undefined,
       limit: listeners.limit(),
       pictureFirst: true,
       paused: kept.paused,
@@ -195,6 +221,12 @@ export class StreamControl {
     });
     this.started = true;
     kept.paused = false;
+  }
+
+  /** The address of a log on any web server; undefined: a server of ours has it. */
+  private fileOf(entry: MeshEntry | undefined): string | undefined {
+    const {base} = this;
+    return isLogFile(base) ? base.href : entry?.log;
   }
 
   /**
@@ -211,7 +243,8 @@ export class StreamControl {
     const {fields: keys, firstField} = entry ?? {fields: [], firstField: ''};
     const time = this.listeners.time();
     const series = instantName(firstField)?.series;
-    const first = (series && instantKey(keys, series, time)) ?? firstField;
+    const first =
+      (series && instantKey(keys, series, time)) ?? (firstField || this.listeners.keptField());
     const named = [page.read('field') ?? first, page.read('warp'), ...ofLayers]
       .filter((text) => text !== null && text !== '')
       .map((text) => keyToAsk(text!, keys, time));

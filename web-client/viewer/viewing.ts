@@ -1,7 +1,7 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
 import type {BaseFigures} from '../core/picture/base_figures';
-import type {Vector} from '../core/protocol/geometry';
+import {latticeChange, type LatticeChange, type Vector} from '../core/protocol/geometry';
 import type {Client} from '../core/session/client';
 import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
@@ -11,7 +11,7 @@ import {CameraWatch} from './page/camera_watch';
 import {isOnDark, watchGround} from './page/ground';
 import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
-import {kMaxAhead, rangeOf, settingsFor, ShownMesh} from './page/shown_mesh';
+import {kMaxAhead, settingsFor, ShownMesh, type SegmentPlace} from './page/shown_mesh';
 import {Shell} from './panels/shell';
 import {displayOf, Requests} from './requests';
 import {readSettings, type Settings, type ShownRange} from './settings/settings';
@@ -30,6 +30,8 @@ type Progress = Extract<FromWorker, {type: 'progress'}>;
 
 export class Viewing implements LaterHost {
   mesh = new ShownMesh();
+  /** Another segment of the list, until it has a picture; null: none is opened. */
+  private next: ShownMesh | null = null;
   settings: Settings;
   /** The values that the colours span; null if nothing is coloured. */
   range: ShownRange | null = null;
@@ -79,11 +81,8 @@ export class Viewing implements LaterHost {
     this.stream = new StreamControl(page, kept, client, {
       limit: () => this.settings.limit,
       time: () => this.settings.time,
-      opens: (isSame) => {
-        this.forget(isSame);
-        this.notices.endOf('stream', 'page');
-        this.later?.forgetWrongParts(); // they are told again once the mesh is known
-      },
+      keptField: () => this.coming.keptField,
+      opens: (isSame, place) => this.opens(isSame, place),
       changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
       failed: (code, message) => this.failed(code, message),
     });
@@ -118,10 +117,12 @@ export class Viewing implements LaterHost {
 
   /** Brings everything in line with the attributes. */
   apply(): void {
-    const {mesh, page, shell, view} = this;
+    const {page, shell, view} = this;
     if (!shell) return;
     const before = this.settings;
-    this.settings = settingsFor(mesh, (name) => page.read(name));
+    this.settings = settingsFor(this.mesh, (name) => page.read(name));
+    this.stream.follow();
+    const {mesh} = this;
     this.later?.tellWrongParts();
     this.updatePanels();
     this.later?.time.update(this.settings, mesh);
@@ -202,6 +203,10 @@ export class Viewing implements LaterHost {
 
   // ---- TimeHost
 
+  get opening(): StreamState | null {
+    return this.next ? this.stream.state : null;
+  }
+
   timeChanged(time: number, playing: boolean): void {
     this.page.dispatch('time-change', {time, playing});
   }
@@ -220,7 +225,7 @@ export class Viewing implements LaterHost {
       case 'manifest':
         return this.takeManifest(message);
       case 'plan':
-        this.mesh.plan = message.plan;
+        this.coming.plan = message.plan;
         return this.shell?.progress.takePlan(message.plan);
       case 'base':
         return this.takeBase(message.figures);
@@ -238,34 +243,36 @@ export class Viewing implements LaterHost {
   }
 
   private takeManifest({manifest, digest, isMore}: Head): void {
-    if (this.mesh.manifest && !isMore) this.forget(true); // another log has taken its name
-    Object.assign(this.mesh, {manifest, digest});
+    // another log has taken its name
+    if (this.coming.manifest && !isMore) this.replace(true, this.coming.place);
+    Object.assign(this.coming, {manifest, digest});
     if (isMore) {
       this.shell?.progress.takeFields(manifest);
       return this.apply();
     }
-    this.view?.setFocus(manifest.focus ?? null);
+    if (!this.next) this.view?.setFocus(manifest.focus ?? null);
     this.shell?.progress.begin(manifest);
     this.apply();
   }
 
   private takeBase(figures: BaseFigures): void {
-    this.mesh.takeBase(figures);
+    this.coming.takeBase(figures);
     this.apply();
   }
 
   private takeProgress({statistics, received, here, aheadEnded}: Progress): void {
-    const isMore = here.length !== this.mesh.here.length;
-    Object.assign(this.mesh, {statistics, received, here, aheadEnded});
-    if (isMore && this.mesh.plotted.length > kMaxAhead) this.apply(); // asks for the next ones
+    const {coming: mesh, next} = this;
+    const isMore = here.length !== mesh.here.length;
+    Object.assign(mesh, {statistics, received, here, aheadEnded});
+    if (isMore && mesh.plotted.length > kMaxAhead) this.apply(); // asks for the next ones
     this.later?.time.follow();
-    this.later?.panels.inspect.takeProgress();
+    if (!next) this.later?.panels.inspect.takeProgress();
     this.shell?.progress.show(statistics);
     this.page.dispatch('progress', statistics);
   }
 
   private takePicture(snapshot: Snapshot): void {
-    this.mesh.waiting = this.view ? null : snapshot;
+    this.coming.waiting = this.view ? null : snapshot;
     if (this.view) this.draw(snapshot, this.view);
   }
 
@@ -277,12 +284,13 @@ export class Viewing implements LaterHost {
     view.setFocus(this.mesh.manifest?.focus ?? null);
     this.apply();
     this.shell?.cards.repeat();
-    const {waiting} = this.mesh;
-    this.mesh.waiting = null;
+    const {waiting} = this.coming;
+    this.coming.waiting = null;
     if (waiting) this.draw(waiting, view);
   }
 
   private draw(snapshot: Snapshot, view: View): void {
+    const change = this.takeNext();
     const {mesh, page} = this;
     const isFirst = mesh.snapshot === null;
     const amounts = mesh.snapshot?.amounts?.join();
@@ -290,15 +298,19 @@ export class Viewing implements LaterHost {
     // The range and the free area come first: no frame shows the picture without them.
     if (isFirst || amounts !== snapshot.amounts?.join()) this.apply();
     else this.showRange();
-    view.show(snapshot, (drawingMs) => {
-      if (mesh !== this.mesh) return; // it belongs to the previous mesh
-      this.client.shown(drawingMs);
-      page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
-      mesh.drawn = snapshot.statistics;
-      page.element.classList.add('loaded');
-      void this.loadLater();
-      this.tellComplete();
-    });
+    view.show(
+      snapshot,
+      (drawingMs) => {
+        if (mesh !== this.mesh) return; // it belongs to the previous mesh
+        if (!this.next) this.client.shown(drawingMs);
+        page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
+        mesh.drawn = snapshot.statistics;
+        page.element.classList.add('loaded');
+        void this.loadLater();
+        this.tellComplete();
+      },
+      change,
+    );
     this.later?.panels.showFigures(snapshot, view.pose.frameMs);
     this.later?.time.follow();
   }
@@ -329,10 +341,40 @@ export class Viewing implements LaterHost {
     return start ?? readSettings((name) => this.page.read(name)).camera;
   }
 
-  /** With `isSame` the camera stays where the user has moved it. */
-  private forget(isSame: boolean): void {
-    this.mesh = new ShownMesh();
+  private opens(isSame: boolean, place: SegmentPlace | null): void {
+    this.notices.endOf('stream');
+    if (this.replace(isSame, place)) return;
+    this.notices.endOf('page');
+    this.later?.forgetWrongParts(); // they are told again once the mesh is known
+  }
+
+  /** Returns true if the picture stays, because another segment of its list comes. */
+  private replace(isSame: boolean, place: SegmentPlace | null): boolean {
+    const stays = isSame && place !== null && this.view !== null && this.mesh.snapshot !== null;
+    this.next = stays ? this.mesh.successor(place) : null;
     this.requests.forget();
+    if (!stays) this.forget(isSame, place);
+    return stays;
+  }
+
+  /** The mesh to which the worker's messages belong. */
+  private get coming(): ShownMesh {
+    return this.next ?? this.mesh;
+  }
+
+  /** The next segment takes the place of the shown one. Null if there is none. */
+  private takeNext(): LatticeChange | null {
+    const {mesh: before, next} = this;
+    if (!next) return null;
+    this.mesh = next;
+    this.next = null;
+    this.later?.panels.clear();
+    return latticeChange(before.manifest!.lattice, next.manifest!.lattice);
+  }
+
+  /** With `isSame` the camera stays where the user has moved it. */
+  private forget(isSame: boolean, place: SegmentPlace | null): void {
+    this.mesh = new ShownMesh(place);
     const {view} = this;
     if (view) {
       const {cameraState, pose} = view;
@@ -345,10 +387,12 @@ export class Viewing implements LaterHost {
   }
 
   private showDisplay(): void {
-    const {mesh, page, shell, settings} = this;
+    const {coming: mesh, next, page, shell} = this;
     // A picture without its planes would show what the address hides.
     if (!mesh.manifest || mesh.bounds.length === 0) return;
-    const display = displayOf(settings, mesh, (name) => page.read(name));
+    const read = page.read.bind(page);
+    const settings = next ? settingsFor(next, read) : this.settings;
+    const display = displayOf(settings, mesh, read);
     if (!this.requests.show(display)) return;
     shell?.progress.follow(display.color ? [display.color.field] : [], settings.limit);
   }
@@ -356,7 +400,7 @@ export class Viewing implements LaterHost {
   private showRange(): void {
     const {mesh, shell, settings} = this;
     if (!shell) return;
-    const range = mesh.manifest && mesh.snapshot && rangeOf(mesh.snapshot, mesh.manifest, settings);
+    const range = mesh.snapshot && mesh.rangeOf(mesh.snapshot, settings);
     if (range && mesh.snapshot) {
       const {low, high, logarithmic} = range;
       this.view?.setRange(low, high, mesh.snapshot.scaleRange, logarithmic);
@@ -373,7 +417,7 @@ export class Viewing implements LaterHost {
     if (state === 'paused' || state === 'failed') void this.loadLater(); // no picture is due
     this.tellComplete();
     if (!this.shell) return;
-    this.shell.progress.showState(state, attempt, delayMs);
+    this.shell.progress.showState(state, attempt, delayMs, this.coming.isSuccessor);
     this.later?.panels.showState(state);
     if (state === 'streaming' || state === 'complete') this.notices.endOf('stream');
   }
@@ -381,7 +425,7 @@ export class Viewing implements LaterHost {
   /** Both the decoder and the picture must be complete. */
   private tellComplete(): void {
     const {mesh, stream} = this;
-    if (stream.state !== 'complete' || this.completeTold || !mesh.isDrawn) return;
+    if (stream.state !== 'complete' || this.completeTold || this.next || !mesh.isDrawn) return;
     this.completeTold = true;
     this.page.dispatch('complete', mesh.drawn);
   }

@@ -116,6 +116,13 @@ export class OrbitCamera {
     this.aimAt(sum(this.target, sum(scaled(along, -right * height), scaled(above, -up * height))));
   }
 
+  /** The world is scaled, then moved; the camera goes with it. */
+  goWith(factor: number, shift: Vector): void {
+    const {offset} = this;
+    this.target = sum(scaled(this.target, factor), shift);
+    this.moveTo(scaled(offset, factor));
+  }
+
   /** Moves without turning, so that the target is here. */
   aimAt(point: Vector): void {
     this.fitted = false;

@@ -1,6 +1,6 @@
 // The camera of one mesh: where the mesh lies, and from where it is seen.
 
-import type {Vector} from '../core/protocol/geometry';
+import {moved, type LatticeChange, type Vector} from '../core/protocol/geometry';
 import type {Snapshot} from '../core/session/worker_messages';
 import {OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
@@ -43,6 +43,8 @@ export class MeshCamera {
   /** Lattice points that the mesh lies between. */
   private outline: Vector[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
+  /** The mesh has followed another one. It may have another size, and the camera stays in place. */
+  private isSuccessor = false;
   /** The next mesh is seen from here first; null: its first view. */
   private start: CameraState | Direction | null = null;
 
@@ -78,8 +80,10 @@ export class MeshCamera {
     this.outline = isMoving ? farthestOf([...this.outline, ...outline]) : outline;
     this.bounds = bounds;
     this.reach = {bounds: reach, scale, isAtRestToo};
+    const before = {scale: this.scale, offset: this.offset};
     this.placeLattice();
     if (!isFirst) {
+      if (this.isSuccessor) this.stayInPlace(before);
       this.refit();
       return;
     }
@@ -88,10 +92,26 @@ export class MeshCamera {
     this.start = null;
   }
 
+  /** The mesh lies on another lattice from now on, in the same place. */
+  changeLattice(change: LatticeChange): void {
+    if (!this.hasMesh) return;
+    const ends = (bounds: readonly number[]): number[] => [
+      ...moved(change, bounds.slice(0, 3)),
+      ...moved(change, bounds.slice(3)),
+    ];
+    this.bounds = ends(this.bounds);
+    this.focus &&= ends(this.focus);
+    this.reach = {...this.reach, bounds: ends(this.reach.bounds)};
+    this.outline = this.outline.map((point) => moved(change, point));
+    this.isSuccessor = true;
+    this.placeLattice();
+  }
+
   /** Forgets the mesh; the next one is fitted again. */
   clear(): void {
     this.bounds = [];
     this.reach = kNoReach;
+    this.isSuccessor = false;
   }
 
   /** Returns false if they are the same as before. */
@@ -211,6 +231,11 @@ export class MeshCamera {
 
   dispose(): void {
     this.controls.dispose();
+  }
+
+  private stayInPlace(before: {scale: number; offset: Vector}): void {
+    const factor = this.scale / before.scale;
+    this.orbit.goWith(factor, difference(this.offset, scaled(before.offset, factor)));
   }
 
   private refit(): void {

@@ -1,7 +1,7 @@
 // A canvas that shows a progressive mesh: surface, cuts and layers. It draws only after
 // changes.
 
-import type {Vector} from '../core/protocol/geometry';
+import type {LatticeChange, Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
 import type {Snapshot} from '../core/session/worker_messages';
 import type {Picture} from './cell_drawer';
@@ -61,14 +61,18 @@ export class MeshView implements View {
     this.resize();
   }
 
-  /** Shows the picture. `drawn` is called after the frame that contains it. */
-  show(snapshot: Snapshot, drawn: (ms: number) => void): void {
+  /** As View.show. */
+  show(snapshot: Snapshot, drawn: (ms: number) => void, change: LatticeChange | null = null): void {
     // A picture in tiles shows one mesh.
-    if (this.inTiles) return void this.inTiles.finally(() => this.show(snapshot, drawn));
+    if (this.inTiles) return void this.inTiles.finally(() => this.show(snapshot, drawn, change));
     if (snapshot.volume && !this.volume)
       return void this.loadVolume().then((loaded) =>
-        this.show(loaded ? snapshot : {...snapshot, volume: null}, drawn),
+        this.show(loaded ? snapshot : {...snapshot, volume: null}, drawn, change),
       );
+    if (change) {
+      this.parts.clear(); // the picture may lack what the last one had
+      this.camera.changeLattice(change);
+    }
     this.afterFrame.push(drawn);
     this.invalidate(snapshot.volume == null);
     if (snapshot.volume !== undefined) this.volume?.take(snapshot.volume);

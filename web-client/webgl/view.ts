@@ -1,7 +1,7 @@
 // A picture as a viewer needs it, whether it is drawn on the page's thread (MeshView) or in a
 // worker (WorkerView).
 
-import type {Vector} from '../core/protocol/geometry';
+import type {LatticeChange, Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
 import type {ColorMapName} from '../core/picture/color_maps';
 import type {CoarseCells} from '../core/picture/volume';
@@ -79,9 +79,10 @@ export interface View {
   cameraState: CameraState;
   /**
    * Shows the picture. `drawn` is called after the frame that contains it, with the time of
-   * drawing. The snapshot's arrays may be gone afterwards.
+   * drawing. The snapshot's arrays may be gone afterwards. With `change` it shows another mesh, on
+   * another lattice, in the place of the last one. The camera stays.
    */
-  show(snapshot: Snapshot, drawn: (ms: number) => void): void;
+  show(snapshot: Snapshot, drawn: (ms: number) => void, change?: LatticeChange | null): void;
   /** Forgets the mesh; the next one is fitted again. */
   clear(): void;
   setLook(look: Look): void;

@@ -1,6 +1,7 @@
 // Messages between a page and the worker that draws for it. A snapshot's arrays are transferred.
 
 import type {CoarseCells} from '../core/picture/volume';
+import type {LatticeChange} from '../core/protocol/geometry';
 import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import type {CanvasEvent, CanvasSize} from './worker_canvas';
@@ -29,7 +30,7 @@ export type ToView =
   | {type: 'camera'; state: CameraState}
   | {type: 'size'; size: CanvasSize}
   | {type: 'event'; event: CanvasEvent}
-  | {type: 'show'; id: number; snapshot: Snapshot}
+  | {type: 'show'; id: number; snapshot: Snapshot; change: LatticeChange | null}
   | ({id: number} & Wanted)
   /** Asks whether the worker responds. */
   | {type: 'ping'}

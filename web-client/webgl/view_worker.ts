@@ -72,8 +72,10 @@ function obey(message: Exclude<ToView, {type: 'begin' | 'ping'}>, its: MeshView)
     case 'event':
       return canvas?.receive(message.event);
     case 'show':
-      return its.show(message.snapshot, (drawingMs) =>
-        post({type: 'shown', id: message.id, drawingMs}),
+      return its.show(
+        message.snapshot,
+        (drawingMs) => post({type: 'shown', id: message.id, drawingMs}),
+        message.change,
       );
     case 'picture':
       return void answer(message.id, its.picture(message.background));

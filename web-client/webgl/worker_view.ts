@@ -1,6 +1,6 @@
 // The page's side of a view that a worker draws: commands out, poses in.
 
-import type {Vector} from '../core/protocol/geometry';
+import type {LatticeChange, Vector} from '../core/protocol/geometry';
 import type {Ray} from '../core/picture/cell_ray';
 import {retry} from '../core/transport/retry';
 import {buffersOf} from '../core/session/snapshot_buffers';
@@ -147,10 +147,10 @@ class WorkerView implements View {
     this.send({type: 'camera', state});
   }
 
-  show(snapshot: Snapshot, drawn: (ms: number) => void): void {
+  show(snapshot: Snapshot, drawn: (ms: number) => void, change: LatticeChange | null = null): void {
     const id = this.nextId++;
     this.shown.set(id, drawn);
-    this.send({type: 'show', id, snapshot}, buffersOf(snapshot));
+    this.send({type: 'show', id, snapshot, change}, buffersOf(snapshot));
   }
   clear(): void {
     this.command('clear');

@@ -21,6 +21,8 @@ const kFileBytesAt = 16;
 export class Assembler implements LogTable {
   manifest: Manifest | null = null;
   codecReady = Promise.resolve();
+  /** So many instants are a series: that of markSeries. */
+  leastInstants = 2;
   private ledger: Ledger | null = null;
   private head: Uint8Array | null = null;
   /** The part of later instants, once it is here. */
@@ -198,7 +200,7 @@ export class Assembler implements LogTable {
     const {head: known} = this;
     if (known?.length === head.length && known.every((byte, at) => byte === head[at])) return;
     this.codec.open(head);
-    this.manifest = readManifest(head, this.levelColumns);
+    this.manifest = readManifest(head, this.levelColumns, this.leastInstants);
     this.later = null;
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
@@ -229,7 +231,7 @@ export class Assembler implements LogTable {
   takeLater(part: Uint8Array): void {
     this.codec.readLater(part);
     this.later = part.slice();
-    addLater(this.manifest!, part, this.levelColumns);
+    addLater(this.manifest!, part, this.levelColumns, this.leastInstants);
     this.useParents(this.manifest!.fields.map((_, field) => this.codec.parents(field)));
   }
 

@@ -13,6 +13,23 @@ export const cross = (a: Vector, b: Vector): Vector => [
 export const positionOf = ({origin, step}: {origin: Vector; step: number}, place: Vector): Vector =>
   place.map((x, axis) => origin[axis]! + step * x) as Vector;
 
+/** The way from places of one lattice to those of another: factor * place + offset. */
+export interface LatticeChange {
+  factor: number;
+  offset: Vector;
+}
+
+type Lattice = Parameters<typeof positionOf>[0];
+
+export const latticeChange = (from: Lattice, to: Lattice): LatticeChange => ({
+  factor: from.step / to.step,
+  offset: from.origin.map((x, axis) => (x - to.origin[axis]!) / to.step) as Vector,
+});
+
+/** The place on the other lattice. */
+export const moved = ({factor, offset}: LatticeChange, place: readonly number[]): Vector =>
+  place.map((x, axis) => factor * x + offset[axis]!) as Vector;
+
 /**
  * The points with normal . p = offset. The part above (normal . p > offset) is cut away.
  */

@@ -127,10 +127,14 @@ export type LevelColumns = (
 
 /**
  * Reads the manifest of a head. REQUIRES: the codec has opened the head, and so has checked its
- * counts and checksums; `levelColumns` belongs to that codec. Throws `truncated`, `bad-value`, and
- * the errors of `levelColumns`.
+ * counts and checksums; `levelColumns` belongs to that codec. `least` is that of markSeries. Throws
+ * `truncated`, `bad-value`, and the errors of `levelColumns`.
  */
-export function readManifest(head: Uint8Array, levelColumns: LevelColumns): Manifest {
+export function readManifest(
+  head: Uint8Array,
+  levelColumns: LevelColumns,
+  least?: number,
+): Manifest {
   const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
   const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
   const table = new ManifestReader(head.subarray(tableAt));
@@ -157,7 +161,7 @@ export function readManifest(head: Uint8Array, levelColumns: LevelColumns): Mani
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
   const levels = readLevels(reader.rest(), errors, fields.length, levelColumns);
   const manifest = {source, lattice, ...(focus && {focus}), ...(opening && {opening})};
-  settle(fields, later);
+  settle(fields, later, least);
   return {...manifest, fields, levels, later};
 }
 
@@ -165,7 +169,12 @@ export function readManifest(head: Uint8Array, levelColumns: LevelColumns): Mani
  * Adds the fields of the part of later instants, which are the last ones (codec/FORMAT.md, "Later
  * instants"). REQUIRES and throws as readManifest.
  */
-export function addLater(manifest: Manifest, part: Uint8Array, levelColumns: LevelColumns): void {
+export function addLater(
+  manifest: Manifest,
+  part: Uint8Array,
+  levelColumns: LevelColumns,
+  least?: number,
+): void {
   const {levels, later} = manifest;
   const table = new ManifestReader(part);
   const shapes = readShapes(table, later);
@@ -175,7 +184,7 @@ export function addLater(manifest: Manifest, part: Uint8Array, levelColumns: Lev
   if (!levels[0]!.error && reader.rest().length > 0) throw damaged('has bytes behind its end');
   if (more.some(({error}, level) => !error !== !levels[level]!.error))
     throw damaged('has errors of other levels');
-  settle(fields, 0);
+  settle(fields, 0, least);
   // from here on nothing throws
   manifest.fields = fields;
   manifest.later = 0;
@@ -183,10 +192,10 @@ export function addLater(manifest: Manifest, part: Uint8Array, levelColumns: Lev
 }
 
 /** Once the fields are known, `later` more of them to come. */
-function settle(fields: FieldInfo[], later: number): void {
+function settle(fields: FieldInfo[], later: number, least = 2): void {
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
-  markSeries(fields, later > 0 ? 1 : 2);
+  markSeries(fields, later > 0 ? 1 : least);
 }
 
 function readFields(reader: ManifestReader, shapes: readonly Shape[]): FieldInfo[] {

@@ -119,6 +119,7 @@ export class Session implements TransportHandlers {
     this.stream.disconnect();
     this.source = source;
     this.forget();
+    this.assembler.leastInstants = source.isSegment ? 1 : 2;
     this.requested.begin(source);
     this.stream.use(this.newTransport(source, this.assembler, this));
     if (source.paused) return this.enter({name: 'paused'});

@@ -28,6 +28,8 @@ export interface Source extends LogAddress {
   fields: string[] | null;
   /** The time at which series begin; null: the first. */
   time?: number | null;
+  /** The log is a segment of a list: a single instant is a series, too. */
+  isSegment?: boolean;
   limit: Limit;
   /** The network stays idle until `resume`. */
   paused?: boolean;

@@ -1,7 +1,9 @@
 // The meshes of a server, GET /v1/meshes of proto/PROTOCOL.md, or of a folder that `qtet publish`
-// made. The latter has the same list in its index.json, with addresses of files.
+// made. The latter has the same list in its index.json, with addresses of files. A list of segments
+// is one mesh.
 
-import {QtetError} from '../../core/protocol/errors';
+import {errorText, QtetError} from '../../core/protocol/errors';
+import {isSegmentList, readSegmentList, type SegmentList} from '../../core/protocol/segment_list';
 import {refusedOrigin} from '../../core/transport/refused_origin';
 import {fetchWith} from '../../core/transport/token';
 
@@ -17,6 +19,8 @@ export interface MeshEntry {
   firstBytes?: number;
   /** So many of its chunks are there, from the list of a page that holds a cut log. */
   chunks?: number;
+  /** The mesh is a list of segments. */
+  segments?: SegmentList;
 }
 
 /** Throws a QtetError whose text says what to do. `token` is empty if the server asks for none. */
@@ -40,12 +44,14 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
       `The server at ${base.host} answers "${response.status} ${response.statusText}" instead ` +
         'of its meshes. For a .qtet file on a plain web server, give its address: ?src=FILE.qtet',
     );
-  const body = (await response.json().catch(() => null)) as {meshes?: unknown} | null;
+  const bytes = await response.arrayBuffer();
+  const body = parsed(bytes) as {meshes?: unknown} | null;
+  if (isList && isSegmentList(body)) return [entryOfSegments(url, body, bytes.byteLength)];
   if (!Array.isArray(body?.meshes))
     throw new QtetError(
       'bad-message',
-      `${url.href} is not a list of meshes. Is this a qtet server? For a .qtet file on another ` +
-        'one, give its address: ?src=FILE.qtet',
+      `${url.href} is no list of ${isList ? 'meshes or segments' : 'meshes'}. ` +
+        'Is this a qtet server? For a .qtet file on another one, give its address: ?src=FILE.qtet',
     );
   return (body.meshes as Listed[]).map((mesh) => ({
     id: String(mesh.id),
@@ -58,6 +64,28 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
   }));
 }
 
+/** Null if it is no JSON. */
+function parsed(bytes: ArrayBuffer): unknown {
+  try {
+    return JSON.parse(new TextDecoder().decode(bytes));
+  } catch {
+    return null;
+  }
+}
+
+/** Throws a QtetError that names the list. */
+function entryOfSegments(url: URL, body: unknown, sizeBytes: number): MeshEntry {
+  try {
+    const segments = readSegmentList(body, sizeBytes);
+    return {id: meshOfLog(url), tetrahedra: 0, fields: [], firstField: '', segments};
+  } catch (thrown) {
+    throw new QtetError(
+      'bad-list',
+      `The list of segments ${url.href} cannot be opened: ${errorText(thrown)}`,
+    );
+  }
+}
+
 /** An entry as it arrives: no member has been checked. */
 type Listed = Partial<Record<keyof MeshEntry, unknown>> & {links?: {log?: unknown}};
 
@@ -66,7 +94,7 @@ function nameIn({protocol, pathname, hash}: URL): string {
   return protocol === 'blob:' ? hash : pathname;
 }
 
-/** Whether the address names a list that `qtet publish` made. */
+/** Whether the address names a list: of meshes, as `qtet publish` makes it, or of segments. */
 export function isMeshList(base: URL): boolean {
   return nameIn(base).endsWith('.json');
 }
@@ -76,13 +104,18 @@ export function isLogFile(base: URL): boolean {
   return nameIn(base).endsWith('.qtet');
 }
 
-/** The file's name, as a mesh's id. */
+/** The name of a log or of a list of segments, as a mesh's id. */
 export function meshOfLog(base: URL): string {
   return decodeURIComponent(
     nameIn(base)
       .replace(/^.*[/#]/, '')
-      .replace(/\.qtet$/, ''),
+      .replace(/\.(qtet|json)$/, ''),
   );
+}
+
+/** The address of a segment's log. */
+export function segmentUrl(base: URL, {logs}: SegmentList, segment: number): string {
+  return new URL(encodeURIComponent(logs[segment]!), base).href;
 }
 
 /** The address of a server's log as a file. */

@@ -6,13 +6,16 @@ import {axisNormal, clip} from '../../core/layers/clip';
 import {kLayers} from '../../core/layers/layers';
 import {firstOpacities, type Amounts} from '../../core/layers/volume';
 import type {BaseFigures} from '../../core/picture/base_figures';
-import type {Scalar} from '../../core/picture/field_scale';
+import {parseScalar, scalarText} from '../../core/layers/field_values';
+import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import {labelsOf} from '../../core/picture/labels';
 import type {FieldInfo} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
-import {showTime} from '../../core/protocol/series';
+import {listedInstant, type SegmentList} from '../../core/protocol/segment_list';
+import {showTime, timesOf} from '../../core/protocol/series';
 import type {Snapshot} from '../../core/session/worker_messages';
 import {placeOn} from '../../core/picture/log_scale';
+import {KnownRanges, type SegmentRanges} from './known_ranges';
 import {
   labelRange,
   readSettings,
@@ -25,6 +28,12 @@ import {
 
 /** Fields that are asked for ahead at once. A server takes 1,024 names in a request. */
 export const kMaxAhead = 512;
+
+/** A log's place in a list of segments. */
+export interface SegmentPlace {
+  list: SegmentList;
+  segment: number;
+}
 
 export class ShownMesh {
   /** Null before the head of the log is here. */
@@ -63,9 +72,58 @@ export class ShownMesh {
   /** The figures of the picture on the screen; null if there is none. */
   drawn: Statistics | null = null;
 
+  /** The opening of the list's segment before; null: there was none. */
+  private heritage: {field: string; cut: number | null} | null = null;
+  private ranges = new KnownRanges();
+
+  /** `place` is null for a log that stands alone. */
+  constructor(readonly place: SegmentPlace | null = null) {}
+
+  /** The mesh of another segment. It opens as this one did. */
+  successor(place: SegmentPlace): ShownMesh {
+    const next = new ShownMesh(place);
+    const {firstCut, firstField, heritage, manifest} = this;
+    const isKnown = manifest !== null && manifest.fields.length > 0;
+    const shown = {field: firstField, component: kMagnitude};
+    next.heritage = isKnown ? {field: scalarText(shown, manifest.fields), cut: firstCut} : heritage;
+    next.ranges = this.ranges;
+    return next;
+  }
+
+  /** Another segment of its list was shown before. */
+  get isSuccessor(): boolean {
+    return this.heritage !== null;
+  }
+
   /** The field that is shown if no attribute names one. */
   get firstField(): number {
-    return this.manifest?.opening?.field ?? 0;
+    const {heritage, manifest} = this;
+    const kept = manifest && heritage ? parseScalar(heritage.field, manifest.fields) : null;
+    return kept?.field ?? manifest?.opening?.field ?? 0;
+  }
+
+  /** The same as a key, from the segment before; empty if there was none. */
+  get keptField(): string {
+    return this.heritage?.field ?? '';
+  }
+
+  /** The axis across which the mesh opens cut; null for none. */
+  get firstCut(): number | null {
+    return this.heritage ? this.heritage.cut : (this.manifest?.opening?.cut ?? null);
+  }
+
+  /** The instants of the log, or of all segments of its list, ascending. */
+  get times(): readonly {time: number; text: string}[] {
+    return this.place?.list.instants ?? timesOf(this.manifest?.fields ?? []);
+  }
+
+  /** The range of the colours in a picture of this mesh; null if nothing is coloured. */
+  rangeOf(snapshot: Snapshot, settings: Settings): Omit<ShownRange, 'hasMissing'> | null {
+    const {manifest, place, ranges} = this;
+    if (!manifest) return null;
+    return rangeOf(snapshot, manifest, settings, (field, its) =>
+      place ? ranges.join(field, place.segment, its) : its,
+    );
   }
 
   /** Fields that are wanted behind the shown ones. */
@@ -98,18 +156,19 @@ export class ShownMesh {
 
 /** The settings of the attributes, with what the mesh decides where they say nothing. */
 export function settingsFor(
-  {manifest, firstField, chord, snapshot, filmed}: ShownMesh,
+  mesh: ShownMesh,
   read: (name: ViewAttribute) => string | null,
 ): Settings {
+  const {manifest, firstCut, firstField, chord, filmed, place} = mesh;
   const settings = readSettings(read);
   if (filmed) settings.time = filmed.time;
+  else if (place) settings.time = listedInstant(place.list, settings.time).time;
   const fields = manifest?.fields ?? [];
   showTime(fields, settings.time);
   const shown = shownScalar(read('field'), fields, firstField);
   if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
   if (settings.hasFirstOpacities)
-    settings.volume = firstOpacities(chord, amountsIn(snapshot, manifest, settings));
-  const firstCut = manifest?.opening?.cut ?? null;
+    settings.volume = firstOpacities(chord, amountsIn(mesh, settings));
   const saysWhat = kLayers.some(({name}) => name !== clip.name && read(name) !== null);
   settings.hasFirstCut = firstCut !== null && !saysWhat && read('surface') === null;
   if (settings.hasFirstCut && read('clip') === null)
@@ -118,12 +177,9 @@ export function settingsFor(
 }
 
 /** How much of the volume has which values; null if that is not known. */
-function amountsIn(
-  snapshot: Snapshot | null,
-  manifest: Manifest | null,
-  settings: Settings,
-): Amounts | null {
-  const range = snapshot && manifest && rangeOf(snapshot, manifest, settings);
+function amountsIn(mesh: ShownMesh, settings: Settings): Amounts | null {
+  const {snapshot} = mesh;
+  const range = snapshot && mesh.rangeOf(snapshot, settings);
   if (!range || !snapshot.amounts) return null;
   const [from, to] = snapshot.scaleRange;
   const placeOf = (share: number): number => {
@@ -134,11 +190,15 @@ function amountsIn(
   return {shares: snapshot.amounts, placeOf};
 }
 
-/** The range of the colours; null if nothing is coloured. */
+/**
+ * The range of the colours; null if nothing is coloured. `join` adds what is known of the field in
+ * other meshes.
+ */
 export function rangeOf(
   {color, scaleRange, extent, middle}: Snapshot,
   {fields}: Manifest,
   settings: Settings,
+  join: (field: string, its: SegmentRanges) => SegmentRanges = (_, its) => its,
 ): Omit<ShownRange, 'hasMissing'> | null {
   if (!color) return null;
   const labels = settings.map === 'labels' && labelsOf(fields[color.field]!);
@@ -149,7 +209,9 @@ export function rangeOf(
   const valueAt = (share: number): number => low + share * (high - low);
   const valuesAt = ([from, to]: [number, number]): [number, number] => [valueAt(from), valueAt(to)];
   const range = settings.range === 'instant' ? 'auto' : settings.range;
-  return shownRange({...settings, range}, valuesAt(extent), valuesAt(middle));
+  const alone = {extent: valuesAt(extent), middle: valuesAt(middle)};
+  const all = join(scalarText(color, fields), alone);
+  return shownRange({...settings, range}, all.extent, all.middle);
 }
 
 /** The range of an instant alone; null for other fields, and if its values are all equal. */

@@ -27,6 +27,7 @@ const kClickPixels = 5;
 const kPlaceShare = 1e-4;
 
 export interface InspectHost extends OverTimeHost {
+  /** Null while it has another mesh than the one in the picture. */
   readonly client: Client | null;
   readonly view: View | null;
   readonly manifest: Manifest | null;
@@ -215,7 +216,7 @@ export class Inspect {
   }
 
   private async showLine(from: Pick, to: Pick): Promise<void> {
-    const probe = await this.host.client!.probe(from.lattice, to.lattice);
+    const probe = await this.host.client?.probe(from.lattice, to.lattice);
     if (!probe) return;
     const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
     const hasPlot = probe.values.length > 1;
@@ -235,8 +236,8 @@ export class Inspect {
     if (this.overTime.isOpen)
       return save(timeTableOf(this.overTime.table(), manifest!.fields), 'over-time.csv');
     const [from, to] = this.points.map(({lattice}) => lattice);
-    const places = await client!.line(from!, to!);
-    save(tableOf(places, manifest!.fields), 'line.csv');
+    const places = await client?.line(from!, to!);
+    if (places) save(tableOf(places, manifest!.fields), 'line.csv');
   }
 
   /** Rounds to a ten-thousandth of the lattice's span. */

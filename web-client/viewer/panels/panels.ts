@@ -32,6 +32,8 @@ export interface PanelsHost {
   readonly client: Client;
   readonly view: View | null;
   readonly mesh: ShownMesh;
+  /** As TimeHost.opening. */
+  readonly opening: StreamState | null;
   readonly stream: {
     /** The address of the log that is open, as a file; empty: there is none. */
     readonly logAddress: string;
@@ -85,7 +87,7 @@ export class Panels {
     ];
     this.inspect = new Inspect(root, {
       get client() {
-        return host.client;
+        return host.opening === null ? host.client : null;
       },
       get view() {
         return host.view;

@@ -19,6 +19,7 @@ const kStateTexts: Record<StreamState, string> = {
   held: 'At this level',
   failed: 'Stopped',
 };
+const kOnTheWay: readonly StreamState[] = ['connecting', 'streaming', 'complete'];
 /** Screen readers get a message at every multiple of so many per cent. */
 const kAnnouncedPercent = 25;
 /** Nobody reads figures that change faster, and each change makes the browser redraw the page. */
@@ -88,19 +89,21 @@ export class ProgressPanel {
     );
   }
 
-  showState(state: StreamState, attempt = 0, delayMs = 0): void {
+  /** `isNext`: of another segment. While it is on its way, the card stays as it is, and silent. */
+  showState(state: StreamState, attempt = 0, delayMs = 0, isNext = false): void {
     this.state = state;
     this.root.dataset.state = state;
     clearTimeout(this.foldTimer);
+    const isQuiet = isNext && kOnTheWay.includes(state);
     if (state === 'complete') this.foldTimer = setTimeout(() => this.fold(true), kFoldMs);
-    else this.fold(false);
+    else if (!isQuiet) this.fold(false);
     const retry =
       state === 'reconnecting'
         ? `Connection lost, trying again in ${formatDuration(delayMs / 1000)}`
         : '';
     this.part('.state-text').textContent = kStateTexts[state];
     this.part('.state-note').textContent = retry && attempt > 0 ? retry : '';
-    if (state !== 'streaming') this.announce(retry || kStateTexts[state]);
+    if (state !== 'streaming' && !isQuiet) this.announce(retry || kStateTexts[state]);
     if (this.statistics) this.draw();
   }
 

@@ -1,7 +1,8 @@
 // The time of a series: play, step, loop, and which instants are here.
 
 import type {FieldInfo} from '../../core/protocol/fields';
-import {shownInstant, timesOf} from '../../core/protocol/series';
+import {shownInstant} from '../../core/protocol/series';
+import type {StreamState} from '../../core/session/worker_messages';
 import {find, onClick, setText} from '../page/find';
 import type {Attributes} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
@@ -13,7 +14,10 @@ import {warpField} from '../settings/warp';
 const kStepMs = 100;
 /** The clock is read so often, and with each picture. */
 const kTickMs = 25;
-/** An instant that is not here after this time is passed over for one that is. */
+/**
+ * An instant that is not here after this time is passed over for one that is, or for the next
+ * segment.
+ */
 const kPatienceMs = 1000;
 /** Instants that are fetched ahead of the one that is shown; the list changes at every half. */
 const kAhead = 32;
@@ -37,6 +41,8 @@ const kMarkup = `
 
 export interface TimeHost {
   readonly mesh: ShownMesh;
+  /** The state of another segment that is opened, before it has a picture; null: none is. */
+  readonly opening: StreamState | null;
   /** Brings the picture in line with the bar. */
   apply(): void;
   /** The bar shows another instant, or begins or ends to play. */
@@ -57,7 +63,10 @@ export class TimeBar {
   private dueAt = 0;
   /** The shown instant was not here when it was asked for. */
   private isLate = false;
+  /** The list of segments, or else the manifest, that `times` are of. */
   private known: unknown = null;
+  /** The manifest that `tracks` are of. */
+  private tracked: unknown = null;
   /** The host knows this time, and whether it plays; null: nothing was shown yet. */
   private told: {time: number; playing: boolean} | null = null;
 
@@ -92,16 +101,20 @@ export class TimeBar {
   /** Brings the bar in line with the attributes and the mesh. */
   update(settings: Settings, mesh: ShownMesh): void {
     const {manifest, firstField} = mesh;
-    if (this.known !== manifest) {
-      this.known = manifest;
+    const known = mesh.place?.list ?? manifest;
+    if (this.known !== known) {
+      this.known = known;
       this.end();
-      this.times = manifest ? timesOf(manifest.fields) : [];
+      this.times = mesh.times;
+    }
+    if (this.tracked !== manifest) {
+      this.tracked = manifest;
       this.series = null;
       this.tracks = [];
     }
-    const isSeries = this.times.length > 1;
+    const isSeries = manifest !== null && this.times.length > 1;
     this.bar.hidden = !isSeries;
-    if (!isSeries || !manifest) return;
+    if (!isSeries) return;
     const {fields} = manifest;
     const color = shownScalar(this.attributes.read('field'), fields, firstField);
     this.choose([color?.field ?? -1, warpField(settings.warp, fields)], fields);
@@ -211,11 +224,20 @@ export class TimeBar {
     }
     if (this.waitingSince === 0) this.waitingSince = now;
     if (now - this.waitingSince < kPatienceMs) return;
+    // A segment that is slow would only begin again.
+    if (this.host.opening !== null && this.host.opening !== 'failed') return;
     for (let by = 1; by < this.times.length; ++by) {
-      if (!this.isHere(this.at + by)) continue;
+      if (!this.isHere(this.at + by) && !this.isElsewhere(this.at + by)) continue;
       this.waitingSince = 0;
       return this.show(this.at + by);
     }
+  }
+
+  /** The instant is of another segment than that of `at`. */
+  private isElsewhere(at: number): boolean {
+    const {instants} = this.host.mesh.place?.list ?? {};
+    const segmentOf = (i: number): number | undefined => instants?.[i % this.times.length]?.segment;
+    return segmentOf(at) !== segmentOf(this.at);
   }
 
   /** The most steps up to `due` to an instant that is here; 1 if none is. */
@@ -227,6 +249,7 @@ export class TimeBar {
 
   /** False without a series. */
   private isHere(at: number): boolean {
+    if (this.host.opening !== null) return false;
     const {here} = this.host.mesh;
     const fields = this.tracks.map((track) => track[at % this.times.length]!);
     return fields.length > 0 && fields.every((field) => here.includes(field));
@@ -237,6 +260,7 @@ export class TimeBar {
   }
 
   private get isOnScreen(): boolean {
+    if (this.host.opening !== null) return false;
     const {manifest, snapshot} = this.host.mesh;
     const seen = [snapshot?.color?.field, snapshot?.warp?.field];
     return this.tracks.every((track) => {

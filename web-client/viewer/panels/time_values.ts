@@ -27,6 +27,7 @@ export interface TimeValues extends Omit<TimeTable, 'field'> {
 }
 
 export interface BlocksHost {
+  /** Null while it has another mesh than the one in the picture. */
   readonly client: Pick<Client, 'values'> | null;
   readonly mesh: ShownMesh;
 }
@@ -80,8 +81,8 @@ export class BlockValues implements TimeValues {
     this.isAsking = true;
     while (this.isStale) {
       this.isStale = false;
-      const found = await this.host.client!.values(this.place, this.instants);
-      if (this.isOver) return;
+      const found = await this.host.client?.values(this.place, this.instants);
+      if (!found || this.isOver) return;
       this.values = found.map((values, i) => (values.length > 0 ? values : this.values[i]!));
       this.changed();
     }
