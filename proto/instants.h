@@ -30,7 +30,7 @@ struct InstantFile {
 class Instants {
  public:
   /// `wanted`: ascending numbers of `fields`, which outlive the object, as `wanted` does. A series
-  /// has `fewest` instants at least: in a log of a list (SERIES_LIST.md) 1.
+  /// has `fewest` instants at least: in a log of a list (SEGMENT_LIST.md) 1.
   Instants(const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
            std::size_t fewest = 2);
 

@@ -1,10 +1,10 @@
 #include "server/routes/level_time.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "proto/instants.h"
+#include "proto/number_text.h"
 #include "proto/series.h"
 
 namespace qtet {
@@ -15,11 +15,8 @@ constexpr std::size_t kShownTimes = 12;
 
 std::string shownTimes(const std::vector<double>& times) {
   std::string out;
-  for (std::size_t i = 0; i < std::min(times.size(), kShownTimes); ++i) {
-    std::array<char, 32> text{};
-    char* const end = std::to_chars(text.data(), text.data() + text.size(), times[i]).ptr;
-    out += (i == 0 ? "" : ", ") + std::string(text.data(), end);
-  }
+  for (std::size_t i = 0; i < std::min(times.size(), kShownTimes); ++i)
+    out += (i == 0 ? "" : ", ") + shortestText(times[i]);
   return out + (times.size() > kShownTimes ? ", ..." : "");
 }
 

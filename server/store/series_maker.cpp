@@ -14,6 +14,7 @@
 #include "codec/mesh/mesh.h"
 #include "codec/refine/refiner.h"
 #include "proto/field_key.h"
+#include "proto/number_text.h"
 #include "server/store/cell_at_point.h"
 
 namespace qtet {
@@ -25,18 +26,11 @@ struct Instant {
   std::vector<double> values;
 };
 
-/// The shortest text that gives the number back.
-template <class Number>
-std::string shortest(Number number) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
-}
-
 /// Text of a value of a field of this type; `missing` where it is none.
 std::string valueText(double value, const std::string& type, const char* missing) {
   if (!std::isfinite(value)) return missing;
   const auto rounded = static_cast<float>(value);
-  return type == "float32" && std::isfinite(rounded) ? shortest(rounded) : shortest(value);
+  return type == "float32" && std::isfinite(rounded) ? shortestText(rounded) : shortestText(value);
 }
 
 Status stopped() {
@@ -77,7 +71,7 @@ std::unexpected<Error> isOutside(const LevelRequest& request, std::span<const La
                                  const Lattice& lattice) {
   const auto [low, high] = boxOf(points);
   const auto text = [](const std::array<double, 3>& p) {
-    return "(" + shortest(p[0]) + ", " + shortest(p[1]) + ", " + shortest(p[2]) + ")";
+    return "(" + shortestText(p[0]) + ", " + shortestText(p[1]) + ", " + shortestText(p[2]) + ")";
   };
   return fail(ErrorCode::kNotFound,
               "the point " + text(*request.point) + " lies in no cell of level " +
@@ -112,13 +106,13 @@ std::string jsonText(const LevelRequest& request, const std::string& name, CellI
   const std::array<double, 3>& p = *request.point;
   std::string out = "{\"field\":" + nlohmann::json(name).dump() + ",\"association\":\"" +
                     field.association + "\",\"components\":" + std::to_string(field.components) +
-                    ",\"point\":[" + shortest(p[0]) + "," + shortest(p[1]) + "," + shortest(p[2]) +
-                    "],\"level\":" + std::to_string(request.level) +
+                    ",\"point\":[" + shortestText(p[0]) + "," + shortestText(p[1]) + "," +
+                    shortestText(p[2]) + "],\"level\":" + std::to_string(request.level) +
                     ",\"tetrahedron\":" + std::to_string(cell) + ",\"times\":";
   if (instants.front().time) {
     out += '[';
     for (const Instant& instant : instants)
-      out += (&instant == instants.data() ? "" : ",") + shortest(*instant.time);
+      out += (&instant == instants.data() ? "" : ",") + shortestText(*instant.time);
     out += ']';
   } else {
     out += "null";
@@ -149,7 +143,7 @@ std::string csvText(const LevelRequest& request, const std::string& name,
     out += "," + csvCell(field.components == 1 ? name : name + "_" + std::to_string(c));
   out += "\r\n";
   for (const Instant& instant : instants) {
-    if (instant.time) out += shortest(*instant.time);
+    if (instant.time) out += shortestText(*instant.time);
     for (const double value : instant.values) out += "," + valueText(value, field.type, "");
     out += "\r\n";
   }

@@ -10,6 +10,7 @@
 
 #include "proto/field_key.h"
 #include "proto/limits.h"
+#include "proto/number_text.h"
 #include "proto/series.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/commands/command_line.h"
@@ -80,7 +81,7 @@ Status nameInstants(TetMesh& mesh, const std::string& file, std::optional<double
                   file + " has times of its own (" + field.name + "); leave --times out");
     if (!isNamed && !time)
       return fail(ErrorCode::kBadInput, file + " knows no time; give it with --times");
-    if (!isNamed) field.name += "@" + timeText(*time);
+    if (!isNamed) field.name += "@" + shortestText(*time);
   }
   return {};
 }
@@ -101,9 +102,9 @@ Status append(MeshField& field, const std::string& file, SeriesEnds& ends) {
                                           std::to_string(end.components) + " of " + end.type +
                                           "; write it as the earlier steps are");
   if (name->time <= end.time || isSameTime(name->time, end.time))
-    return fail(ErrorCode::kBadValue, file + ": " + field.name +
-                                          " is not behind the last instant, " + timeText(end.time) +
-                                          "; give steps in the order of their times");
+    return fail(ErrorCode::kBadValue,
+                file + ": " + field.name + " is not behind the last instant, " +
+                    shortestText(end.time) + "; give steps in the order of their times");
   if (field.type != end.type && end.type == "float32")
     for (double& value : field.values) value = static_cast<float>(value);
   field.type = end.type;

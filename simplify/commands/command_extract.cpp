@@ -11,8 +11,8 @@
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/extract_times.h"
 #include "simplify/commands/instant_collection.h"
-#include "simplify/commands/opened_list.h"
 #include "simplify/log/kept_input.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/split/split_cells.h"
@@ -287,7 +287,7 @@ std::vector<double> timesIn(const Segment& segment, const std::vector<double>& a
 }
 
 /// The times of the list that `--time` means.
-Result<std::vector<double>> askedTimes(const ParsedWords& parsed, const SeriesList& list,
+Result<std::vector<double>> askedTimes(const ParsedWords& parsed, const SegmentList& list,
                                        const std::string& input, const MeshOutput& output) {
   if (!parsed.has("time") && !isCollection(output))
     throw UsageError(
@@ -305,7 +305,7 @@ Result<std::vector<double>> askedTimes(const ParsedWords& parsed, const SeriesLi
 
 Result<MeshOutputReport> extractList(const ParsedWords& parsed, const std::string& input,
                                      const MeshOutput& output, const FileTaker& take) {
-  const Result<SeriesList> list = openList(input);
+  const Result<SegmentList> list = openList(input);
   if (!list) return std::unexpected(list.error());
   const auto asked = askedTimes(parsed, *list, input, output);
   if (!asked) return std::unexpected(asked.error());
@@ -346,7 +346,7 @@ Status extract(const ParsedWords& parsed, Console& console) {
     throw UsageError(
         "a .pvd names other files, which the standard output cannot hold; give -o NAME.pvd");
   Written written(*output);
-  Result<MeshOutputReport> report = isSeriesList(input)
+  Result<MeshOutputReport> report = isSegmentList(input)
                                         ? extractList(parsed, input, *output, written.taker())
                                         : extractOne(parsed, input, *output, written.taker());
   if (!report) return std::unexpected(report.error());

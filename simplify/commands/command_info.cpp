@@ -9,7 +9,7 @@
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/error_table.h"
 #include "simplify/commands/list_info.h"
-#include "simplify/commands/opened_list.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/series/series.h"
 
 namespace qtet {
@@ -175,7 +175,7 @@ int runInfo(const Words& words, Console& console) {
   if (parsed.helped(console)) return kExitOk;
   const bool asJson = parsed.has("json");
   const auto input = parsed.get<std::string>("LOG");
-  if (isSeriesList(input)) return showList(input, parsed, console);
+  if (isSegmentList(input)) return showList(input, parsed, console);
 
   const Result<OpenedLog> log = openLog(input);
   if (!log) return reportFailure(log.error(), asJson, console);

@@ -2,20 +2,26 @@
 
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/tool_main.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/publish/publish_site.h"
+#include "simplify/publish/site_folder.h"
 
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Logs whose names can be shown and be part of an address.
+/// Logs, and lists of logs, whose names can be shown and be part of an address.
 std::vector<fs::path> logsOf(const ParsedWords& parsed) {
   std::vector<fs::path> logs;
   for (const std::string& word : parsed.get<std::vector<std::string>>("LOG...")) {
     const std::string name = fs::path(word).filename().string();
-    if (!name.ends_with(".qtet") || name == ".qtet")
-      throw UsageError("'" + word + "' is no log, NAME.qtet; make one with qtet simplify");
+    if (name == kSiteList)
+      throw UsageError("'" + word + "' has the name of the folder's own list; rename it");
+    if ((!name.ends_with(".qtet") || name == ".qtet") && !isSegmentList(word))
+      throw UsageError("'" + word +
+                       "' is no log NAME.qtet and no list of logs NAME.json; make one with qtet "
+                       "simplify");
     if (printable(name) != name)
       throw UsageError("'" + word + "' has a name that no address can hold; rename it");
     logs.emplace_back(word);
@@ -41,9 +47,10 @@ int runPublish(const Words& words, Console& console) {
       "json", "print one JSON object");
   const ParsedWords parsed(
       words,
-      {"publish", "publish FOLDER LOG.qtet... [--viewer DIR] [--plain] [--json]",
+      {"publish", "publish FOLDER LOG... [--viewer DIR] [--plain] [--json]",
        "Writes a folder that any web server can serve as it is, without a program of ours: the "
-       "viewer, compressed too, the logs,\n"
+       "viewer, compressed too, the logs NAME.qtet\n"
+       "and those of lists NAME.json,\n"
        "index.json with their list, and README.txt with the settings for nginx, Caddy, S3 with "
        "CloudFront, and GitHub Pages.\n"
        "The folder appears whole or not at all. One that an earlier publish made is replaced as a "

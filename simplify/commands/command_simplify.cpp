@@ -25,7 +25,7 @@ Algorithm algorithmOf(const std::string& name) {
 }
 
 bool isList(const SimplifyRequest& request) {
-  return std::filesystem::path(request.output).extension() == kSeriesListEnding;
+  return std::filesystem::path(request.output).extension() == kListEnding;
 }
 
 SimplifyRequest requestOf(const ParsedWords& parsed) {

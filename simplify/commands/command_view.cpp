@@ -12,6 +12,7 @@
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/provided_log.h"
 #include "simplify/commands/tool_main.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/read/process/guarded_folder.h"
 
 namespace qtet {
@@ -141,6 +142,10 @@ int runView(const Words& words, Console& console) {
   if (parsed.helped(console)) return kExitOk;
   const fs::path input = parsed.get<std::string>("FILE");
   const std::string port = std::to_string(parsed.integer("port", 0, 65535));
+  if (isSegmentList(input))
+    throw UsageError("'" + input.string() +
+                     "' is a list of logs, which qtet-server does not give; 'qtet publish FOLDER " +
+                     input.filename().string() + "' makes a folder for any web server");
   const GuardedFolder folder("view");
   if (Status made = folder.made(); !made) return reportFailure(made.error(), false, console);
   const std::string name = meshNameOf(input);

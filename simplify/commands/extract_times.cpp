@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codec/files/file_names.h"
+#include "proto/number_text.h"
 #include "proto/series.h"
 #include "simplify/read/options/time_steps.h"
 
@@ -42,8 +43,8 @@ std::string collectionText(
   std::string out =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
   for (const auto& [time, file] : timesAndFiles)
-    out += "    <DataSet timestep=\"" + timeText(time.value_or(0)) + "\" file=\"" + xmlText(file) +
-           "\"/>\n";
+    out += "    <DataSet timestep=\"" + shortestText(time.value_or(0)) + "\" file=\"" +
+           xmlText(file) + "\"/>\n";
   return out + "  </Collection>\n</VTKFile>\n";
 }
 

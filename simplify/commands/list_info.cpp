@@ -3,8 +3,9 @@
 #include <utility>
 #include <vector>
 
+#include "proto/number_text.h"
 #include "simplify/commands/columns.h"
-#include "simplify/commands/opened_list.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/read/options/time_steps.h"
 
 namespace qtet {
@@ -23,15 +24,15 @@ OrderedJson segmentJson(const Segment& segment, const OpenedLog& log) {
 
 /// "0 to 0.2", or one time.
 std::string rangeText(const OrderedJson& times) {
-  const std::string first = timeText(times.front().get<double>());
+  const std::string first = shortestText(times.front().get<double>());
   return times.front() == times.back() ? first
-                                       : first + " to " + timeText(times.back().get<double>());
+                                       : first + " to " + shortestText(times.back().get<double>());
 }
 
 }  // namespace
 
 Result<OrderedJson> listInfo(const std::string& list) {
-  const Result<SeriesList> read = openList(list);
+  const Result<SegmentList> read = openList(list);
   if (!read) return std::unexpected(read.error());
   OrderedJson segments = OrderedJson::array();
   std::uint64_t bytes = 0;

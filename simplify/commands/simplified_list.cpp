@@ -7,6 +7,7 @@
 
 #include "codec/files/atomic_file.h"
 #include "proto/field_key.h"
+#include "proto/number_text.h"
 #include "proto/utf8.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/read/options/time_steps.h"
@@ -73,7 +74,7 @@ Result<std::vector<double>> instantsIn(const fs::path& log) {
 /// "0,0.1,0.2"
 std::string timesText(const std::vector<double>& times) {
   std::string out;
-  for (const double time : times) out += (out.empty() ? "" : ",") + timeText(time);
+  for (const double time : times) out += (out.empty() ? "" : ",") + shortestText(time);
   return out;
 }
 
@@ -114,7 +115,7 @@ Result<std::vector<std::vector<double>>> segmentsOf(const SimplifyRequest& reque
 
 /// Makes the log of one segment, and puts it into the list and the report.
 Status addSegment(const SimplifyRequest& request, std::vector<double> times, UnpublishedLogs& logs,
-                  Progress& progress, SeriesList& list, OrderedJson& report) {
+                  Progress& progress, SegmentList& list, OrderedJson& report) {
   const std::string name = logs.nameOf(list.segments.size());
   SimplifyRequest ofOne = request;
   ofOne.output = (fs::path(request.output).parent_path() / name).string();
@@ -154,11 +155,11 @@ Result<OrderedJson> makeList(const SimplifyRequest& request, Progress& progress)
   OrderedJson report = {{"input", request.input},          {"output", request.output},
                         {"times", OrderedJson::array()},   {"segments", OrderedJson::array()},
                         {"notes", withOptionNames(notes)}, {"warnings", OrderedJson::array()}};
-  SeriesList list;
+  SegmentList list;
   for (std::vector<double>& times : *segments)
     if (Status s = addSegment(request, std::move(times), logs, progress, list, report); !s)
       return std::unexpected(s.error());
-  const Result<std::string> text = seriesListText(list);
+  const Result<std::string> text = segmentListText(list);
   if (!text)
     return fail(
         text.error().code,
@@ -176,8 +177,8 @@ void printMadeList(const OrderedJson& report, std::ostream& out) {
   out << printable(report["output"].get<std::string>()) << ": "
       << counted(report["segments"].size(), "log", "logs") << ", "
       << counted(times.size(), "instant", "instants") << ", "
-      << timeText(times.front().get<double>()) << " to " << timeText(times.back().get<double>())
-      << "\n";
+      << shortestText(times.front().get<double>()) << " to "
+      << shortestText(times.back().get<double>()) << "\n";
 }
 
 }  // namespace qtet

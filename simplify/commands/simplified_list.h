@@ -3,7 +3,7 @@
 
 #include <ostream>
 
-#include "proto/series_list.h"
+#include "proto/segment_list.h"
 #include "simplify/commands/simplified_log.h"
 
 namespace qtet {

@@ -6,6 +6,7 @@
 #include "codec/picture/poster.h"
 #include "codec/picture/poster_page.h"
 #include "proto/field_key.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"
 #include "simplify/publish/hosting_notes.h"
@@ -131,41 +132,84 @@ std::uint64_t firstBytes(const OpenedLog& log) {
   return block.offset + block.size;
 }
 
-/// Copies the log, makes its poster, and says what the list says of it.
-Result<Json> writeLog(Site& site, const fs::path& path) {
-  const auto named = [&](Error error) {  // of several logs it is this one
-    if (error.message.find(path.string()) == std::string::npos)
-      error.message = path.string() + ": " + error.message;
-    return std::unexpected(std::move(error));
-  };
-  const Result<OpenedLog> log = openLog(path);
-  if (!log) return named(log.error());
-  if (Status sound = log->file.verifyChecksums(); !sound) return named(sound.error());
-  const std::string name = path.stem().string();
-  if (site.folder.files().contains(name + ".qtet"))
+/// The error names the log, one of several.
+std::unexpected<Error> named(Error error, const fs::path& path) {
+  if (error.message.find(path.string()) == std::string::npos)
+    error.message = path.string() + ": " + error.message;
+  return std::unexpected(std::move(error));
+}
+
+/// Copies the log as NAME.qtet.
+Status copyLog(Site& site, const fs::path& path, const OpenedLog& log) {
+  if (Status sound = log.file.verifyChecksums(); !sound) return named(sound.error(), path);
+  const std::string name = path.filename().string();
+  if (site.folder.files().contains(name))
     return fail(ErrorCode::kBadInput, "two logs are called " + name +
-                                          ".qtet, and a folder holds one; rename " + path.string());
-  if (Status written = site.write(name + ".qtet", log->file.bytes()); !written)
-    return std::unexpected(written.error());
-  const Result<Bytes> poster = posterOf(*log);
-  if (!poster) return named(poster.error());
+                                          ", and a folder holds one; rename " + path.string());
+  return site.write(name, log.file.bytes());
+}
+
+/// The mesh `name` of index.json, which is a log that the folder holds as `file`. Makes its poster.
+Result<Json> entryOf(Site& site, const std::string& name, const std::string& file,
+                     const OpenedLog& log) {
+  const Result<Bytes> poster = posterOf(log);
+  if (!poster) return std::unexpected(poster.error());
   if (Status written = site.write(name + ".webp", *poster); !written)
     return std::unexpected(written.error());
   Json fields = Json::array();
-  for (std::size_t f = 0; f < log->manifest.fields.size(); ++f)
-    fields.push_back(fieldKey(log->manifest, f));
-  const ManifestLevel& whole = log->manifest.levels.back();
+  for (std::size_t f = 0; f < log.manifest.fields.size(); ++f)
+    fields.push_back(fieldKey(log.manifest, f));
+  const ManifestLevel& whole = log.manifest.levels.back();
   return Json{
       {"id", name},
-      {"bytes", log->file.bytes().size()},
-      {"firstBytes", firstBytes(*log)},
-      {"digest", log->file.digest()},
+      {"bytes", log.file.bytes().size()},
+      {"firstBytes", firstBytes(log)},
+      {"digest", log.file.digest()},
       {"tetrahedra", whole.tetrahedra},
       {"vertices", whole.vertices},
       {"fields", fields},
-      {"firstField", firstField(log->manifest)},
-      {"links",
-       {{"log", percentEncoded(name) + ".qtet"}, {"poster", percentEncoded(name) + ".webp"}}}};
+      {"firstField", firstField(log.manifest)},
+      {"links", {{"log", percentEncoded(file)}, {"poster", percentEncoded(name) + ".webp"}}}};
+}
+
+Result<Json> writeLog(Site& site, const fs::path& path) {
+  const Result<OpenedLog> log = openLog(path);
+  if (!log) return named(log.error(), path);
+  if (Status copied = copyLog(site, path, *log); !copied) return std::unexpected(copied.error());
+  Result<Json> out = entryOf(site, path.stem().string(), path.filename().string(), *log);
+  return out ? std::move(out) : named(out.error(), path);
+}
+
+/// Copies the list of segments and its logs. The list is one mesh, and says of itself what it says
+/// of its first log.
+Result<Json> writeSegments(Site& site, const fs::path& path) {
+  const Result<SegmentList> list = openList(path);
+  if (!list) return std::unexpected(list.error());
+  Json out;
+  Json segments = Json::array();
+  std::uint64_t bytes = 0;
+  for (const Segment& segment : list->segments) {
+    const Result<OpenedLog> log = openSegment(path, segment);
+    if (!log) return std::unexpected(log.error());
+    if (Status copied = copyLog(site, path.parent_path() / segment.log, *log); !copied)
+      return std::unexpected(copied.error());
+    if (segments.empty()) {
+      Result<Json> first = entryOf(site, path.stem().string(), segment.log, *log);
+      if (!first) return named(first.error(), path);
+      out = std::move(*first);
+    }
+    bytes += log->file.bytes().size();
+    segments.push_back({{"log", segment.log}, {"times", segment.times}});
+  }
+  const Result<std::string> text = segmentListText(*list);
+  if (!text) return std::unexpected(text.error());
+  const std::string name = path.filename().string();
+  if (Status written = site.writeWithCodings(name, bytesOf(*text)); !written)
+    return std::unexpected(written.error());
+  out["bytes"] = bytes;
+  out["links"]["list"] = percentEncoded(name);
+  out["segments"] = std::move(segments);
+  return out;
 }
 
 Status writeList(Site& site, const Json& meshes) {
@@ -187,7 +231,8 @@ Result<PublishedSite> publishSite(const fs::path& folder, const fs::path& viewer
   PublishedSite out;
   Json meshes = Json::array();
   for (const fs::path& path : logs) {
-    const Result<Json> mesh = writeLog(site, path);
+    const Result<Json> mesh =
+        isSegmentList(path) ? writeSegments(site, path) : writeLog(site, path);
     if (!mesh) return std::unexpected(mesh.error());
     meshes.push_back(*mesh);
     out.meshes.push_back({(*mesh)["id"], (*mesh)["bytes"], (*mesh)["tetrahedra"]});

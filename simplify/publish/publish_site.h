@@ -11,7 +11,7 @@
 namespace qtet {
 
 struct PublishedMesh {
-  std::string name;  ///< the log's file name without .qtet
+  std::string name;  ///< the file's name without .qtet, or of a list without .json
   std::uint64_t bytes = 0, tetrahedra = 0;
 };
 
@@ -30,11 +30,14 @@ enum class Codings { kNone, kGzipAndBrotli };
 /// (hosting_notes.h) and .nojekyll.
 /// index.json is a list as `GET /v1/meshes` gives it (PROTOCOL.md), with `links.log` and
 /// `links.poster` relative to it, `firstBytes` (the length of the log's prefix that the viewer's
-/// first picture takes), and `files`. A meta element gives the page index.json as its list. The
-/// page holds the name and the poster of the first log (codec/picture/poster_page.h). The same
-/// inputs give the same bytes. The folder appears whole or not at all (site_folder.h). Errors:
-/// not-found and io (of files), those of openLog and LogFile::verifyChecksums, bad-input (two logs
-/// of one name; a viewer without a page).
+/// first picture takes), and `files`. `logs` may also have lists of segments NAME.json
+/// (proto/SEGMENT_LIST.md); the folder then holds the list and its logs. Such a list is one mesh of
+/// index.json, with the values of its first log, `links.list` and `segments`. A meta element gives
+/// the page index.json as its list. The page holds the name and the poster of the first log
+/// (codec/picture/poster_page.h). The same inputs give the same bytes. The folder appears whole or
+/// not at all (site_folder.h). Errors: not-found and io (of files), those of openLog, openList,
+/// openSegment and LogFile::verifyChecksums, bad-input (two logs of one name; a viewer without a
+/// page).
 [[nodiscard]] Result<PublishedSite> publishSite(const std::filesystem::path& folder,
                                                 const std::filesystem::path& viewer,
                                                 const std::vector<std::filesystem::path>& logs,

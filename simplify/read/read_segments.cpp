@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "proto/number_text.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/steps/join_blocks.h"
 
@@ -35,7 +36,7 @@ Result<std::vector<std::vector<double>>> segmentTimes(const std::filesystem::pat
   CellMesh last;
   for (const std::size_t step : *steps) {
     Result<CellMesh> mesh =
-        step == 0 ? std::move(first) : readStep(path, options, timeText(times[step]), report);
+        step == 0 ? std::move(first) : readStep(path, options, shortestText(times[step]), report);
     if (!mesh) return std::unexpected(mesh.error());
     if (out.empty() || !haveSameCells(last, *mesh)) out.emplace_back();
     out.back().push_back(times[step]);

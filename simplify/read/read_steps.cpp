@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "proto/number_text.h"
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/parts/file_series.h"
@@ -85,7 +86,7 @@ Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& pa
   if (!cells) return std::unexpected(cells.error());
   addStep(std::move(step), true, report);
   std::vector<TimedCells> out;
-  out.push_back({*time ? timeText(**time) : "", std::move(*cells)});
+  out.push_back({*time ? shortestText(**time) : "", std::move(*cells)});
   return out;
 }
 
@@ -175,7 +176,7 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, Me
     Result<CellMesh> cells = cellsOfParts(parts, path, options, step, 0);
     if (!cells) return std::unexpected(cells.error());
     addStep(std::move(step), s == steps->front(), report);
-    out.push_back({timeText(times[s]), std::move(*cells)});
+    out.push_back({shortestText(times[s]), std::move(*cells)});
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "proto/field_key.h"
+#include "proto/number_text.h"
 #include "proto/series.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
@@ -46,8 +47,8 @@ Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions&
   ReadOptions some = options;
   some.namesTime = true;
   const bool isOneMore = rest && std::ranges::find(times, *rest) == times.end();
-  some.time = isOneMore ? timeText(*rest) : "";
-  for (const double time : times) some.time += (some.time.empty() ? "" : ",") + timeText(time);
+  some.time = isOneMore ? shortestText(*rest) : "";
+  for (const double time : times) some.time += (some.time.empty() ? "" : ",") + shortestText(time);
   Result<ReadMesh> out = readMesh(path, some);
   if (out && isOneMore)
     std::erase_if(out->mesh.fields, [&](const MeshField& field) {

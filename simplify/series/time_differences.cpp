@@ -126,10 +126,11 @@ class Chooser {
 
   void tryWeights(std::span<const std::uint16_t> parents, std::span<const double> weights) {
     const std::vector<int> rounded = roundedWeights(weights);
-    if (rounded.empty()) return;
     TimePrediction prediction;
-    for (std::size_t i = 0; i < parents.size(); ++i)
-      prediction.parents[prediction.count++] = {parents[i], static_cast<std::int8_t>(rounded[i])};
+    for (std::size_t i = 0; i < rounded.size(); ++i)  // one that counts nothing need not be fetched
+      if (rounded[i] != 0)
+        prediction.parents[prediction.count++] = {parents[i], static_cast<std::int8_t>(rounded[i])};
+    if (prediction.isNone()) return;
     if (const std::uint64_t bits = bitsOf(prediction, 0); bits < least_)
       least_ = bits, best_ = prediction;
   }

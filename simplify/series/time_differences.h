@@ -18,7 +18,7 @@ namespace qtet {
 inline constexpr std::int32_t kMostSettled = 2;
 
 /// Chooses how each instant of each series is predicted, so that least is left (SERIES.md,
-/// "Predictions in time"). The field's FieldInfo says it. Only instants of one bits, step and
+/// "Predictions in time"). The field's FieldInfo says it. Only instants of one step and
 /// minimum predict each other. Where it saves bits, fused vertices' values settle: those predicted
 /// within kMostSettled become the prediction. Values of integer types, displacements and fields
 /// with missing values stay. `progress` gets fractions of the work. Returns how many instants are

@@ -8,10 +8,13 @@
 namespace qtet {
 namespace {
 
-// Pulls weights that nothing decides to those before. A row of one step counts 1.
-constexpr double kPull = 1e-3;
+// Decides between weights that the rows leave open: those nearest to the weights before, by this
+// share of the rows.
+constexpr double kPull = 1e-9;
+// Keeps the diagonal above 0 where all values are equal.
+constexpr double kLeast = 1e-3;
 
-// Weights whose sum misses 1 by less are meant to keep a constant.
+// Where the sum of the weights is so near to 1, a constant should predict itself.
 constexpr double kNearlyOne = 1.0 / 32;
 
 }  // namespace
@@ -39,11 +42,11 @@ void WeightFit::add(std::span<const double> parents, double target) {
 }
 
 // Gauss and Jordan on what is to be added to the weights: a symmetric matrix that the pull makes
-// positive needs no pivots.
+// positive needs no pivots. One of zeros alone leaves the weights as they are.
 std::vector<double> WeightFit::solve() const {
   auto sums = sums_;
   const std::size_t n = weights_.size();
-  for (std::size_t i = 0; i < n; ++i) sums[i][i] += kPull;
+  for (std::size_t i = 0; i < n; ++i) sums[i][i] += kPull * sums[i][i] + kLeast;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t row = 0; row < n; ++row) {
       if (row == i) continue;
@@ -60,7 +63,7 @@ std::vector<int> roundedWeights(std::span<const double> weights) {
   std::vector<int> out;
   for (const double weight : weights) {
     const double scaled = std::round(weight * TimePrediction::kOne);
-    if (!(std::fabs(scaled) < std::numeric_limits<std::int8_t>::max())) return {};
+    if (!(std::fabs(scaled) <= std::numeric_limits<std::int8_t>::max())) return {};
     out.push_back(static_cast<int>(scaled));
   }
   if (std::fabs(std::accumulate(weights.begin(), weights.end(), -1.0)) < kNearlyOne) {

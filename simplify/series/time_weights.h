@@ -38,7 +38,7 @@ class WeightFit {
 };
 
 /// The weights in 1 / TimePrediction::kOne. Where they add up to nearly 1, the integers do exactly:
-/// equal values then predict themselves. Nothing if one does not fit its integer.
+/// equal values then predict themselves. Empty if one does not fit its integer.
 [[nodiscard]] std::vector<int> roundedWeights(std::span<const double> weights);
 
 }  // namespace qtet

@@ -56,6 +56,21 @@ test('aListOfSegmentsIsOneMeshWithLogsBesideIt', async () => {
   expect(segmentUrl(kFlow, entry!.segments!, 0)).toBe('https://a.org/runs/flow%20%231.qtet');
 });
 
+test('aPublishedListMayHoldListsOfSegments', async () => {
+  const links = {log: 'flow.0.qtet', list: 'flow.json'};
+  const segments = [{log: 'flow.0.qtet', times: [0]}];
+  answer([
+    {id: 'flow', fields: ['T@0'], firstField: 'T@0', firstBytes: 9300, links, segments},
+    {id: 'fin', links: {log: 'fin.qtet'}},
+  ]);
+  const [flow, fin] = await fetchCatalog(new URL('https://a.org/runs/index.json'));
+  expect(flow).toMatchObject({id: 'flow', fields: [], segments: {logs: ['flow.0.qtet']}});
+  expect(flow!.firstBytes).toBeUndefined();
+  expect(fin!.segments).toBeUndefined();
+  answer([{id: 'flow', segments: []}]);
+  await expect(fetchCatalog(kFlow)).rejects.toThrow('no array of at least one segment');
+});
+
 test('aWrongListIsRefusedByItsAddressAndItsPlace', async () => {
   answerText('{"qtet": "series", "segments": [{"log": "/etc/x.qtet", "times": [0]}]}');
   const refusal = fetchCatalog(kFlow);

@@ -171,7 +171,9 @@ export class StreamControl {
   /** Fills the menu. Throws `not-found`. */
   private firstMesh(): string {
     const names = this.catalog.map(({id}) => id);
-    const isOne = isLogFile(this.base) || this.catalog[0]?.segments !== undefined;
+    const isOne =
+      isLogFile(this.base) ||
+      (this.catalog.length === 1 && this.catalog[0]!.segments !== undefined);
     const named = isOne ? null : this.page.read('mesh');
     const mesh = named ?? names[0];
     if (mesh === undefined) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "proto/number_text.h"
 #include "proto/series.h"
 
 namespace qtet {
@@ -75,12 +76,6 @@ std::expected<std::vector<std::size_t>, std::string> stepsAt(const std::string& 
 
 }  // namespace
 
-std::string timeText(double x) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
-  return {text.data(), end};
-}
-
 Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
                                              const std::string& asked,
                                              const std::filesystem::path& path,
@@ -91,7 +86,7 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
   if (asked == "first") return std::vector<std::size_t>{0};
   if (asked == "last") {
     notes.push_back("of its " + std::to_string(times.size()) + " time steps the last is read, " +
-                    timeText(times.back()) + "; `time` names another, or all");
+                    shortestText(times.back()) + "; `time` names another, or all");
     return std::vector<std::size_t>{times.size() - 1};
   }
   if (asked.contains(':')) {
@@ -111,7 +106,7 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
   constexpr std::size_t kShown = 12;
   std::string there;
   for (std::size_t i = 0; i < times.size() && i < kShown; ++i)
-    there += (i ? ", " : "") + timeText(times[i]);
+    there += (i ? ", " : "") + shortestText(times[i]);
   return fail(ErrorCode::kNotFound,
               path.string() + " has no time step " + steps.error() + "; it has " + there +
                   (times.size() > kShown ? ", ..." : "") +

@@ -9,9 +9,6 @@
 
 namespace qtet {
 
-/// The shortest text that gives the number back.
-[[nodiscard]] std::string timeText(double time);
-
 /// The numbers of the steps that `asked` means, ascending: "first", "last", "all", or the times of
 /// one or several between commas. FROM:TO:EVERY means every so many of those between two times.
 /// Each part of it may be left out.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/number_text.h"
 #include "simplify/read/options/read_options.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/steps/timed_cells.h"
@@ -46,7 +47,7 @@ Result<std::vector<TimedCells>> readChosen(const std::vector<double>& times,
     Result<CellMesh> cells = readStep(number, step);
     if (!cells) return std::unexpected(cells.error());
     addStep(std::move(step), s == 0, report);
-    out.push_back({timed ? timeText(times[number]) : "", std::move(*cells)});
+    out.push_back({timed ? shortestText(times[number]) : "", std::move(*cells)});
   }
   return out;
 }

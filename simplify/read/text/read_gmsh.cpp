@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "proto/limits.h"
+#include "proto/number_text.h"
 #include "simplify/mesh/split_mix64.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
@@ -379,7 +380,7 @@ class Gmsh {
           std::ranges::none_of(*steps, [&](std::size_t step) { return times[step] == times_[f]; }))
         continue;
       kept.push_back(out_.fields[f]);
-      if (series && steps->size() > 1) kept.back().name += "@" + timeText(times_[f]);
+      if (series && steps->size() > 1) kept.back().name += "@" + shortestText(times_[f]);
     }
     out_.fields = std::move(kept);
     return {};

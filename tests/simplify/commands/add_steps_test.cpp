@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "proto/number_text.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/commands/tool_run.h"
@@ -35,7 +36,8 @@ class AddStepsTool : public Tool {
   static std::string collection(int first, int end) {
     std::string out = R"(<VTKFile type="Collection"><Collection>)";
     for (int step = first; step < end; ++step)
-      out += "<DataSet timestep=\"" + timeText(0.5 * step) + "\" file=\"" + fileOf(step) + "\"/>";
+      out +=
+          "<DataSet timestep=\"" + shortestText(0.5 * step) + "\" file=\"" + fileOf(step) + "\"/>";
     return out + "</Collection></VTKFile>";
   }
   static std::array<int, 3> placeOf(const Position& p) {
@@ -46,7 +48,7 @@ class AddStepsTool : public Tool {
   void expectSteps(const std::string& log, int end) {
     for (int step = 0; step < end; step += 3) {  // every value, by its point
       const Ran ran =
-          run("extract " + log + " --ratio 1 --time " + timeText(0.5 * step) + " -o out.vtu");
+          run("extract " + log + " --ratio 1 --time " + shortestText(0.5 * step) + " -o out.vtu");
       ASSERT_EQ(ran.code, 0) << ran.err;
       const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
       std::map<std::array<int, 3>, double> values;  // by place, in 1 / 1024
@@ -78,7 +80,7 @@ TEST_F(AddStepsTool, filesThatKnowNoTime) {
   std::string files, times;
   for (int step = 3; step < kSteps; ++step) {
     files += " " + fileOf(step);
-    times += (step > 3 ? "," : "") + timeText(0.5 * step);
+    times += (step > 3 ? "," : "") + shortestText(0.5 * step);
   }
   const Ran ran = run("add-steps log.qtet" + files + " --times " + times + " -o more.qtet");
   ASSERT_EQ(ran.code, 0) << ran.err;

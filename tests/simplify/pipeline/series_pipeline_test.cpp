@@ -12,6 +12,7 @@
 #include "codec/refine/log_file.h"
 #include "proto/field_key.h"
 #include "proto/limits.h"
+#include "proto/number_text.h"
 #include "simplify/read/options/time_steps.h"
 #include "tests/support/meshes.h"
 
@@ -41,12 +42,12 @@ class SeriesPipeline : public ::testing::Test {
   [[nodiscard]] Result<TetMesh> read(std::span<const std::size_t> steps) const {
     TetMesh out = mesh_;
     for (const std::size_t step : steps) {
-      MeshField t{"T@" + timeText(0.1 * static_cast<double>(step)), 1, "float32", {}, "point"};
+      MeshField t{"T@" + shortestText(0.1 * static_cast<double>(step)), 1, "float32", {}, "point"};
       for (const Position& p : out.points)
         t.values.push_back(static_cast<float>(
             (step == jump_ ? factor_ : 1) *
             (p[0] + std::sqrt(1.0 + p[1] * p[1]) * 0.01 * static_cast<double>(step))));
-      MeshField c{"C@" + timeText(0.1 * static_cast<double>(step)), 1, "int32", {}, "cell"};
+      MeshField c{"C@" + shortestText(0.1 * static_cast<double>(step)), 1, "int32", {}, "cell"};
       for (std::size_t i = 0; i < out.tetrahedra.size(); ++i)
         c.values.push_back(static_cast<double>(i % 7 + step));
       out.fields.push_back(std::move(t)), out.fields.push_back(std::move(c));

@@ -56,8 +56,11 @@ TEST(TimeWeights, integersAddUpToOneWhereWeightsNearlyDo) {
 
 TEST(TimeWeights, aWeightThatLeavesItsIntegerGivesNothing) {
   EXPECT_EQ(roundedWeights(std::array{126.0 / 16}), (std::vector<int>{126}));
-  EXPECT_TRUE(roundedWeights(std::array{127.0 / 16}).empty());
-  EXPECT_TRUE(roundedWeights(std::array{-127.0 / 16}).empty());
+  EXPECT_EQ(roundedWeights(std::array{127.0 / 16}), (std::vector<int>{127}));
+  EXPECT_TRUE(roundedWeights(std::array{128.0 / 16}).empty());
+  EXPECT_TRUE(roundedWeights(std::array{-128.0 / 16}).empty());
+  // what is left for 1 goes to the largest, which then leaves its range
+  EXPECT_TRUE(roundedWeights(std::array{127.4 / 16, -55.7 / 16, -55.7 / 16}).empty());
   EXPECT_TRUE(roundedWeights(std::array{0.0 / 0.0}).empty());
 }
 

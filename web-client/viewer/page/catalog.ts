@@ -53,15 +53,24 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
       `${url.href} is no list of ${isList ? 'meshes or segments' : 'meshes'}. ` +
         'Is this a qtet server? For a .qtet file on another one, give its address: ?src=FILE.qtet',
     );
-  return (body.meshes as Listed[]).map((mesh) => ({
+  return (body.meshes as Listed[]).map((mesh) => {
+    if (isList && mesh.segments !== undefined)
+      return {...entryOfSegments(url, mesh, bytes.byteLength), id: String(mesh.id)};
+    return entryOf(mesh, isList ? url : null);
+  });
+}
+
+/** `list`: the address of a published list, whose members count. */
+function entryOf(mesh: Listed, list: URL | null): MeshEntry {
+  return {
     id: String(mesh.id),
     tetrahedra: Number(mesh.tetrahedra ?? 0),
     fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
     firstField: typeof mesh.firstField === 'string' ? mesh.firstField : '',
-    ...(isList && {log: new URL(String(mesh.links?.log), url).href}),
-    ...(isList && Number.isInteger(mesh.firstBytes) && {firstBytes: Number(mesh.firstBytes)}),
-    ...(isList && Number.isInteger(mesh.chunks) && {chunks: Number(mesh.chunks)}),
-  }));
+    ...(list && {log: new URL(String(mesh.links?.log), list).href}),
+    ...(list && Number.isInteger(mesh.firstBytes) && {firstBytes: Number(mesh.firstBytes)}),
+    ...(list && Number.isInteger(mesh.chunks) && {chunks: Number(mesh.chunks)}),
+  };
 }
 
 /** Null if it is no JSON. */

@@ -1,5 +1,5 @@
 // The list of a series whose cells change: a log for each run of steps with the same cells
-// (SERIES_LIST.md).
+// (SEGMENT_LIST.md).
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@
 namespace qtet {
 
 /// How the name of a list's file ends.
-inline constexpr std::string_view kSeriesListEnding = ".json";
+inline constexpr std::string_view kListEnding = ".json";
 /// Logs of one list. A viewer opens each log before it knows its fields, so a list of more is a
 /// series of files and not a film.
 inline constexpr std::size_t kMaxSegments = 1024;
 /// Bytes of a list: 1,024 logs of a hundred times each take some 2 MB.
-inline constexpr std::size_t kMaxSeriesListBytes = std::size_t{4} << 20;
+inline constexpr std::size_t kMaxListBytes = std::size_t{4} << 20;
 
 /// A run of consecutive steps with the same cells and number of points.
 struct Segment {
@@ -25,7 +25,7 @@ struct Segment {
   std::vector<double> times;  ///< finite, ascending, one at least
 };
 
-struct SeriesList {
+struct SegmentList {
   std::vector<Segment> segments;  ///< one at least; their times ascend over all of them
 
   /// The times of all segments, ascending.
@@ -36,11 +36,11 @@ struct SeriesList {
 [[nodiscard]] bool isSegmentLog(std::string_view name);
 
 /// Reads a list; members that are unknown are ignored. Errors, with the JSON pointer of the place:
-/// limit-exceeded (more than kMaxSeriesListBytes or kMaxSegments), bad-value.
-[[nodiscard]] Result<SeriesList> parseSeriesList(std::string_view text);
+/// limit-exceeded (more than kMaxListBytes or kMaxSegments), bad-value.
+[[nodiscard]] Result<SegmentList> readSegmentList(std::string_view text);
 
 /// The list as JSON, a segment a line. Numbers come back to the bit. Errors: those of
-/// parseSeriesList, which reads the text.
-[[nodiscard]] Result<std::string> seriesListText(const SeriesList& list);
+/// readSegmentList, which reads the text.
+[[nodiscard]] Result<std::string> segmentListText(const SegmentList& list);
 
 }  // namespace qtet

@@ -1,4 +1,4 @@
-#include "proto/series_list.h"
+#include "proto/segment_list.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ const char* const kTwo =
       {"log": "flow.0.qtet", "times": [0, 0.1, 0.2], "note": null},
       {"log": "flow.1.qtet", "times": [0.3]}]})";
 
-SeriesList listOf(std::size_t segments) {
-  SeriesList out;
+SegmentList listOf(std::size_t segments) {
+  SegmentList out;
   for (std::size_t i = 0; i < segments; ++i)
     out.segments.push_back({"run." + std::to_string(i) + ".qtet", {static_cast<double>(i)}});
   return out;
@@ -29,75 +29,75 @@ std::string one(const std::string& log, const std::string& times) {
 }
 
 void expectRefused(const std::string& text, const std::string& place) {
-  const Result<SeriesList> list = parseSeriesList(text);
+  const Result<SegmentList> list = readSegmentList(text);
   ASSERT_FALSE(list) << text;
   EXPECT_EQ(list.error().code, ErrorCode::kBadValue) << text;
   EXPECT_NE(list.error().message.find(place), std::string::npos) << list.error().text();
 }
 
-TEST(SeriesList, unknownMembersAreIgnored) {
-  const SeriesList list = parseSeriesList(kTwo).value();
+TEST(SegmentList, unknownMembersAreIgnored) {
+  const SegmentList list = readSegmentList(kTwo).value();
   ASSERT_EQ(list.segments.size(), 2u);
   EXPECT_EQ(list.segments[0].log, "flow.0.qtet");
   EXPECT_EQ(list.segments[1].times, std::vector<double>{0.3});
   EXPECT_EQ(list.times(), (std::vector<double>{0, 0.1, 0.2, 0.3}));
 }
 
-TEST(SeriesList, timesComeBackToTheBit) {
-  SeriesList list = listOf(1);
+TEST(SegmentList, timesComeBackToTheBit) {
+  SegmentList list = listOf(1);
   list.segments[0].times = {-1e300, 0.1, 1.0 / 3, 1e300};
-  const SeriesList read = parseSeriesList(seriesListText(list).value()).value();
+  const SegmentList read = readSegmentList(segmentListText(list).value()).value();
   EXPECT_EQ(read.segments[0].times, list.segments[0].times);
 }
 
-TEST(SeriesList, itsTextIsASegmentALine) {
-  EXPECT_EQ(seriesListText(parseSeriesList(kTwo).value()).value(),
+TEST(SegmentList, itsTextIsASegmentALine) {
+  EXPECT_EQ(segmentListText(readSegmentList(kTwo).value()).value(),
             "{\n  \"qtet\": \"series\",\n  \"segments\": [\n"
             "    {\"log\": \"flow.0.qtet\", \"times\": [0.0,0.1,0.2]},\n"
             "    {\"log\": \"flow.1.qtet\", \"times\": [0.3]}\n  ]\n}\n");
 }
 
-TEST(SeriesList, segmentsAreLimited) {
-  EXPECT_TRUE(seriesListText(listOf(kMaxSegments - 1)));
-  EXPECT_TRUE(seriesListText(listOf(kMaxSegments)));
-  const auto text = seriesListText(listOf(kMaxSegments + 1));
+TEST(SegmentList, segmentsAreLimited) {
+  EXPECT_TRUE(segmentListText(listOf(kMaxSegments - 1)));
+  EXPECT_TRUE(segmentListText(listOf(kMaxSegments)));
+  const auto text = segmentListText(listOf(kMaxSegments + 1));
   ASSERT_FALSE(text);
   EXPECT_EQ(text.error().code, ErrorCode::kLimitExceeded);
   expectRefused(R"({"qtet":"series","segments":[]})", "/segments must be an array of 1");
-  EXPECT_FALSE(seriesListText({}));
+  EXPECT_FALSE(segmentListText({}));
 }
 
-TEST(SeriesList, bytesAreLimited) {
+TEST(SegmentList, bytesAreLimited) {
   std::string text = kTwo;
-  text.resize(kMaxSeriesListBytes - 1, ' ');
-  EXPECT_TRUE(parseSeriesList(text));
-  text.resize(kMaxSeriesListBytes, ' ');
-  EXPECT_TRUE(parseSeriesList(text));
-  text.resize(kMaxSeriesListBytes + 1, ' ');
-  EXPECT_EQ(parseSeriesList(text).error().code, ErrorCode::kLimitExceeded);
+  text.resize(kMaxListBytes - 1, ' ');
+  EXPECT_TRUE(readSegmentList(text));
+  text.resize(kMaxListBytes, ' ');
+  EXPECT_TRUE(readSegmentList(text));
+  text.resize(kMaxListBytes + 1, ' ');
+  EXPECT_EQ(readSegmentList(text).error().code, ErrorCode::kLimitExceeded);
 }
 
-TEST(SeriesList, aLogIsAFileBesideTheList) {
+TEST(SegmentList, aLogIsAFileBesideTheList) {
   for (const char* log : {"a.qtet", "a b.0.qtet", "-.qtet"})
-    EXPECT_TRUE(parseSeriesList(one(log, "[0]"))) << log;
+    EXPECT_TRUE(readSegmentList(one(log, "[0]"))) << log;
   for (const char* log : {"", ".qtet", "a.vtu", "a.qtet ", "b/a.qtet", "/a.qtet", "..qtet",
                           "a..qtet", "b\\\\a.qtet", "a\\u0000.qtet", "../a.qtet"})
     expectRefused(one(log, "[0]"), "/segments/0/log");
 }
 
-TEST(SeriesList, timesAscendOverAllSegments) {
+TEST(SegmentList, timesAscendOverAllSegments) {
   expectRefused(one("a.qtet", "[]"), "/segments/0/times");
   expectRefused(one("a.qtet", "[0, 0]"), "/segments/0/times/1");
   expectRefused(one("a.qtet", "[1e999]"), "no JSON");
   expectRefused(one("a.qtet", "[\"0\"]"), "/segments/0/times/0");
-  SeriesList list = listOf(3);
+  SegmentList list = listOf(3);
   list.segments[2].times = {1};
-  EXPECT_NE(seriesListText(list).error().message.find("/segments/2/times/0"), std::string::npos);
+  EXPECT_NE(segmentListText(list).error().message.find("/segments/2/times/0"), std::string::npos);
   list.segments[2].times = {std::numeric_limits<double>::quiet_NaN()};
-  EXPECT_FALSE(seriesListText(list));
+  EXPECT_FALSE(segmentListText(list));
 }
 
-TEST(SeriesList, otherDocumentsAreRefused) {
+TEST(SegmentList, otherDocumentsAreRefused) {
   expectRefused("", "no JSON");
   expectRefused("[]", "must be an object");
   expectRefused("{}", "/qtet is missing");
@@ -107,18 +107,18 @@ TEST(SeriesList, otherDocumentsAreRefused) {
   expectRefused(std::string(100, '['), "nested too deeply");
 }
 
-TEST(SeriesList, everyTruncationIsRefused) {
-  const std::string text = seriesListText(listOf(2)).value();
+TEST(SegmentList, everyTruncationIsRefused) {
+  const std::string text = segmentListText(listOf(2)).value();
   for (std::size_t size = 0; size + 2 < text.size(); ++size)
-    EXPECT_FALSE(parseSeriesList(std::string_view(text).substr(0, size))) << size;
+    EXPECT_FALSE(readSegmentList(std::string_view(text).substr(0, size))) << size;
 }
 
-TEST(SeriesList, goldenListsAreReadOrRefusedByTheirCode) {
+TEST(SegmentList, goldenListsAreReadOrRefusedByTheirCode) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::kGoldenFolder) / "lists";
   const auto read = [](const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
-    return parseSeriesList(std::string{std::istreambuf_iterator<char>(in), {}});
+    return readSegmentList(std::string{std::istreambuf_iterator<char>(in), {}});
   };
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(folder / "valid")) {
@@ -126,7 +126,7 @@ TEST(SeriesList, goldenListsAreReadOrRefusedByTheirCode) {
     ++files;
   }
   for (const auto& entry : fs::directory_iterator(folder / "must-fail")) {
-    const Result<SeriesList> list = read(entry.path());
+    const Result<SegmentList> list = read(entry.path());
     ASSERT_FALSE(list) << entry.path();
     const std::string name = entry.path().filename().string();
     EXPECT_EQ(errorCodeName(list.error().code), name.substr(0, name.find('.'))) << name;

@@ -1,4 +1,4 @@
-#include "proto/series_list.h"
+#include "proto/segment_list.h"
 
 #include <limits>
 #include <optional>
@@ -15,7 +15,7 @@ constexpr std::string_view kLogEnding = ".qtet";
 /// The times of one segment, which lie behind `last`.
 std::vector<double> timesOf(const JsonCursor& json, double& last) {
   std::vector<double> out;
-  for (const JsonCursor& item : json.items(1, kMaxSeriesListBytes)) {
+  for (const JsonCursor& item : json.items(1, kMaxListBytes)) {
     const double time = item.number();
     if (time <= last) item.fail("must be later than the time before it");
     out.push_back(time);
@@ -31,8 +31,8 @@ std::string logOf(const JsonCursor& json) {
   return out;
 }
 
-SeriesList listOf(const JsonCursor& json) {
-  SeriesList out;
+SegmentList listOf(const JsonCursor& json) {
+  SegmentList out;
   if (json["qtet"].text(kMaxNameBytes) != kKind)
     json["qtet"].fail("must be \"series\", as in a list of logs");
   double last = -std::numeric_limits<double>::infinity();
@@ -50,7 +50,7 @@ std::unexpected<Error> tooMany(const std::string& what, std::size_t most) {
 
 }  // namespace
 
-std::vector<double> SeriesList::times() const {
+std::vector<double> SegmentList::times() const {
   std::vector<double> out;
   for (const Segment& segment : segments)
     out.insert(out.end(), segment.times.begin(), segment.times.end());
@@ -63,8 +63,8 @@ bool isSegmentLog(std::string_view name) {
          name.find("..") == std::string_view::npos;
 }
 
-Result<SeriesList> parseSeriesList(std::string_view text) {
-  if (text.size() > kMaxSeriesListBytes) return tooMany("bytes", kMaxSeriesListBytes);
+Result<SegmentList> readSegmentList(std::string_view text) {
+  if (text.size() > kMaxListBytes) return tooMany("bytes", kMaxListBytes);
   if (!isShallowJson(text)) return fail(ErrorCode::kBadValue, "its arrays are nested too deeply");
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::kBadValue, "it is no JSON");
@@ -72,12 +72,12 @@ Result<SeriesList> parseSeriesList(std::string_view text) {
   if (segments != json.end() && segments->is_array() && segments->size() > kMaxSegments)
     return tooMany("segments", kMaxSegments);
   std::optional<Error> error;
-  SeriesList out = listOf(JsonCursor(&json, "", &error));
+  SegmentList out = listOf(JsonCursor(&json, "", &error));
   if (error) return std::unexpected(*error);
   return out;
 }
 
-Result<std::string> seriesListText(const SeriesList& list) {
+Result<std::string> segmentListText(const SegmentList& list) {
   std::string out = "{\n  \"qtet\": \"series\",\n  \"segments\": [";
   for (const Segment& segment : list.segments) {
     const bool isFirst = &segment == &list.segments.front();
@@ -85,7 +85,7 @@ Result<std::string> seriesListText(const SeriesList& list) {
            ", \"times\": " + dumpJson(segment.times) + "}";
   }
   out += "\n  ]\n}\n";
-  if (const Result<SeriesList> read = parseSeriesList(out); !read)
+  if (const Result<SegmentList> read = readSegmentList(out); !read)
     return std::unexpected(read.error());
   return out;
 }

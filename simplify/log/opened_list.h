@@ -1,19 +1,19 @@
-// Lists of logs (proto/SERIES_LIST.md) on disk, and the logs that they name.
+// Lists of logs (proto/SEGMENT_LIST.md) on disk, and the logs that they name.
 #pragma once
 
 #include <filesystem>
 
-#include "proto/series_list.h"
+#include "proto/segment_list.h"
 #include "simplify/log/opened_log.h"
 
 namespace qtet {
 
 /// Whether a file of this name is a list and not a log.
-[[nodiscard]] bool isSeriesList(const std::filesystem::path& path);
+[[nodiscard]] bool isSegmentList(const std::filesystem::path& path);
 
-/// Reads at most kMaxSeriesListBytes. Errors: not-found, io, parseSeriesList's with the file's
+/// Reads at most kMaxListBytes. Errors: not-found, io, readSegmentList's with the file's
 /// name.
-[[nodiscard]] Result<SeriesList> openList(const std::filesystem::path& path);
+[[nodiscard]] Result<SegmentList> openList(const std::filesystem::path& path);
 
 /// Opens the log of a segment of the list at `list`. Errors: openLog's with the list's name;
 /// not-found (there is no such log; it has instants, but not one of the segment's times).

@@ -1,7 +1,11 @@
 // Lists of logs: series whose cells change.
 #include <gtest/gtest.h>
 
-#include "proto/series_list.h"
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "proto/number_text.h"
+#include "proto/segment_list.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/read_mesh.h"
@@ -12,7 +16,7 @@ namespace {
 
 /// Five steps 0, 0.1 ... of a box with the field T, which is 10 times the step everywhere. The
 /// cells of the steps 3 and 4 are others.
-class SeriesListTool : public Tool {
+class SegmentListTool : public Tool {
  protected:
   void SetUp() override {
     ASSERT_EQ(run("sample box -o box.vtu").code, 0);
@@ -30,7 +34,7 @@ class SeriesListTool : public Tool {
   static std::string collection(int first, int end) {
     std::string out = R"(<VTKFile type="Collection"><Collection>)";
     for (int step = first; step < end; ++step)
-      out += "<DataSet timestep=\"" + timeText(step / 10.) + "\" file=\"step-" +
+      out += "<DataSet timestep=\"" + shortestText(step / 10.) + "\" file=\"step-" +
              std::to_string(step) + ".vtu\"/>";
     return out + "</Collection></VTKFile>";
   }
@@ -38,8 +42,8 @@ class SeriesListTool : public Tool {
     const Ran ran = run("simplify run.pvd --time all --measure none -o run.json");
     ASSERT_EQ(ran.code, 0) << ran.err;
   }
-  SeriesList list(const std::string& name = "run.json") {
-    return parseSeriesList(contentOf(folder_ / name)).value();
+  SegmentList list(const std::string& name = "run.json") {
+    return readSegmentList(contentOf(folder_ / name)).value();
   }
   std::vector<std::string> fieldsOf(const std::string& log) {
     const Result<OpenedLog> opened = openLog(folder_ / log);
@@ -62,7 +66,7 @@ class SeriesListTool : public Tool {
   static constexpr int kSteps = 5;
 };
 
-TEST_F(SeriesListTool, eachRunOfEqualCellsIsALog) {
+TEST_F(SegmentListTool, eachRunOfEqualCellsIsALog) {
   const Ran ran = run("simplify run.pvd --time all --measure none -o run.json --json");
   ASSERT_EQ(ran.code, 0) << ran.err;
   ASSERT_EQ(list().segments.size(), 2u);
@@ -77,7 +81,7 @@ TEST_F(SeriesListTool, eachRunOfEqualCellsIsALog) {
   EXPECT_EQ(filesLike(".run"), std::vector<std::string>{}) << "unpublished logs";
 }
 
-TEST_F(SeriesListTool, aSegmentOfOneStepHasItsFieldAsAnInstant) {
+TEST_F(SegmentListTool, aSegmentOfOneStepHasItsFieldAsAnInstant) {
   ASSERT_EQ(run("simplify run.pvd --time 0:0.3:3 --measure none -o run.json").code, 0);
   ASSERT_EQ(list().segments.size(), 2u);
   EXPECT_EQ(list().segments[0].times, std::vector<double>{0});
@@ -85,20 +89,20 @@ TEST_F(SeriesListTool, aSegmentOfOneStepHasItsFieldAsAnInstant) {
   EXPECT_EQ(fieldsOf("run.1.qtet"), std::vector<std::string>{"T@0.3"});
 }
 
-TEST_F(SeriesListTool, stepsWithTheSameCellsAreOneSegment) {
+TEST_F(SegmentListTool, stepsWithTheSameCellsAreOneSegment) {
   ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.json").code, 0);
   ASSERT_EQ(list().segments.size(), 1u);
   ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.qtet").code, 0);
   EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), contentOf(folder_ / "run.qtet"));
 }
 
-TEST_F(SeriesListTool, oneLogOfChangingCellsIsRefused) {
+TEST_F(SegmentListTool, oneLogOfChangingCellsIsRefused) {
   expectFailure("simplify run.pvd --time all -o run.qtet", 1,
                 "the mesh at time 0.3 is not that of time 0");
   expectFailure("simplify run.pvd --time all -o run.qtet", 1, "-o NAME.json");
 }
 
-TEST_F(SeriesListTool, afterAnErrorAnOlderListStays) {
+TEST_F(SegmentListTool, afterAnErrorAnOlderListStays) {
   makeList();
   const std::string before = contentOf(folder_ / "run.json"),
                     log = contentOf(folder_ / "run.0.qtet");
@@ -114,14 +118,14 @@ TEST_F(SeriesListTool, afterAnErrorAnOlderListStays) {
   EXPECT_EQ(filesLike(".run"), std::vector<std::string>{});
 }
 
-TEST_F(SeriesListTool, aListNeedsTimesAndANameThatItCanHold) {
+TEST_F(SegmentListTool, aListNeedsTimesAndANameThatItCanHold) {
   expectFailure("simplify box.vtu -o box.json", 1, "box.vtu has no times");
   EXPECT_EQ(filesLike("box."), std::vector<std::string>{"box.vtu"});
   expectFailure("simplify run.pvd --time all -o a..b.json", 1, "a..b.0.qtet");
   expectFailure("simplify run.pvd --time all -o run.json --time-statistics", 2, "-o NAME.qtet");
 }
 
-TEST_F(SeriesListTool, infoShowsEachSegment) {
+TEST_F(SegmentListTool, infoShowsEachSegment) {
   makeList();
   const nlohmann::json info = run("info run.json --json").json();
   ASSERT_EQ(info["segments"].size(), 2u);
@@ -133,11 +137,11 @@ TEST_F(SeriesListTool, infoShowsEachSegment) {
   EXPECT_NE(ran.out.find("2 logs, 5 instants, 0 to 0.4"), std::string::npos) << ran.out;
 }
 
-TEST_F(SeriesListTool, extractTakesTheLogThatHasTheTime) {
+TEST_F(SegmentListTool, extractTakesTheLogThatHasTheTime) {
   ASSERT_EQ(run("simplify run.pvd --time 0.1:0.3 --measure none -o run.json").code, 0);
   for (int step = 1; step <= 3; ++step) {  // the last one is alone in its log
     const Ran ran =
-        run("extract run.json --ratio 1 --time " + timeText(step / 10.) + " -o out.vtu --json");
+        run("extract run.json --ratio 1 --time " + shortestText(step / 10.) + " -o out.vtu --json");
     ASSERT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(ran.json()["log"], step < 3 ? "run.0.qtet" : "run.1.qtet");
     const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
@@ -152,7 +156,7 @@ TEST_F(SeriesListTool, extractTakesTheLogThatHasTheTime) {
   expectFailure("extract run.json --ratio 1 --time all -o out.vtu", 2, "3 instants");
 }
 
-TEST_F(SeriesListTool, allTimesAreOneCollection) {
+TEST_F(SegmentListTool, allTimesAreOneCollection) {
   makeList();
   const Ran ran = run("extract run.json --ratio 1 --time all -o out.pvd --json");
   ASSERT_EQ(ran.code, 0) << ran.err;
@@ -168,21 +172,57 @@ TEST_F(SeriesListTool, allTimesAreOneCollection) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
-TEST_F(SeriesListTool, aListThatIsDamagedIsRefused) {
+TEST_F(SegmentListTool, aListThatIsDamagedIsRefused) {
   expectFailure("info run.json", 1, "there is no list run.json");
   put("run.json", R"({"qtet":"series","segments":[{"log":"../a.qtet","times":[0]}]})");
   expectFailure("info run.json", 1, "run.json: /segments/0/log");
-  put("run.json", std::string(kMaxSeriesListBytes + 1, ' '));
+  put("run.json", std::string(kMaxListBytes + 1, ' '));
   expectFailure("extract run.json --ratio 1 --time 0 -o out.vtu", 1, "limit-exceeded");
   makeList();
-  SeriesList other = list();
+  SegmentList other = list();
   other.segments[0].times = {0, 0.15};
-  put("run.json", seriesListText(other).value());
+  put("run.json", segmentListText(other).value());
   expectFailure("info run.json", 1, "the log run.0.qtet has no instant at time 0.15");
   put("run.0.qtet", "no log");
   expectFailure("info run.json", 1, "run.json names it");
   std::filesystem::remove(folder_ / "run.0.qtet");
   expectFailure("info run.json", 1, "run.json names the log run.0.qtet, which is not beside it");
+}
+
+TEST_F(SegmentListTool, aPublishedListIsOneMesh) {
+  makeList();
+  std::filesystem::create_directories(folder_ / "viewer");
+  put("viewer/index.html", "<head></head><body></body>");
+  const Ran ran = run("publish site run.json --viewer viewer --plain");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto index = nlohmann::json::parse(contentOf(folder_ / "site" / "index.json"));
+  ASSERT_EQ(index["meshes"].size(), 1u);
+  const auto& mesh = index["meshes"][0];
+  EXPECT_EQ(mesh["id"], "run");
+  EXPECT_EQ(mesh["links"]["list"], "run.json");
+  EXPECT_EQ(mesh["links"]["log"], "run.0.qtet");
+  ASSERT_EQ(mesh["segments"].size(), 2u);
+  EXPECT_EQ(mesh["segments"][1]["log"], "run.1.qtet");
+  EXPECT_EQ(mesh["segments"][1]["times"].size(), 2u);
+  for (const char* name : {"run.json", "run.0.qtet", "run.1.qtet", "run.webp"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "site" / name)) << name;
+  EXPECT_EQ(readSegmentList(contentOf(folder_ / "site" / "run.json"))->segments.size(), 2u);
+}
+
+TEST_F(SegmentListTool, aListWithTheNameOfTheFoldersOwnIsRefused) {
+  makeList();
+  std::filesystem::copy_file(folder_ / "run.json", folder_ / "index.json");
+  const Ran ran = run("publish site index.json");
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_NE(ran.err.find("rename it"), std::string::npos) << ran.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "site"));
+}
+
+TEST_F(SegmentListTool, viewSaysHowToShowAList) {
+  makeList();
+  const Ran ran = run("view run.json --no-open");
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_NE(ran.err.find("qtet publish"), std::string::npos) << ran.err;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "simplify/commands/opened_list.h"
+#include "simplify/log/opened_list.h"
 
 #include <algorithm>
 #include <fstream>
@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "proto/number_text.h"
 #include "proto/series.h"
 #include "simplify/read/options/time_steps.h"
 
@@ -20,7 +21,7 @@ Result<std::string> textOf(const fs::path& path) {
   if (!fs::exists(path, code))
     return fail(ErrorCode::kNotFound,
                 "there is no list " + path.string() + "; 'qtet simplify -o NAME.json' makes one");
-  std::string out(kMaxSeriesListBytes + 1, '\0');
+  std::string out(kMaxListBytes + 1, '\0');
   std::ifstream file(path, std::ios::binary);
   if (!fs::is_regular_file(path, code) || !file)
     return fail(ErrorCode::kIo, path.string() + " cannot be read; is it a file that you may read?");
@@ -39,12 +40,12 @@ std::vector<double> instantsOf(const Manifest& manifest) {
 
 }  // namespace
 
-bool isSeriesList(const fs::path& path) { return path.extension() == kSeriesListEnding; }
+bool isSegmentList(const fs::path& path) { return path.extension() == kListEnding; }
 
-Result<SeriesList> openList(const fs::path& path) {
+Result<SegmentList> openList(const fs::path& path) {
   const Result<std::string> text = textOf(path);
   if (!text) return std::unexpected(text.error());
-  Result<SeriesList> out = parseSeriesList(*text);
+  Result<SegmentList> out = readSegmentList(*text);
   if (!out)
     return fail(out.error().code, path.string() + ": " + out.error().message +
                                       "; this is no list of logs, or it is damaged: 'qtet "
@@ -69,7 +70,7 @@ Result<OpenedLog> openSegment(const fs::path& list, const Segment& segment) {
     const auto isSame = [&](double instant) { return isSameTime(instant, time); };
     if (!instants.empty() && std::ranges::none_of(instants, isSame))
       return fail(ErrorCode::kNotFound, list.string() + ": the log " + segment.log +
-                                            " has no instant at time " + timeText(time) +
+                                            " has no instant at time " + shortestText(time) +
                                             ", which the list names; one of them belongs to "
                                             "another series: make both again");
   }
