@@ -75,7 +75,7 @@ test('aWrongListIsRefusedByItsAddressAndItsPlace', async () => {
   answerText('{"qtet": "series", "segments": [{"log": "/etc/x.qtet", "times": [0]}]}');
   const refusal = fetchCatalog(kFlow);
   await expect(refusal).rejects.toThrow(/my%20flow\.json cannot be opened: segments\[0\]\.log is/);
-  await expect(refusal).rejects.toMatchObject({code: 'bad-list'});
+  await expect(refusal).rejects.toMatchObject({code: 'bad-value'});
   for (const text of ['{"qtet": "series", "segm', '[]', '{"qtet": "other"}']) {
     answerText(text);
     await expect(fetchCatalog(kFlow)).rejects.toThrow('is no list of meshes or segments');

@@ -1,3 +1,4 @@
+import {readdir, readFile} from 'node:fs/promises';
 import {expect, test} from 'vitest';
 import {errorCode, errorText} from '../core/protocol/errors';
 import {
@@ -8,20 +9,39 @@ import {
   readSegmentList,
 } from '../core/protocol/segment_list';
 
+const kGolden = new URL('../../tests/golden/lists/', import.meta.url);
 const listOf = (segments: unknown): unknown => ({qtet: 'series', segments});
 const kTwo = listOf([
   {log: 'flow.0.qtet', times: [0, 0.25, 0.5]},
   {log: 'flow.1.qtet', times: [1, 3]},
 ]);
 
-function refusal(value: unknown, sizeBytes = 100): string {
+function refusal(value: unknown, sizeBytes = 100, code = 'bad-value'): string {
   try {
     readSegmentList(value, sizeBytes);
   } catch (thrown) {
-    expect(errorCode(thrown)).toBe('bad-list');
+    expect(errorCode(thrown)).toBe(code);
     return errorText(thrown);
   }
   return '';
+}
+
+test('theGoldenListsAreValidOrRefused', async () => {
+  for (const name of await readdir(new URL('valid/', kGolden)))
+    expect(await refusalOfFile(`valid/${name}`), name).toBe('');
+  for (const name of await readdir(new URL('must-fail/', kGolden)))
+    expect(await refusalOfFile(`must-fail/${name}`), name).not.toBe('');
+});
+
+async function refusalOfFile(name: string): Promise<string> {
+  const text = await readFile(new URL(name, kGolden), 'utf8');
+  let value: unknown;
+  try {
+    value = JSON.parse(text);
+  } catch {
+    return 'no JSON';
+  }
+  return isSegmentList(value) ? refusal(value, text.length) : 'no list';
 }
 
 test('aListHasItsLogsAndTheInstantsOfAll', () => {
@@ -75,8 +95,12 @@ test('aRefusalNamesThePlaceTheValueAndTheWayOut', () => {
 });
 
 test('aLogIsANameBesideTheList', () => {
-  for (const log of ['a/b.qtet', '../b.qtet', 'a\\b.qtet', 'a..b.qtet', 'a.vtu', '', 7])
+  for (const log of ['a/b.qtet', '../b.qtet', 'a\\b.qtet', 'a..b.qtet', 'a.vtu', '.qtet', '', 7])
     expect(refusal(listOf([{log, times: [0]}])), String(log)).toContain('segments[0].log');
+  for (const log of ['\ud800.qtet', 'a\0.qtet', `${'ä'.repeat(126)}.qtet`])
+    expect(refusal(listOf([{log, times: [0]}])), log).toContain('segments[0].log');
+  for (const log of [`${'ä'.repeat(125)}a.qtet`, '\ud83d\ude00.qtet'])
+    expect(refusal(listOf([{log, times: [0]}])), log).toBe('');
   for (const log of ['a b.qtet', 'flow#1?.qtet', '%41.qtet', 'http:x.qtet'])
     expect(refusal(listOf([{log, times: [0]}])), log).toBe('');
 });
@@ -86,9 +110,13 @@ test('limitsHoldToTheSegmentAndToTheByte', () => {
     listOf(Array.from({length: count}, (_, i) => ({log: `${i}.qtet`, times: [i]})));
   expect(refusal(many(kMaxSegments - 1))).toBe('');
   expect(refusal(many(kMaxSegments))).toBe('');
-  expect(refusal(many(kMaxSegments + 1))).toContain('1025 segments, more than 1024');
+  expect(refusal(many(kMaxSegments + 1), 100, 'limit-exceeded')).toContain(
+    '1025 segments, more than 1024',
+  );
   expect(refusal(kTwo, kMaxListBytes)).toBe('');
-  expect(refusal(kTwo, kMaxListBytes + 1)).toContain('4194305 bytes, more than 4194304');
+  expect(refusal(kTwo, kMaxListBytes + 1, 'limit-exceeded')).toContain(
+    '4194305 bytes, more than 4194304',
+  );
 });
 
 test('theNearestInstantDecidesTheSegmentAndTheEarlierOfTwo', () => {

@@ -5,6 +5,8 @@ import {QtetError} from './errors';
 
 export const kMaxSegments = 1024;
 export const kMaxListBytes = 4 << 20;
+/** Of a log's name, in UTF-8. */
+const kMaxNameBytes = 256;
 /** The member `qtet` of a list. */
 const kMark = 'series';
 const kEnding = '.qtet';
@@ -30,16 +32,16 @@ export function isSegmentList(value: unknown): boolean {
 
 /**
  * Reads a list that was parsed from `sizeBytes` of JSON. Unknown members are ignored. Throws
- * `bad-list`. REQUIRES: isSegmentList(value).
+ * `bad-value` or `limit-exceeded`. REQUIRES: isSegmentList(value).
  */
 export function readSegmentList(value: unknown, sizeBytes: number): SegmentList {
   const {segments} = value as {segments?: unknown};
   if (sizeBytes > kMaxListBytes)
-    throw wrong(`it has ${sizeBytes} bytes, more than ${kMaxListBytes}`);
+    throw wrong(`it has ${sizeBytes} bytes, more than ${kMaxListBytes}`, 'limit-exceeded');
   if (!Array.isArray(segments) || segments.length === 0)
     throw wrong('"segments" is no array of at least one segment');
   if (segments.length > kMaxSegments)
-    throw wrong(`it has ${segments.length} segments, more than ${kMaxSegments}`);
+    throw wrong(`it has ${segments.length} segments, more than ${kMaxSegments}`, 'limit-exceeded');
   const logs: string[] = [];
   const instants: ListedInstant[] = [];
   segments.forEach((its: unknown, segment) => {
@@ -77,12 +79,20 @@ function firstFrom(instants: readonly ListedInstant[], time: number): number {
 }
 
 function readLog(log: unknown, at: string): string {
-  const isName =
-    typeof log === 'string' && log.endsWith(kEnding) && !/[/\\]/.test(log) && !log.includes('..');
-  if (isName) return log;
+  if (typeof log === 'string' && isFileName(log)) return log;
   throw wrong(
     `${at} is ${JSON.stringify(log)}, but a log lies beside its list: it takes the name of a ` +
       `file that ends in ${kEnding}, without a folder`,
+  );
+}
+
+/** Lone surrogates have no UTF-8, so no address holds them. */
+function isFileName(log: string): boolean {
+  return (
+    log.endsWith(kEnding) &&
+    log.length > kEnding.length &&
+    !/[/\\\0]|\.\.|\p{Surrogate}/u.test(log) &&
+    new TextEncoder().encode(log).length <= kMaxNameBytes
   );
 }
 
@@ -94,8 +104,8 @@ function readTime(time: unknown, last: number, at: string): {time: number; text:
   return {time, text: String(time)};
 }
 
-function wrong(what: string): QtetError {
-  return new QtetError('bad-list', `${what}. Correct the list, or make it again.`);
+function wrong(what: string, code = 'bad-value'): QtetError {
+  return new QtetError(code, `${what}. Correct the list, or make it again.`);
 }
 
 function isObject(value: unknown): value is Record<string, unknown> {

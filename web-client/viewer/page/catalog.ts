@@ -2,7 +2,7 @@
 // made. The latter has the same list in its index.json, with addresses of files. A list of segments
 // is one mesh.
 
-import {errorText, QtetError} from '../../core/protocol/errors';
+import {errorCode, errorText, QtetError} from '../../core/protocol/errors';
 import {isSegmentList, readSegmentList, type SegmentList} from '../../core/protocol/segment_list';
 import {refusedOrigin} from '../../core/transport/refused_origin';
 import {fetchWith} from '../../core/transport/token';
@@ -89,7 +89,7 @@ function entryOfSegments(url: URL, body: unknown, sizeBytes: number): MeshEntry 
     return {id: meshOfLog(url), tetrahedra: 0, fields: [], firstField: '', segments};
   } catch (thrown) {
     throw new QtetError(
-      'bad-list',
+      errorCode(thrown),
       `The list of segments ${url.href} cannot be opened: ${errorText(thrown)}`,
     );
   }
