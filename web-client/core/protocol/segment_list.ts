@@ -5,7 +5,7 @@ import {QtetError} from './errors';
 
 export const kMaxSegments = 1024;
 export const kMaxListBytes = 4 << 20;
-/** Of a log's name, in UTF-8. */
+/** A log name in UTF-8. */
 const kMaxNameBytes = 256;
 /** The member `qtet` of a list. */
 const kMark = 'series';
