@@ -4,6 +4,7 @@ import type {Scalar} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Vector} from '../core/protocol/geometry';
 import type {Manifest} from '../core/protocol/manifest';
+import {readSegmentList} from '../core/protocol/segment_list';
 import {markSeries} from '../core/protocol/series';
 import {Inspector} from '../core/session/inspector';
 import type {Fetch} from '../core/transport/ranged_file';
@@ -137,6 +138,14 @@ describe('a plot over time', () => {
       [2, 3],
       [NaN, NaN],
     ]);
+  });
+
+  test('saysThatItHasOnlyTheInstantsOfItsSegment', async () => {
+    const segments = ['a.qtet', 'b.qtet'].map((log, i) => ({log, times: [i]}));
+    const list = readSegmentList({qtet: 'series', segments}, 100);
+    Object.assign(mesh, {place: {list, segment: 0}});
+    await overTime.begin(kPlace);
+    expect(curve!.status).toMatch(/ The plot has only the instants of the shown segment\.$/);
   });
 
   test('setsTheTimeByAClick', async () => {
