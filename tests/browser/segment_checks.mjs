@@ -12,6 +12,11 @@ const kSegments = [
   {log: 'flow.1.qtet', times: [2]},
 ];
 
+/** Longer than a segment of one instant is played. */
+const kSlowFrameMs = 700;
+/** A picture of the segment before, and one of the next. */
+const kMostWaiting = 2;
+
 /** By segment: its log, which is made once. */
 const made = new Map();
 
@@ -33,6 +38,7 @@ function makeSegments({bin, out, viewer}) {
     writeFileSync(join(folder, name), JSON.stringify({qtet: 'series', segments}));
   write('flow.json', kSegments);
   write('broken.json', [kSegments[0], {log: 'missing.qtet', times: [2]}]);
+  write('holey.json', [kSegments[0], {log: 'missing.qtet', times: [1.5]}, kSegments[1]]);
   write('wrong.json', [kSegments[0], {log: '../flow.1.qtet', times: [2]}]);
   return {folder, logs};
 }
@@ -162,4 +168,54 @@ async function aListsErrorsSayWhere({browser, ...context}) {
   }
 }
 
-export const segmentChecks = {aListOfSegmentsIsOneSeries, aListsErrorsSayWhere};
+/** Each frame waits, as if the graphics were slow. Counts the pictures that wait for one. */
+const drawSlowly = (view, frameMs) => {
+  globalThis.requestAnimationFrame = (draw) => setTimeout(draw, frameMs);
+  globalThis.mostWaiting = 0;
+  const {show} = view;
+  view.show = function showCounted(...words) {
+    show.apply(this, words);
+    globalThis.mostWaiting = Math.max(globalThis.mostWaiting, this.afterFrame.length);
+  };
+};
+
+/** Plays until the time is `last` for the `rounds`th time. Returns the times and events so far. */
+const playRounds = ([last, rounds]) =>
+  new Promise((resolve) => {
+    const viewer = window.qtetViewer;
+    const seen = [];
+    viewer.addEventListener('load', () => seen.push('load'));
+    viewer.addEventListener('time-change', ({detail: {time, playing}}) => {
+      if (!playing) return;
+      seen.push(time);
+      if (seen.filter((its) => its === last).length < rounds) return;
+      viewer.playing = false;
+      resolve(seen);
+    });
+    viewer.playing = true;
+  });
+
+async function playingShowsEachSegmentOnSlowGraphics(context) {
+  const {folder} = makeSegments(context);
+  const host = await hostFolder(folder);
+  try {
+    const viewer = await context.browser.open(`${host.url}?src=holey.json&clip=none`);
+    await viewer.waitForPicture();
+    await viewer.inView(drawSlowly, kSlowFrameMs);
+    const seen = await viewer.page.evaluate(playRounds, [2, 3]);
+    // Each segment that can be opened has a picture before the time goes on to another one.
+    const others = seen.filter((its) => its !== 1.5).join(' ');
+    assert.match(others, /^0 (?:1 )?2 load 0 load (?:1 )?2 load 0 load (?:1 )?2$/);
+    assert.ok(seen.includes(1.5), String(seen));
+    const most = await viewer.inView(() => globalThis.mostWaiting);
+    assert.ok(most <= kMostWaiting, `${most} pictures waited for a frame`);
+  } finally {
+    host.close();
+  }
+}
+
+export const segmentChecks = {
+  aListOfSegmentsIsOneSeries,
+  aListsErrorsSayWhere,
+  playingShowsEachSegmentOnSlowGraphics,
+};

@@ -1,13 +1,14 @@
-import {beforeEach, describe, expect, test} from 'vitest';
+import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import type {Assembler} from '../core/decode/assembler';
 import type {Scalar} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Vector} from '../core/protocol/geometry';
 import type {Manifest} from '../core/protocol/manifest';
+import {readSegmentList} from '../core/protocol/segment_list';
 import {markSeries} from '../core/protocol/series';
 import {Inspector} from '../core/session/inspector';
 import type {Fetch} from '../core/transport/ranged_file';
-import {seriesServer, type SeriesServer} from '../core/transport/series_server';
+import {kMaxPauseMs, seriesServer, type SeriesServer} from '../core/transport/series_server';
 import {ShownMesh} from '../viewer/page/shown_mesh';
 import {OverTime} from '../viewer/panels/over_time';
 import type {TimeCurve} from '../viewer/panels/probe_plot';
@@ -80,7 +81,11 @@ beforeEach(() => {
   );
 });
 
-const settled = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
+async function settled(): Promise<void> {
+  if (vi.isFakeTimers()) await vi.advanceTimersByTimeAsync(0);
+  else await new Promise((resolve) => setTimeout(resolve));
+}
+afterEach(() => void vi.useRealTimers());
 
 describe('a plot over time', () => {
   test('isOfferedOnlyForASeries', () => {
@@ -135,6 +140,14 @@ describe('a plot over time', () => {
     ]);
   });
 
+  test('saysThatItHasOnlyTheInstantsOfItsSegment', async () => {
+    const segments = ['a.qtet', 'b.qtet'].map((log, i) => ({log, times: [i]}));
+    const list = readSegmentList({qtet: 'series', segments}, 100);
+    Object.assign(mesh, {place: {list, segment: 0}});
+    await overTime.begin(kPlace);
+    expect(curve!.status).toMatch(/ The plot has only the instants of the shown segment\.$/);
+  });
+
   test('setsTheTimeByAClick', async () => {
     await overTime.begin(kPlace);
     choose(1);
@@ -179,7 +192,12 @@ class FakeServer {
   }
 }
 
-const answerOf = (level: number, values: (number | null)[][], at = [0, 1]): Response =>
+const kTwo = [
+  [3, 4],
+  [6, 8],
+];
+
+const answerOf = (level: number, values: (number | null)[][], at: unknown[] = [0, 1]): Response =>
   Response.json({level, times: at, values}, {headers: {'Content-Length': '18000'}});
 
 describe('a plot over time from a server', () => {
@@ -233,7 +251,7 @@ describe('a plot over time from a server', () => {
     overTime.askExact();
     expect([isExactOffered, curve!.values]).toEqual([false, [5, 10]]);
     expect(curve!.status).toMatch(/level 3 of 7\. The exact values are on their way\.$/);
-    await fake.answer(new Response(null, {status: 503}));
+    await fake.answer(new Response(null, {status: 500}));
     expect([isExactOffered, curve!.values]).toEqual([true, [5, 10]]);
     expect(curve!.status).toMatch(/ The server does not give the exact values now\.$/);
     overTime.askExact();
@@ -272,10 +290,15 @@ describe('a plot over time from a server', () => {
   });
 
   test.each([
-    new Response(null, {status: 429}),
-    new Response(null, {status: 503, headers: {'Retry-After': '2'}}),
+    new Response(null, {status: 500}),
     new Response('no JSON'),
     answerOf(3, [[3, 4]]),
+    answerOf(3, kTwo, [0, 1, 2]),
+    answerOf(3, kTwo, [1, 0]),
+    answerOf(3, kTwo, [1, 1]),
+    answerOf(3, kTwo, [0, null]),
+    answerOf(3, kTwo, [0, '1']),
+    new Response(`{"level": 3, "times": [0, 1e999], "values": ${JSON.stringify(kTwo)}}`),
     answerOf(3, [[3], [4]]),
     new Error('no network'),
   ])('goesOnWithBlocksIfTheServerFails', async (answer) => {
@@ -285,6 +308,46 @@ describe('a plot over time from a server', () => {
     expect(curve!.values).toEqual([5, NaN]);
     expect(curve!.status).toMatch(/^1 of 2 instants are here, /);
     expect([isExactOffered, fake.requests.length]).toEqual([false, 1]);
+  });
+
+  const busy = (status: number, pause?: string): Response =>
+    new Response(null, {status, headers: pause === undefined ? {} : {'Retry-After': pause}});
+
+  test.each([
+    [429, '3', 3000],
+    [503, '0', 0],
+    [503, undefined, 2000],
+    [503, 'soon', 2000],
+    [429, new Date(4000).toUTCString(), 4000],
+    [503, new Date(0).toUTCString(), 0],
+    [503, '3600', kMaxPauseMs],
+  ])('asksABusyServerOnceMoreAfterThePauseThatItNames', async (status, pause, ms) => {
+    vi.useFakeTimers({now: 0});
+    await fake.answer(busy(status, pause));
+    await vi.advanceTimersByTimeAsync(Math.max(0, ms - 1));
+    expect(fake.requests).toHaveLength(ms > 0 ? 1 : 2);
+    await vi.advanceTimersByTimeAsync(1);
+    expect(fake.requests.map(String)).toEqual(Array(2).fill(String(fake.requests[0])));
+    expect([curve!.status, asked]).toEqual(['The server is asked for the values.', []]);
+    await fake.answer(answerOf(3, kTwo));
+    expect([curve!.values, asked]).toEqual([[5, 10], []]);
+  });
+
+  test('goesOnWithBlocksIfTheServerStaysBusy', async () => {
+    vi.useFakeTimers();
+    await fake.answer(busy(503, '1'));
+    await vi.advanceTimersByTimeAsync(1000);
+    await fake.answer(busy(429, '1'));
+    await vi.advanceTimersByTimeAsync(kMaxPauseMs);
+    expect([fake.requests.length, asked, mesh.ahead]).toEqual([2, [[1, 0]], [1, 0]]);
+  });
+
+  test('doesNotAskABusyServerAgainOnceItIsClosed', async () => {
+    vi.useFakeTimers();
+    await fake.answer(busy(503, '1'));
+    overTime.end();
+    await vi.advanceTimersByTimeAsync(kMaxPauseMs);
+    expect([fake.requests.length, asked, vi.getTimerCount()]).toEqual([1, [], 0]);
   });
 
   test('isAbortedByAnotherPointAnotherSeriesAndTheEnd', async () => {

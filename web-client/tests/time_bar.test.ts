@@ -1,4 +1,5 @@
 import {afterEach, beforeEach, expect, test, vi} from 'vitest';
+import {kNoStatistics} from '../core/decode/statistics';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Manifest} from '../core/protocol/manifest';
 import {markSeries} from '../core/protocol/series';
@@ -156,6 +157,7 @@ test('instantsAreLookedUpOnceForASeries', () => {
 function drawn(): void {
   const shown = mesh.manifest!.fields.findIndex(({instant}) => instant?.isShown);
   mesh.snapshot = {color: {field: shown, component: -1}} as Snapshot;
+  mesh.drawn = kNoStatistics;
   bar.follow();
 }
 
@@ -242,7 +244,7 @@ function showSegments(): void {
   drawn();
 }
 
-/** The second segment is opened, and comes into the picture. */
+/** The second segment is opened, and has a picture that is not drawn yet. */
 function openSecond(): void {
   mesh = mesh.successor({...mesh.place!, segment: 1});
   const fields = ['T@3', 'T@2', 'T@4'].map(field);
@@ -252,7 +254,7 @@ function openSecond(): void {
   mesh.snapshot = {color: {field: 1, component: -1}} as Snapshot;
   opening = null;
   write('range', '0,1');
-  drawn();
+  bar.follow();
 }
 
 test('theBarHasTheInstantsOfAllSegments', () => {
@@ -268,7 +270,7 @@ test('theBarHasTheInstantsOfAllSegments', () => {
   expect(attributes.get('time')).toBeUndefined();
 });
 
-test('playingWaitsForASegmentAndGoesOnInIt', () => {
+test('playingWaitsUntilASegmentIsOnTheScreenAndGoesOnInIt', () => {
   showSegments();
   bar.toggle();
   vi.advanceTimersByTime(100);
@@ -278,8 +280,21 @@ test('playingWaitsForASegmentAndGoesOnInIt', () => {
   vi.advanceTimersByTime(5000);
   expect(attributes.get('time')).toBe('2');
   openSecond();
+  vi.advanceTimersByTime(5000);
+  expect(attributes.get('time')).toBe('2');
+  drawn();
   expect([bar.isPlaying, mesh.ahead]).toEqual([true, [1, 0, 2]]);
   expect(attributes.get('time')).toBe('3');
+});
+
+test('slowPicturesDoNotLeaveOutTheNextSegment', () => {
+  showSegments();
+  bar.toggle();
+  vi.advanceTimersByTime(100);
+  expect(attributes.get('time')).toBe('1');
+  vi.advanceTimersByTime(450);
+  drawn();
+  expect(attributes.get('time')).toBe('2');
 });
 
 test('aLateInstantIsPassedOverForTheNextSegment', () => {

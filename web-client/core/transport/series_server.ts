@@ -10,6 +10,12 @@ import {fetchWith} from './token';
 
 /** If no level is asked for, the answer is off by at most this share of the range (rms). */
 export const kSeriesError = 0.01;
+/** Answers of a server that has no time now. It is asked once more. */
+const kBusy = [429, 503];
+/** The pause before that, if the server names none. */
+const kPauseMs = 2000;
+/** The longest one: a user waits for the plot, and the blocks of the instants come without it. */
+export const kMaxPauseMs = 10000;
 
 export interface SeriesQuestion {
   /** In the coordinates of the input. */
@@ -37,14 +43,23 @@ export class SeriesServer {
     private readonly fetch: Fetch,
   ) {}
 
-  /** Throws `network`, `not-found`, `http`, `bad-message`, and what `signal` makes fetch throw. */
+  /**
+   * Asks a busy server once more. Throws `network`, `not-found`, `http`, `bad-message`, and the
+   * reason of `signal`.
+   */
   async values(question: SeriesQuestion, signal: AbortSignal): Promise<SeriesValues> {
     const {point, field, level} = question;
     const url = new URL(this.address);
     point.forEach((x, axis) => url.searchParams.set('xyz'[axis]!, String(x)));
     url.searchParams.set('field', keyOf(field));
     if (level !== null) url.searchParams.set('level', String(level));
-    const response = await fetchChecked(this.fetch, url.href, {signal});
+    const patient: Fetch = async (address, init) => {
+      const first = await this.fetch(address, init);
+      if (!kBusy.includes(first.status)) return first;
+      await pause(pauseOf(first.headers.get('retry-after')), signal);
+      return this.fetch(address, init);
+    };
+    const response = await fetchChecked(patient, url.href, {signal});
     const text = await response.text();
     const length = Number(response.headers.get('content-length'));
     return {
@@ -75,6 +90,29 @@ function keyOf({association, name}: FieldInfo): string {
   return association === 'cell' ? `cell:${series}` : series;
 }
 
+/** The time in ms for a header Retry-After: seconds or a date. */
+function pauseOf(header: string | null): number {
+  if (!header) return kPauseMs;
+  const ms = /^\d+$/.test(header) ? 1000 * Number(header) : Date.parse(header) - Date.now();
+  return Number.isNaN(ms) ? kPauseMs : Math.min(kMaxPauseMs, Math.max(0, ms));
+}
+
+/** Throws the reason of `signal` when it is aborted. */
+function pause(ms: number, signal: AbortSignal): Promise<void> {
+  return new Promise((resolve, reject) => {
+    const abort = (): void => {
+      clearTimeout(timer);
+      reject(signal.reason as Error);
+    };
+    const timer = setTimeout(() => {
+      signal.removeEventListener('abort', abort);
+      resolve();
+    }, ms);
+    signal.addEventListener('abort', abort, {once: true});
+    if (signal.aborted) abort();
+  });
+}
+
 /** An answer as it arrives: no member has been checked. */
 type Received = Partial<Record<keyof SeriesValues, unknown>>;
 
@@ -89,7 +127,7 @@ function checkedValues(text: string, components: number): Omit<SeriesValues, 'by
     !Array.isArray(values) ||
     !Number.isInteger(level) ||
     times.length !== values.length ||
-    !times.every(Number.isFinite) ||
+    !times.every((time, i) => Number.isFinite(time) && (i === 0 || time > times[i - 1])) ||
     !values.every(isRow)
   )
     throw new QtetError('bad-message', 'The server gives something else than values over time.');

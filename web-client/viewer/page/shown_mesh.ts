@@ -148,6 +148,19 @@ export class ShownMesh {
     );
   }
 
+  /** Its list has instants of other segments, too. */
+  get isOneOfSegments(): boolean {
+    return this.place !== null && this.place.list.logs.length > 1;
+  }
+
+  /**
+   * A segment's first picture is on its way to the screen. Nothing else holds back segments that
+   * follow each other: each one begins with a decoder that waits for no picture.
+   */
+  get awaitsFrame(): boolean {
+    return this.place !== null && this.snapshot !== null && this.drawn === null;
+  }
+
   /** The whole mesh is on the screen. The decoder may have finished long before. */
   get isDrawn(): boolean {
     return this.drawn !== null && this.drawn.bytes >= this.statistics.bytesNeeded;

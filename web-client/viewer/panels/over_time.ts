@@ -24,6 +24,9 @@ export interface OverTimeHost extends BlocksHost {
   announce(text: string): void;
 }
 
+/** Behind the status, where the plot is of one segment of a list. */
+const kOfSegment = ' The plot has only the instants of the shown segment.';
+
 /** The place of the plot. */
 export interface TimeCard {
   /** Makes the plot, unless it is not wanted any more once uPlot is here. */
@@ -163,7 +166,7 @@ export class OverTime {
       values: values.map(valueOf),
       title: fieldTitle,
       time: mesh.manifest!.fields[field]!.instant!.time,
-      status,
+      status: `${status}${mesh.isOneOfSegments ? kOfSegment : ''}`,
     };
   }
 

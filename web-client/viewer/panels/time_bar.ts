@@ -208,10 +208,12 @@ export class TimeBar {
 
   /**
    * The next instant, once this one is in the picture. Instants whose time passes while a picture
-   * is drawn are left out. The clock stands while an instant is not here.
+   * is drawn are left out. The clock stands while an instant is not here, and until a segment is on
+   * the screen.
    */
   private tick(): void {
     const now = performance.now();
+    if (this.awaitsFrame) return void (this.waitingSince = 0);
     if (this.isOnScreen) {
       this.waitingSince = 0;
       if (this.isLate) this.dueAt = Math.max(this.dueAt, now);
@@ -240,9 +242,13 @@ export class TimeBar {
     return segmentOf(at) !== segmentOf(this.at);
   }
 
-  /** The most steps up to `due` to an instant that is here; 1 if none is. */
+  /**
+   * The most steps up to `due` to an instant that is here; 1 if none is. The first instant of
+   * another segment ends them, or slow graphics would play round in one segment.
+   */
   private stepsTo(due: number): number {
     let by = Math.min(due, this.times.length - 1);
+    for (let i = 1; i < by; ++i) if (this.isElsewhere(this.at + i)) return i;
     while (by > 1 && !this.isHere(this.at + by)) --by;
     return Math.max(1, by);
   }
@@ -259,8 +265,12 @@ export class TimeBar {
     return kStepMs / Number(this.speed.value);
   }
 
+  private get awaitsFrame(): boolean {
+    return this.host.opening === null && this.host.mesh.awaitsFrame;
+  }
+
   private get isOnScreen(): boolean {
-    if (this.host.opening !== null) return false;
+    if (this.host.opening !== null || this.awaitsFrame) return false;
     const {manifest, snapshot} = this.host.mesh;
     const seen = [snapshot?.color?.field, snapshot?.warp?.field];
     return this.tracks.every((track) => {

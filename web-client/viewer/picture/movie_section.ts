@@ -16,6 +16,7 @@ export const kMovieMarkup = `
     .join('')}</select></label>
   <div class="row"><label class="toggle"><input type="checkbox" name="only-loaded">
     <span>Only loaded instants</span></label><span class="count name"></span></div>
+  <p class="hint of-segment" hidden>The movie has only the instants of the shown segment.</p>
   <progress aria-label="Instants that are drawn" hidden></progress>
   <p class="hint" role="status"></p>
   <div class="buttons"><button type="button" class="save-movie">Save movie</button>
@@ -50,6 +51,7 @@ export class MovieSection {
   /** Must be called when the dialog opens. */
   show(): void {
     this.section.hidden = !this.movies.isOffered;
+    find(this.section, '.of-segment').hidden = !this.movies.isOfSegment;
     if (!this.isBusy) this.say('');
   }
 

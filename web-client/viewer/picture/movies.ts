@@ -42,6 +42,11 @@ export class Movies {
     return seriesIn(snapshot, manifest?.fields ?? []) !== undefined;
   }
 
+  /** Its instants are those of the shown segment, and the list has others. */
+  get isOfSegment(): boolean {
+    return this.host.mesh.isOneOfSegments;
+  }
+
   get name(): string {
     return find(this.page.root, '.mesh-name').textContent;
   }
