@@ -270,6 +270,17 @@ test('theBarHasTheInstantsOfAllSegments', () => {
   expect(attributes.get('time')).toBeUndefined();
 });
 
+test('aListsTimeMayLackTheLastDigitsOfItsLogs', () => {
+  const segments = [{log: 'a.qtet', times: [0, 0.3]}];
+  mesh = new ShownMesh({list: readSegmentList({qtet: 'series', segments}, 100), segment: 0});
+  const fields = ['T@0', 'T@0.30000000000000004'].map(field);
+  markSeries(fields);
+  mesh.manifest = {fields} as Manifest;
+  write('range', '0,1');
+  bar.toggle();
+  expect(mesh.playing).toContain(1);
+});
+
 test('playingWaitsUntilASegmentIsOnTheScreenAndGoesOnInIt', () => {
   showSegments();
   bar.toggle();

@@ -2,6 +2,7 @@
 
 import type {BaseFigures} from '../core/picture/base_figures';
 import {latticeChange, type LatticeChange, type Vector} from '../core/protocol/geometry';
+import type {CoarseCells} from '../core/picture/volume';
 import type {Client} from '../core/session/client';
 import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
@@ -76,7 +77,7 @@ export class Viewing implements LaterHost {
         this.camera.frame();
       },
       failed: (code, message) => this.failed(code, message),
-      coarse: (have) => client.coarse(have),
+      coarse: (have) => this.coarse(have),
     });
     this.stream = new StreamControl(page, kept, client, {
       limit: () => this.settings.limit,
@@ -113,6 +114,12 @@ export class Viewing implements LaterHost {
 
   get view(): View | null {
     return this.graphics.view;
+  }
+
+  /** As Client.coarse: cells of the mesh that is shown. */
+  private async coarse(have: number): Promise<CoarseCells> {
+    if (this.opening !== null) throw new Error('the worker has another segment');
+    return this.client.coarse(have);
   }
 
   /** Brings everything in line with the attributes. */

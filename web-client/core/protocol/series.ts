@@ -8,6 +8,13 @@ const kDecimal = /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
 type Time = Pick<Instant, 'time' | 'text'>;
 
+/** Times are the same if they differ by less than this share of the larger one. */
+const kNearTime = 1e-9;
+
+export function isSameTime(a: number, b: number): boolean {
+  return Math.abs(a - b) <= kNearTime * Math.max(Math.abs(a), Math.abs(b));
+}
+
 /** The parts of NAME@TIME; null for a name that does not end in "@" and a finite number. */
 export function instantName(name: string): ({series: string} & Time) | null {
   const at = name.lastIndexOf('@');

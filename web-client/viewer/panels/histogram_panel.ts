@@ -3,6 +3,7 @@
 import type {Client} from '../../core/session/client';
 import {colorGradient} from '../../core/picture/color_maps';
 import type {Axis, Histogram} from '../../core/picture/histogram';
+import type {StreamState} from '../../core/session/worker_messages';
 import {find, onClick} from '../page/find';
 import {formatValue, roundTo} from '../page/format';
 import type {Page} from '../page/page';
@@ -45,6 +46,8 @@ export interface HistogramHost {
   readonly settings: Settings;
   readonly range: ShownRange | null;
   readonly isPlaying: boolean;
+  /** As TimeHost.opening. */
+  readonly opening: StreamState | null;
 }
 
 export class HistogramPanel {
@@ -101,6 +104,7 @@ export class HistogramPanel {
     const {range, mesh, client} = this.host;
     const {snapshot} = mesh;
     if (!range || !snapshot?.color || this.isDragged || !this.root.offsetParent) return;
+    if (this.host.opening !== null) return; // the worker has another segment
     const [low, high] = snapshot.scaleRange;
     const [from, to] = snapshot.extent.map((share) => low + share * (high - low));
     const axis = axisOf(range, [from!, to!]);

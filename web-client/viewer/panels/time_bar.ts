@@ -1,7 +1,7 @@
 // The time of a series: play, step, loop, and which instants are here.
 
 import type {FieldInfo} from '../../core/protocol/fields';
-import {shownInstant} from '../../core/protocol/series';
+import {instantsOf, isSameTime, shownInstant} from '../../core/protocol/series';
 import type {StreamState} from '../../core/session/worker_messages';
 import {find, onClick, setText} from '../page/find';
 import type {Attributes} from '../page/page';
@@ -150,11 +150,11 @@ export class TimeBar {
     if (text === this.series) return;
     this.series = text;
     this.tracks = series.map((key) => {
-      const byTime = new Map<number, number>();
-      fields.forEach(({instant}, field) => {
-        if (instant?.series === key) byTime.set(instant.time, field);
-      });
-      return this.times.map(({time}) => byTime.get(time) ?? -1);
+      const instants = instantsOf(fields, key);
+      const byTime = new Map(instants.map((field) => [fields[field]!.instant!.time, field]));
+      const near = (time: number): number | undefined =>
+        instants.find((field) => isSameTime(fields[field]!.instant!.time, time));
+      return this.times.map(({time}) => byTime.get(time) ?? near(time) ?? -1);
     });
   }
 
