@@ -31,10 +31,10 @@ class SegmentListTool : public Tool {
     }
     put("run.pvd", collection(0, kSteps));
   }
-  static std::string collection(int first, int end) {
+  static std::string collection(int first, int end, double begin = 0, double rate = 10) {
     std::string out = R"(<VTKFile type="Collection"><Collection>)";
     for (int step = first; step < end; ++step)
-      out += "<DataSet timestep=\"" + shortestText(step / 10.) + "\" file=\"step-" +
+      out += "<DataSet timestep=\"" + shortestText(begin + step / rate) + "\" file=\"step-" +
              std::to_string(step) + ".vtu\"/>";
     return out + "</Collection></VTKFile>";
   }
@@ -94,6 +94,20 @@ TEST_F(SegmentListTool, stepsWithTheSameCellsAreOneSegment) {
   ASSERT_EQ(list().segments.size(), 1u);
   ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.qtet").code, 0);
   EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), contentOf(folder_ / "run.qtet"));
+}
+
+TEST_F(SegmentListTool, timesInUnixSecondsStayApart) {
+  put("run.pvd", collection(2, 4, 1700000000, 1));  // the first one has other cells
+  makeList();
+  ASSERT_EQ(list().times(), (std::vector<double>{1700000002, 1700000003}));
+  ASSERT_EQ(list().segments.size(), 2u);
+  for (int step = 2; step < 4; ++step) {
+    const Ran ran =
+        run("extract run.json --ratio 1 -o out.vtu --time 170000000" + std::to_string(step));
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
+    EXPECT_NEAR(std::ranges::min(mesh.fields.at(0).values), 10 * step, 1e-2);
+  }
 }
 
 TEST_F(SegmentListTool, oneLogOfChangingCellsIsRefused) {
