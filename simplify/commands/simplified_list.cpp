@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "codec/files/atomic_file.h"
+#include "proto/field_key.h"
 #include "proto/number_text.h"
 #include "proto/utf8.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/read/options/time_steps.h"
+#include "simplify/read/read_mesh.h"
 #include "simplify/read/read_segments.h"
 
 namespace qtet {
@@ -65,7 +67,25 @@ std::string timesText(const std::vector<double>& times) {
   return out;
 }
 
-std::unexpected<Error> noTimes(const std::string& input) {
+bool hasInstants(const TetMesh& mesh) {
+  return std::ranges::any_of(
+      mesh.fields, [](const MeshField& field) { return instantName(field.name).has_value(); });
+}
+
+/// Checks before the work whether the log of an input without known times will have instants.
+Status checkInstants(const std::string& input, const ReadOptions& options) {
+  ReadOptions read = options;
+  read.namesTime = true;
+  const Result<ReadMesh> asked = readMesh(input, read);
+  if (!asked) return std::unexpected(asked.error());
+  if (hasInstants(asked->mesh)) return {};
+  read.time = "all";
+  const Result<ReadMesh> all = readMesh(input, read);
+  if (all && hasInstants(all->mesh))
+    return fail(ErrorCode::kBadValue, input +
+                                          " has several times, but `time` chooses one of them, "
+                                          "which needs no list of logs; give --time all, or -o "
+                                          "NAME.qtet");
   return fail(ErrorCode::kNotFound,
               input + " has no times, which a list of logs needs; give -o NAME.qtet");
 }
@@ -104,7 +124,10 @@ Result<std::vector<std::vector<double>>> segmentsOf(const SimplifyRequest& reque
   if (!out) return out;
   if (Status checked = checkCount(out->size(), request.input); !checked)
     return std::unexpected(checked.error());
-  if (out->empty()) out->emplace_back();
+  if (!out->empty()) return out;
+  if (Status checked = checkInstants(request.input, request.read); !checked)
+    return std::unexpected(checked.error());
+  out->emplace_back();
   return out;
 }
 
@@ -123,7 +146,6 @@ Status addSegment(const SimplifyRequest& request, std::vector<double> times, Unp
   if (!log) return std::unexpected(log.error());
   const std::vector<double> found = instantTimes(log->manifest);
   if (times.empty()) times = found;
-  if (times.empty()) return noTimes(request.input);
   // a log without instants holds for all times of its segment
   if (!found.empty() && found != times) return otherTimes(request.input, times, found);
   for (const char* texts : {"notes", "warnings"})
