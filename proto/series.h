@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,16 @@ inline constexpr double kNearTime = 1e-9;
 
 [[nodiscard]] inline bool isSameTime(double a, double b) {
   return std::abs(a - b) <= kNearTime * std::max(std::abs(a), std::abs(b));
+}
+
+/// The number of the time that is meant: the exact one if it is there, else the nearest that is the
+/// same (isSameTime). So times one apart stay apart, also where they are 1e9 and more.
+[[nodiscard]] inline std::optional<std::size_t> placeOfTime(std::span<const double> times,
+                                                            double wanted) {
+  const auto nearest = std::ranges::min_element(
+      times, {}, [wanted](double time) { return std::abs(time - wanted); });
+  if (nearest == times.end() || !isSameTime(*nearest, wanted)) return std::nullopt;
+  return static_cast<std::size_t>(nearest - times.begin());
 }
 
 struct Series {

@@ -12,6 +12,19 @@
 namespace qtet {
 namespace {
 
+/// The coarsest level whose error is known and at most `bound`, or the last one.
+template <class ErrorOf>
+Result<std::uint32_t> coarsestOf(const Manifest& manifest, double bound, const ErrorOf& errorOf) {
+  if (!manifest.levels.back().error)
+    return fail(ErrorCode::kNotFound,
+                "the log does not have the errors of its levels; choose by size, or simplify "
+                "again with `measure` levels");
+  const auto found = std::ranges::find_if(manifest.levels, [&](const ManifestLevel& level) {
+    return level.error && errorOf(*level.error) <= bound;
+  });
+  return found == manifest.levels.end() ? manifest.levels.back().level : found->level;
+}
+
 class LevelChooser {
  public:
   LevelChooser(const Manifest& manifest, const LogIndex& index)
@@ -30,10 +43,12 @@ class LevelChooser {
   Result<std::uint32_t> operator()(const FieldErrorTarget& t) const {
     const auto field = fieldOfKey(manifest_, t.field);
     if (!field) return std::unexpected(noSuchField(manifest_, t.field));
-    return coarsest(t.error, [&](const LevelError& error) { return error.fields[*field].rms; });
+    return coarsestOf(manifest_, t.error,
+                      [&](const LevelError& error) { return error.fields[*field].rms; });
   }
   Result<std::uint32_t> operator()(const BoundaryErrorTarget& t) const {
-    return coarsest(t.error, [](const LevelError& error) { return error.boundaryDistance(); });
+    return coarsestOf(manifest_, t.error,
+                      [](const LevelError& error) { return error.boundaryDistance(); });
   }
 
  private:
@@ -44,17 +59,6 @@ class LevelChooser {
     const auto found =
         std::ranges::find_if(manifest_.levels.rbegin(), manifest_.levels.rend(), fits);
     return found == manifest_.levels.rend() ? 0 : found->level;
-  }
-  template <class ErrorOf>
-  [[nodiscard]] Result<std::uint32_t> coarsest(double bound, const ErrorOf& errorOf) const {
-    if (!manifest_.levels.back().error)
-      return fail(ErrorCode::kNotFound,
-                  "the log does not have the errors of its levels; choose by size, or simplify "
-                  "again with `measure` levels");
-    const auto found = std::ranges::find_if(manifest_.levels, [&](const ManifestLevel& level) {
-      return level.error && errorOf(*level.error) <= bound;
-    });
-    return found == manifest_.levels.end() ? last() : found->level;
   }
 
   const Manifest& manifest_;
@@ -75,6 +79,16 @@ Result<std::uint32_t> levelFor(const Target& target, const Manifest& manifest,
                                const LogIndex& index) {
   assert(!manifest.levels.empty());
   return std::visit(LevelChooser(manifest, index), target);
+}
+
+Result<std::uint32_t> levelOfFieldErrors(double error, std::span<const std::uint32_t> fields,
+                                         const Manifest& manifest) {
+  assert(!manifest.levels.empty());
+  return coarsestOf(manifest, error, [&](const LevelError& known) {
+    double worst = 0;
+    for (const std::uint32_t f : fields) worst = std::max(worst, known.fields[f].rms);
+    return worst;
+  });
 }
 
 Result<std::uint32_t> lastChunkFor(const Target& target, const Manifest& manifest,

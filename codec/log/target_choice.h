@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "proto/error.h"
 #include "proto/target.h"
@@ -19,6 +20,13 @@ struct Manifest;
 /// level's error is known). REQUIRES: a manifest that manifestOf(index) gave.
 [[nodiscard]] Result<std::uint32_t> levelFor(const Target& target, const Manifest& manifest,
                                              const LogIndex& index);
+
+/// The coarsest level at which the rms error of each of these fields is known to be at most `error`,
+/// or the last one. Errors: not-found (no level's error is known). REQUIRES: numbers of fields of
+/// the manifest.
+[[nodiscard]] Result<std::uint32_t> levelOfFieldErrors(double error,
+                                                       std::span<const std::uint32_t> fields,
+                                                       const Manifest& manifest);
 
 /// The last chunk that the target takes: that of levelFor, but bytes are counted in whole chunks,
 /// not in levels. If no level's error is known, the last level is good enough. Errors: not-found

@@ -32,12 +32,11 @@ OrRefusal<std::optional<double>> chosenTime(const std::vector<double>& times,
     return notFound("these fields have no instant " + asked +
                     ", for none of them is a series; leave out time");
   if (isWord) return asked == "first" ? times.front() : times.back();
-  const auto found =
-      std::ranges::find_if(times, [&](double time) { return isSameTime(time, *number); });
-  if (found == times.end())
+  const auto found = placeOfTime(times, *number);
+  if (!found)
     return notFound("these fields have no instant " + asked + "; they have " + shownTimes(times) +
                     "; give time one of them, first or last");
-  return *found;
+  return times[*found];
 }
 
 }  // namespace

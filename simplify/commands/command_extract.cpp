@@ -8,6 +8,7 @@
 #include "codec/log/target_choice.h"
 #include "proto/field_key.h"
 #include "proto/level_error_json.h"
+#include "proto/series.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/extract_times.h"
 #include "simplify/commands/instant_collection.h"
@@ -38,6 +39,39 @@ Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& man
   if (parsed.has("level"))
     return static_cast<std::uint32_t>(parsed.integer("level", 0, std::numeric_limits<int>::max()));
   return levelFor(targetOf(parsed, manifest), manifest, index);
+}
+
+/// The fields of a segment that NAME of `--error` means at these times: those of points if there are
+/// some, and also those without time. Throws UsageError where NAME has a time.
+std::vector<std::uint32_t> fieldsAt(const Manifest& manifest, const std::string& name,
+                                    const std::vector<double>& times) {
+  if (instantName(name))
+    throw UsageError("--error " + name +
+                     " has a time; for a list give the field's name alone, and --time T");
+  const std::vector<double> instants = instantTimes(manifest);
+  std::vector<std::uint32_t> out = fieldsOfKey(manifest.fields, name);
+  std::erase_if(out, [&](std::uint32_t f) {
+    const auto instant = instantName(manifest.fields[f].name);
+    return instant && std::ranges::none_of(times, [&](double time) {
+             const auto place = placeOfTime(instants, time);
+             return place && instants[*place] == instant->time;
+           });
+  });
+  const auto isOfPoints = [&](std::uint32_t f) {
+    return manifest.fields[f].association == "point";
+  };
+  if (std::ranges::any_of(out, isOfPoints)) std::erase_if(out, std::not_fn(isOfPoints));
+  return out;
+}
+
+/// A level of a list's log for some of its times. Errors of fields hold at each of these.
+Result<std::uint32_t> levelOfSegment(const ParsedWords& parsed, const OpenedLog& log,
+                                     const std::vector<double>& times) {
+  if (!parsed.has("error")) return chosenLevel(parsed, log.manifest, log.file.index());
+  const auto [name, error] = parseNamedError("error", parsed.get<std::string>("error"));
+  const std::vector<std::uint32_t> fields = fieldsAt(log.manifest, name, times);
+  if (fields.empty()) return std::unexpected(noSuchField(log.manifest, name));
+  return levelOfFieldErrors(error, fields, log.manifest);
 }
 
 // ---- a mesh of either kind with some of its fields
@@ -213,9 +247,8 @@ using FileChooser = std::function<Result<std::vector<InstantFile>>(
 
 /// Makes the files of one log's level.
 Result<MeshOutputReport> extractLog(const ParsedWords& parsed, const OpenedLog& log,
-                                    const MeshOutput& output, const FileChooser& choose,
-                                    const FileTaker& take) {
-  const Result<std::uint32_t> level = chosenLevel(parsed, log.manifest, log.file.index());
+                                    const Result<std::uint32_t>& level, const MeshOutput& output,
+                                    const FileChooser& choose, const FileTaker& take) {
   if (!level) return std::unexpected(level.error());
   const bool restores =
       *level + 1 == log.manifest.levels.size() && !log.file.closingBlocks().empty();
@@ -318,7 +351,8 @@ Result<MeshOutputReport> extractList(const ParsedWords& parsed, const std::strin
     const auto choose = [&](const auto& known, const auto& wanted) {
       return Result<std::vector<InstantFile>>(segmentFiles(known, wanted, times));
     };
-    Result<MeshOutputReport> report = extractLog(parsed, *log, output, choose, take);
+    Result<MeshOutputReport> report =
+        extractLog(parsed, *log, levelOfSegment(parsed, *log, times), output, choose, take);
     if (!report) return report;
     report->json["log"] = segment.log;
     report->json["times"] = times;
@@ -334,7 +368,8 @@ Result<MeshOutputReport> extractOne(const ParsedWords& parsed, const std::string
   const auto choose = [&](const auto& known, const auto& wanted) {
     return filesOf(parsed, output, known, wanted);
   };
-  return extractLog(parsed, *log, output, choose, take);
+  return extractLog(parsed, *log, chosenLevel(parsed, log->manifest, log->file.index()), output,
+                    choose, take);
 }
 
 Status extract(const ParsedWords& parsed, Console& console) {
@@ -388,8 +423,8 @@ int runExtract(const Words& words, Console& console) {
        "folder "
        "NAME. Where no level is small enough it is level 0.\n"
        "A list of logs, NAME.json, gives the mesh of the log that has the time T. Each log chooses "
-       "a "
-       "level of its own. --time is required, but for a .pvd.\n"
+       "a level of its own. A list needs --time unless the output is a .pvd. Its --error takes the "
+       "name without a time, and holds at each of the chosen times.\n"
        "The last level is the input's mesh, with its own numbering and numbers where the log was "
        "made with --keep-order and --lossless.\n"
        "Errors are those that the log tells, measured when it was made (qtet info shows them).\n"

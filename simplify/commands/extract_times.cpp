@@ -1,7 +1,5 @@
 #include "simplify/commands/extract_times.h"
 
-#include <algorithm>
-
 #include "codec/files/file_names.h"
 #include "proto/number_text.h"
 #include "proto/series.h"
@@ -29,10 +27,9 @@ std::vector<InstantFile> segmentFiles(const std::vector<ManifestField>& fields,
   const Instants instants(fields, wanted, 1);
   std::vector<InstantFile> out;
   for (const double time : times) {
-    const auto found = std::ranges::find_if(
-        instants.times(), [&](double instant) { return isSameTime(instant, time); });
-    out.push_back(instants.fileAt(found == instants.times().end() ? std::nullopt
-                                                                  : std::optional<double>(*found)));
+    const auto found = placeOfTime(instants.times(), time);
+    out.push_back(
+        instants.fileAt(found ? std::optional<double>(instants.times()[*found]) : std::nullopt));
     out.back().time = time;
   }
   return out;

@@ -21,7 +21,7 @@ namespace qtet {
     const std::string& asked, const std::filesystem::path& log);
 
 /// The same of a segment of a list, for each of some of its times. An instant of the log is that of
-/// a time if they are the same to nine digits (isSameTime).
+/// a time as placeOfTime says.
 [[nodiscard]] std::vector<InstantFile> segmentFiles(const std::vector<ManifestField>& fields,
                                                     const std::vector<std::uint32_t>& wanted,
                                                     const std::vector<double>& times);

@@ -9,8 +9,9 @@
 #include "proto/field_key.h"
 #include "proto/number_text.h"
 #include "proto/utf8.h"
-#include "simplify/log/opened_log.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/read/options/time_steps.h"
+#include "simplify/read/read_mesh.h"
 #include "simplify/read/read_segments.h"
 
 namespace qtet {
@@ -59,18 +60,6 @@ class UnpublishedLogs {
   std::size_t count_ = 0;
 };
 
-/// The times of a log's instants, ascending, each once.
-Result<std::vector<double>> instantsIn(const fs::path& log) {
-  const Result<OpenedLog> opened = openLog(log);
-  if (!opened) return std::unexpected(opened.error());
-  std::vector<double> out;
-  for (const ManifestField& field : opened->manifest.fields)
-    if (const auto name = instantName(field.name)) out.push_back(name->time);
-  std::ranges::sort(out);
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
 /// "0,0.1,0.2"
 std::string timesText(const std::vector<double>& times) {
   std::string out;
@@ -78,9 +67,35 @@ std::string timesText(const std::vector<double>& times) {
   return out;
 }
 
-std::unexpected<Error> noTimes(const std::string& input) {
+bool hasInstants(const TetMesh& mesh) {
+  return std::ranges::any_of(
+      mesh.fields, [](const MeshField& field) { return instantName(field.name).has_value(); });
+}
+
+/// Checks before the work whether the log of an input without known times will have instants.
+Status checkInstants(const std::string& input, const ReadOptions& options) {
+  ReadOptions read = options;
+  read.namesTime = true;
+  const Result<ReadMesh> asked = readMesh(input, read);
+  if (!asked) return std::unexpected(asked.error());
+  if (hasInstants(asked->mesh)) return {};
+  read.time = "all";
+  const Result<ReadMesh> all = readMesh(input, read);
+  if (all && hasInstants(all->mesh))
+    return fail(ErrorCode::kBadValue, input +
+                                          " has several times, but `time` chooses one of them, "
+                                          "which needs no list of logs; give --time all, or -o "
+                                          "NAME.qtet");
   return fail(ErrorCode::kNotFound,
               input + " has no times, which a list of logs needs; give -o NAME.qtet");
+}
+
+std::unexpected<Error> otherTimes(const std::string& input, const std::vector<double>& asked,
+                                  const std::vector<double>& found) {
+  return fail(ErrorCode::kBadInput, input + " gave the times " + timesText(found) +
+                                        " where it was asked for " + timesText(asked) +
+                                        "; a list needs a step at each of its times: choose others "
+                                        "with `time`");
 }
 
 Status checkCount(std::size_t segments, const std::string& input) {
@@ -109,7 +124,10 @@ Result<std::vector<std::vector<double>>> segmentsOf(const SimplifyRequest& reque
   if (!out) return out;
   if (Status checked = checkCount(out->size(), request.input); !checked)
     return std::unexpected(checked.error());
-  if (out->empty()) out->emplace_back();
+  if (!out->empty()) return out;
+  if (Status checked = checkInstants(request.input, request.read); !checked)
+    return std::unexpected(checked.error());
+  out->emplace_back();
   return out;
 }
 
@@ -124,12 +142,12 @@ Status addSegment(const SimplifyRequest& request, std::vector<double> times, Unp
   const fs::path file = logs.next();
   Result<OrderedJson> made = makeLog(ofOne, file, progress);
   if (!made) return std::unexpected(made.error());
-  if (times.empty()) {
-    Result<std::vector<double>> found = instantsIn(file);
-    if (!found) return std::unexpected(found.error());
-    if (found->empty()) return noTimes(request.input);
-    times = std::move(*found);
-  }
+  const Result<OpenedLog> log = openLog(file);
+  if (!log) return std::unexpected(log.error());
+  const std::vector<double> found = instantTimes(log->manifest);
+  if (times.empty()) times = found;
+  // a log without instants holds for all times of its segment
+  if (!found.empty() && found != times) return otherTimes(request.input, times, found);
   for (const char* texts : {"notes", "warnings"})
     for (const OrderedJson& text : (*made)[texts])
       if (std::ranges::find(report[texts], text) == report[texts].end())

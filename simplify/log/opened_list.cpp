@@ -30,14 +30,6 @@ Result<std::string> textOf(const fs::path& path) {
   return out;
 }
 
-/// The times of the log's instants; empty: all of its fields hold for all times.
-std::vector<double> instantsOf(const Manifest& manifest) {
-  std::vector<double> out;
-  for (const ManifestField& field : manifest.fields)
-    if (const auto name = instantName(field.name)) out.push_back(name->time);
-  return out;
-}
-
 }  // namespace
 
 bool isSegmentList(const fs::path& path) { return path.extension() == kListEnding; }
@@ -53,6 +45,15 @@ Result<SegmentList> openList(const fs::path& path) {
   return out;
 }
 
+std::vector<double> instantTimes(const Manifest& manifest) {
+  std::vector<double> out;
+  for (const ManifestField& field : manifest.fields)
+    if (const auto name = instantName(field.name)) out.push_back(name->time);
+  std::ranges::sort(out);
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
 Result<OpenedLog> openSegment(const fs::path& list, const Segment& segment) {
   const fs::path path = list.parent_path() / segment.log;
   std::error_code code;
@@ -65,10 +66,9 @@ Result<OpenedLog> openSegment(const fs::path& list, const Segment& segment) {
     log.error().message = list.string() + " names it: " + log.error().message;
     return log;
   }
-  const std::vector<double> instants = instantsOf(log->manifest);
+  const std::vector<double> instants = instantTimes(log->manifest);
   for (const double time : segment.times) {
-    const auto isSame = [&](double instant) { return isSameTime(instant, time); };
-    if (!instants.empty() && std::ranges::none_of(instants, isSame))
+    if (!instants.empty() && !placeOfTime(instants, time))
       return fail(ErrorCode::kNotFound, list.string() + ": the log " + segment.log +
                                             " has no instant at time " + shortestText(time) +
                                             ", which the list names; one of them belongs to "

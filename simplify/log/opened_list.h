@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "proto/segment_list.h"
 #include "simplify/log/opened_log.h"
@@ -14,6 +15,9 @@ namespace qtet {
 /// Reads at most kMaxListBytes. Errors: not-found, io, readSegmentList's with the file's
 /// name.
 [[nodiscard]] Result<SegmentList> openList(const std::filesystem::path& path);
+
+/// The times of a log's instants, ascending, each once. Empty: its fields hold for all times.
+[[nodiscard]] std::vector<double> instantTimes(const Manifest& manifest);
 
 /// Opens the log of a segment of the list at `list`. Errors: openLog's with the list's name;
 /// not-found (there is no such log; it has instants, but not one of the segment's times).

@@ -6,7 +6,6 @@
 
 #include "proto/field_key.h"
 #include "proto/number_text.h"
-#include "proto/series.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/steps/step_reports.h"
@@ -18,7 +17,7 @@ Result<ChosenTimes> chosenTimesOf(const std::filesystem::path& path, const ReadO
   if (options.time != "all" && options.time.find_first_of(",:") == std::string::npos) return out;
   if (options.threshold) return out;
   ReadOptions first = options;
-  // a step that is asked for by its time stands for the others, which have the same cells
+  // all chosen steps have the same cells, so the first time of the list is read for all of them
   first.time = options.time.contains(',') && !options.time.contains(':')
                    ? options.time.substr(0, options.time.find(','))
                    : "first";
@@ -53,7 +52,7 @@ Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions&
   if (out && isOneMore)
     std::erase_if(out->mesh.fields, [&](const MeshField& field) {
       const auto name = instantName(field.name);
-      return name && isSameTime(name->time, *rest);
+      return name && name->time == *rest;
     });
   return out;
 }

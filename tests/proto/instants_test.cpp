@@ -15,6 +15,16 @@ TEST(Instants, timesThatDifferByLostDigitsAreTheSame) {
   EXPECT_FALSE(isSameTime(-1, 1));
 }
 
+TEST(Instants, theExactTimeIsMeantElseTheNearest) {
+  const std::vector<double> times = {0, 1700000000, 1700000001};
+  EXPECT_EQ(placeOfTime(times, 0), 0u);
+  EXPECT_EQ(placeOfTime(times, 1700000001), 2u);
+  EXPECT_EQ(placeOfTime(times, 1700000000.4), 1u);
+  EXPECT_EQ(placeOfTime(times, 1700000000.6), 2u);
+  EXPECT_FALSE(placeOfTime(times, 1));
+  EXPECT_FALSE(placeOfTime({}, 0));
+}
+
 TEST(Instants, aFileHasTheInstantsOfItsTimeAndTheFieldsWithoutTime) {
   std::vector<ManifestField> fields(5);
   fields[0].name = "T@1", fields[1].name = "p", fields[2].name = "T@0";

@@ -42,14 +42,19 @@ std::optional<StepRange> stepRange(std::string_view text) {
   return out;
 }
 
+/// The time that a range's end means; itself if there is none.
+double endAmong(const std::vector<double>& times, double end) {
+  const auto place = std::isfinite(end) ? placeOfTime(times, end) : std::nullopt;
+  return place ? times[*place] : end;
+}
+
 /// The steps from one time to another, every so many of them.
 std::vector<std::size_t> stepsOf(const StepRange& range, const std::vector<double>& times) {
   std::vector<std::size_t> out;
+  const double from = endAmong(times, range.from), to = endAmong(times, range.to);
   std::size_t within = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if ((times[i] < range.from && !isSameTime(times[i], range.from)) ||
-        (times[i] > range.to && !isSameTime(times[i], range.to)))
-      continue;
+    if (times[i] < from || times[i] > to) continue;
     if (within++ % range.every == 0) out.push_back(i);
   }
   return out;
@@ -64,10 +69,9 @@ std::expected<std::vector<std::size_t>, std::string> stepsAt(const std::string& 
     const std::string text = asked.substr(at, end - at);
     double wanted = 0;
     const bool isNumber = !text.empty() && readPart(std::string_view(text), wanted);
-    const auto step = std::ranges::find_if(
-        times, [&](double time) { return isNumber && isSameTime(time, wanted); });
-    if (step == times.end()) return std::unexpected(text);
-    out.push_back(static_cast<std::size_t>(step - times.begin()));
+    const auto step = isNumber ? placeOfTime(times, wanted) : std::nullopt;
+    if (!step) return std::unexpected(text);
+    out.push_back(*step);
   }
   std::ranges::sort(out);
   out.erase(std::unique(out.begin(), out.end()), out.end());

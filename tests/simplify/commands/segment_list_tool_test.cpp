@@ -31,10 +31,10 @@ class SegmentListTool : public Tool {
     }
     put("run.pvd", collection(0, kSteps));
   }
-  static std::string collection(int first, int end) {
+  static std::string collection(int first, int end, double begin = 0, double rate = 10) {
     std::string out = R"(<VTKFile type="Collection"><Collection>)";
     for (int step = first; step < end; ++step)
-      out += "<DataSet timestep=\"" + shortestText(step / 10.) + "\" file=\"step-" +
+      out += "<DataSet timestep=\"" + shortestText(begin + step / rate) + "\" file=\"step-" +
              std::to_string(step) + ".vtu\"/>";
     return out + "</Collection></VTKFile>";
   }
@@ -96,6 +96,20 @@ TEST_F(SegmentListTool, stepsWithTheSameCellsAreOneSegment) {
   EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), contentOf(folder_ / "run.qtet"));
 }
 
+TEST_F(SegmentListTool, timesInUnixSecondsStayApart) {
+  put("run.pvd", collection(2, 4, 1700000000, 1));  // the first one has other cells
+  makeList();
+  ASSERT_EQ(list().times(), (std::vector<double>{1700000002, 1700000003}));
+  ASSERT_EQ(list().segments.size(), 2u);
+  for (int step = 2; step < 4; ++step) {
+    const Ran ran =
+        run("extract run.json --ratio 1 -o out.vtu --time 170000000" + std::to_string(step));
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
+    EXPECT_NEAR(std::ranges::min(mesh.fields.at(0).values), 10 * step, 1e-2);
+  }
+}
+
 TEST_F(SegmentListTool, oneLogOfChangingCellsIsRefused) {
   expectFailure("simplify run.pvd --time all -o run.qtet", 1,
                 "the mesh at time 0.3 is not that of time 0");
@@ -123,6 +137,21 @@ TEST_F(SegmentListTool, aListNeedsTimesAndANameThatItCanHold) {
   EXPECT_EQ(filesLike("box."), std::vector<std::string>{"box.vtu"});
   expectFailure("simplify run.pvd --time all -o a..b.json", 1, "a..b.0.qtet");
   expectFailure("simplify run.pvd --time all -o run.json --time-statistics", 2, "-o NAME.qtet");
+}
+
+TEST_F(SegmentListTool, aListOfOneStepOfAGmshFileSaysHowToTakeAll) {
+  std::string text =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+      "$EndNodes\n$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n";
+  for (const char* time : {"0", "1"})
+    text += std::string("$NodeData\n1\n\"T\"\n1\n") + time +
+            "\n3\n0\n1\n4\n1 1\n2 2\n3 3\n4 4\n$EndNodeData\n";
+  put("steps.msh", text);
+  expectFailure("simplify steps.msh -o steps.json", 1, "--time all");
+  EXPECT_EQ(run("simplify steps.msh -o steps.json").err.find("has no times"), std::string::npos);
+  const Ran ran = run("simplify steps.msh --time all --measure none -o steps.json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(list("steps.json").times(), (std::vector<double>{0, 1}));
 }
 
 TEST_F(SegmentListTool, infoShowsEachSegment) {
@@ -154,6 +183,25 @@ TEST_F(SegmentListTool, extractTakesTheLogThatHasTheTime) {
                 "run.json has no time step 0.25; it has 0.1, 0.2, 0.3");
   expectFailure("extract run.json --ratio 1 -o out.vtu", 2, "--time T");
   expectFailure("extract run.json --ratio 1 --time all -o out.vtu", 2, "3 instants");
+}
+
+TEST_F(SegmentListTool, anErrorHoldsAtEachOfTheChosenTimes) {
+  ASSERT_EQ(run("simplify run.pvd --time 0.1:0.3 -o run.json").code, 0);
+  const auto levelAt = [&](const std::string& time, const std::string& output) {
+    const Ran ran = run("extract run.json --error T=1e-4 --time " + time + " --json -o " + output);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.json().value("level", 0u);
+  };
+  std::uint32_t worst = 0;
+  for (const std::string time : {"0.1", "0.2"}) {
+    const auto alone = run("extract run.0.qtet --json -o o.vtu --error T@" + time + "=1e-4").json();
+    EXPECT_EQ(levelAt(time, "o.vtu"), alone["level"].get<std::uint32_t>()) << time;
+    worst = std::max(worst, alone["level"].get<std::uint32_t>());
+  }
+  EXPECT_GE(levelAt("0.1:0.2", "worst.pvd"), worst);
+  EXPECT_EQ(run("extract run.json --error T=0.01 -o all.pvd").code, 0);
+  expectFailure("extract run.json --error T@0=0.01 -o at.pvd", 2, "--time T");
+  expectFailure("extract run.json --error u=0.01 -o u.pvd", 1, "u");
 }
 
 TEST_F(SegmentListTool, allTimesAreOneCollection) {

@@ -44,6 +44,19 @@ TEST(TimeSteps, timesBetweenCommasAreTakenInOrderAndOnce) {
   EXPECT_NE(stepsOf("0,7").error().message.find("no time step 7"), std::string::npos);
 }
 
+TEST(TimeSteps, anExactTimeIsPreferredToOneThatIsNear) {
+  const std::vector<double> unix{1700000000, 1700000001, 1700000002};
+  for (std::size_t step = 0; step < unix.size(); ++step) {
+    const std::string time = std::to_string(static_cast<long>(unix[step]));
+    EXPECT_EQ(stepsOf(time, unix).value(), Steps{step});
+    EXPECT_EQ(stepsOf(time + ":" + time, unix).value(), Steps{step});
+  }
+  EXPECT_EQ(stepsOf("1700000001,1700000002", unix).value(), (Steps{1, 2}));
+  EXPECT_EQ(stepsOf("1700000001.4", unix).value(), Steps{1}) << "the nearest";
+  EXPECT_EQ(stepsOf("1700000000.6", unix).value(), Steps{1});
+  EXPECT_EQ(stepsOf("1700000003.9", unix).error().code, ErrorCode::kNotFound);
+}
+
 TEST(TimeSteps, aRangeOfOtherPartsIsRefused) {
   for (const char* asked :
        {"a:", ":b", "::0", "::-1", "::1.5", "0:1:2:3", "nan:", "0 :1", "::99999999999999999999"}) {
