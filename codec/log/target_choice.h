@@ -21,9 +21,9 @@ struct Manifest;
 [[nodiscard]] Result<std::uint32_t> levelFor(const Target& target, const Manifest& manifest,
                                              const LogIndex& index);
 
-/// The coarsest level at which the rms error of each of these fields is known to be at most `error`,
-/// or the last one. Errors: not-found (no level's error is known). REQUIRES: numbers of fields of
-/// the manifest.
+/// The coarsest level at which the rms error of each of these fields is known to be at most
+/// `error`, or the last one. Errors: not-found (no level's error is known). REQUIRES: numbers of
+/// fields of the manifest.
 [[nodiscard]] Result<std::uint32_t> levelOfFieldErrors(double error,
                                                        std::span<const std::uint32_t> fields,
                                                        const Manifest& manifest);

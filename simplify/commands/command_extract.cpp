@@ -41,8 +41,8 @@ Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& man
   return levelFor(targetOf(parsed, manifest), manifest, index);
 }
 
-/// The fields of a segment that NAME of `--error` means at these times: those of points if there are
-/// some, and also those without time. Throws UsageError where NAME has a time.
+/// The fields of a segment that NAME of `--error` means at these times: those of points if there
+/// are some, and also those without time. Throws UsageError where NAME has a time.
 std::vector<std::uint32_t> fieldsAt(const Manifest& manifest, const std::string& name,
                                     const std::vector<double>& times) {
   if (instantName(name))
