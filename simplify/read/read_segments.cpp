@@ -35,8 +35,8 @@ Result<std::vector<std::vector<double>>> segmentTimes(const std::filesystem::pat
   if (!steps) return std::unexpected(steps.error());
   CellMesh last;
   for (const std::size_t step : *steps) {
-    Result<CellMesh> mesh =
-        step == 0 ? std::move(first) : readStep(path, options, shortestText(times[step]), report);
+    Result<CellMesh> mesh = step == 0 ? std::exchange(first, CellMesh())
+                                      : readStep(path, options, shortestText(times[step]), report);
     if (!mesh) return std::unexpected(mesh.error());
     if (out.empty() || !haveSameCells(last, *mesh)) out.emplace_back();
     out.back().push_back(times[step]);
