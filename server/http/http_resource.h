@@ -39,8 +39,4 @@ struct Variants {
 [[nodiscard]] Reply documentReply(const RequestView& request, const Document& document,
                                   std::shared_ptr<const void> owner);
 
-[[nodiscard]] inline ByteView viewOf(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
 }  // namespace qtet

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "proto/text_bytes.h"
 #include "server/http/deadline.h"
 #include "server/http/http_resource.h"
 #include "server/routes/access_routes.h"

@@ -1,5 +1,3 @@
-#include <filesystem>
-
 #include "proto/limits.h"
 #include "simplify/commands/command_fusion.h"
 #include "simplify/commands/command_line.h"
@@ -8,6 +6,7 @@
 #include "simplify/commands/progress.h"
 #include "simplify/commands/simplified_list.h"
 #include "simplify/commands/simplified_log.h"
+#include "simplify/log/opened_list.h"
 
 namespace qtet {
 namespace {
@@ -22,10 +21,6 @@ Algorithm algorithmOf(const std::string& name) {
   if (name == "qtet") return Algorithm::kQtet;
   if (name == "paper") return Algorithm::kPaper;
   throw UsageError("--algorithm '" + name + "' is not known; give qtet or paper");
-}
-
-bool isList(const SimplifyRequest& request) {
-  return std::filesystem::path(request.output).extension() == kListEnding;
 }
 
 SimplifyRequest requestOf(const ParsedWords& parsed) {
@@ -47,7 +42,7 @@ SimplifyRequest requestOf(const ParsedWords& parsed) {
   options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   request.read.originalIds = parsed.has("original-ids");
   options.timeStatistics = parsed.has("time-statistics");
-  if (options.timeStatistics && isList(request))
+  if (options.timeStatistics && isSegmentList(request.output))
     throw UsageError(
         "--time-statistics needs values of all steps at the same points, which a list of logs does "
         "not have; give -o NAME.qtet, or leave it out");
@@ -116,15 +111,17 @@ int runSimplify(const Words& words, Console& console) {
     return reportFailure(checked.error(), asJson, console);
 
   Progress progress(console);
-  const Result<OrderedJson> report =
-      isList(request) ? makeList(request, progress) : makeLog(request, request.output, progress);
+  const Result<OrderedJson> report = isSegmentList(request.output)
+                                         ? makeList(request, progress)
+                                         : makeLog(request, request.output, progress);
   progress.clear();
   if (!report) return reportFailure(report.error(), asJson, console);
   for (const OrderedJson& note : (*report)["notes"]) console.note(note.get<std::string>());
   if (asJson)
     printJson(*report, console);
   else
-    isList(request) ? printMadeList(*report, console.out) : printMadeLog(*report, console.out);
+    isSegmentList(request.output) ? printMadeList(*report, console.out)
+                                  : printMadeLog(*report, console.out);
   for (const OrderedJson& warning : (*report)["warnings"]) console.warn(warning.get<std::string>());
   return kExitOk;
 }

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "codec/files/atomic_file.h"
+#include "proto/text_bytes.h"
 #include "simplify/commands/extract_times.h"
 
 namespace qtet {
@@ -44,10 +45,7 @@ Status InstantCollection::add(std::optional<double> time, ByteView bytes) {
 
 Status InstantCollection::finish() {
   const std::string text = collectionText(written_);
-  if (Status s = writeFileAtomically(
-          file_, ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-      !s)
-    return s;
+  if (Status s = writeFileAtomically(file_, viewOf(text)); !s) return s;
   bytes_ += text.size();
   ownsFolder_ = false;
   return {};

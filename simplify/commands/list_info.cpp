@@ -6,7 +6,6 @@
 #include "proto/number_text.h"
 #include "simplify/commands/columns.h"
 #include "simplify/log/opened_list.h"
-#include "simplify/read/options/time_steps.h"
 
 namespace qtet {
 namespace {

@@ -8,9 +8,9 @@
 #include "codec/files/atomic_file.h"
 #include "proto/field_key.h"
 #include "proto/number_text.h"
+#include "proto/text_bytes.h"
 #include "proto/utf8.h"
 #include "simplify/log/opened_list.h"
-#include "simplify/read/options/time_steps.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_segments.h"
 
@@ -157,10 +157,6 @@ Status addSegment(const SimplifyRequest& request, std::vector<double> times, Unp
   return {};
 }
 
-ByteView bytesOf(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
 }  // namespace
 
 Result<OrderedJson> makeList(const SimplifyRequest& request, Progress& progress) {
@@ -184,7 +180,7 @@ Result<OrderedJson> makeList(const SimplifyRequest& request, Progress& progress)
         request.output + ": its list of logs is none that can be read: " + text.error().message);
   report["times"] = list.times();
   if (Status s = logs.publish(); !s) return std::unexpected(s.error());
-  if (Status s = writeFileAtomically(request.output, bytesOf(*text)); !s)
+  if (Status s = writeFileAtomically(request.output, viewOf(*text)); !s)
     return std::unexpected(s.error());
   return report;
 }

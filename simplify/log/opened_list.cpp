@@ -8,7 +8,6 @@
 
 #include "proto/number_text.h"
 #include "proto/series.h"
-#include "simplify/read/options/time_steps.h"
 
 namespace qtet {
 namespace {

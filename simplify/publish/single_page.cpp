@@ -5,6 +5,7 @@
 
 #include "codec/log/log_index.h"
 #include "codec/picture/poster_page.h"
+#include "proto/text_bytes.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"
 #include "simplify/publish/site_folder.h"
@@ -24,10 +25,6 @@ constexpr const char* kPolicy =
 constexpr std::uint64_t kOverhead = 8 << 10;
 
 std::string textOf(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
-
-ByteView viewOf(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
 
 /// RFC 4648, section 4.
 std::string base64(ByteView bytes) {

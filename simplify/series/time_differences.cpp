@@ -66,8 +66,8 @@ class Chooser {
  public:
   Chooser(FusionHistory& history, const Series& series, std::span<const std::size_t> rows)
       : history_(history), series_(series), rows_(rows) {
-    for (const Fusion& fusion : history.fusions) fused_.push_back(fusion.fused);
-    if (!fused_.empty()) firstFused_ = *std::ranges::min_element(fused_);
+    if (!history.fusions.empty())
+      firstFused_ = std::ranges::min_element(history.fusions, {}, &Fusion::fused)->fused;
   }
 
   void choose(const InstantStep& step) {
@@ -182,9 +182,9 @@ class Chooser {
     const FieldInfo& field = history_.fields[f_];
     const std::int64_t end = std::int64_t{1} << field.bits;
     std::vector<std::int32_t>& values = history_.values[f_];
-    for (const VertexId fused : fused_)
-      for (std::size_t i = fused * field.components;
-           i < (fused + std::size_t{1}) * field.components; ++i) {
+    for (const Fusion& fusion : history_.fusions)
+      for (std::size_t c = 0; c < field.components; ++c) {
+        const std::size_t i = std::size_t{fusion.fused} * field.components + c;
         const std::int64_t left = differenceOf(history_, f_, best_, i), to = values[i] - left;
         if (std::abs(left) <= tolerance && to >= 0 && to < end)
           values[i] = static_cast<std::int32_t>(to);
@@ -194,9 +194,8 @@ class Chooser {
   FusionHistory& history_;
   const Series& series_;
   std::span<const std::size_t> rows_;
-  std::vector<VertexId> fused_;
-  VertexId firstFused_ = 0;
-  std::size_t f_ = 0;  // the field that is predicted
+  VertexId firstFused_ = 0;  // fused vertices come behind those of the last level
+  std::size_t f_ = 0;        // the field that is predicted
   TimePrediction best_;
   std::uint64_t least_ = 0;
   std::size_t anchorsInARow_ = 0;

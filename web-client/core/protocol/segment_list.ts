@@ -2,6 +2,7 @@
 // instants of all of them are one series.
 
 import {QtetError} from './errors';
+import {nearestTo} from './series';
 
 export const kMaxSegments = 1024;
 export const kMaxListBytes = 4 << 20;
@@ -60,22 +61,7 @@ export function readSegmentList(value: unknown, sizeBytes: number): SegmentList 
 
 /** The instant nearest to the time, the earlier one of two; null: the first one. */
 export function listedInstant({instants}: SegmentList, time: number | null): ListedInstant {
-  const wanted = time ?? -Infinity;
-  const above = firstFrom(instants, wanted);
-  const [before, after] = [instants[above - 1], instants[above]];
-  if (!before || !after) return (before ?? after)!;
-  return after.time - wanted < wanted - before.time ? after : before;
-}
-
-/** The index of the first instant that is not before the time; their count if there is none. */
-function firstFrom(instants: readonly ListedInstant[], time: number): number {
-  let [low, high] = [0, instants.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (instants[middle]!.time < time) low = middle + 1;
-    else high = middle;
-  }
-  return low;
+  return instants[nearestTo(instants, time ?? -Infinity)]!;
 }
 
 function readLog(log: unknown, at: string): string {

@@ -15,6 +15,15 @@ export function isSameTime(a: number, b: number): boolean {
   return Math.abs(a - b) <= kNearTime * Math.max(Math.abs(a), Math.abs(b));
 }
 
+/** The number of the time nearest to the one wanted, the earlier one of two; 0 for -Infinity. */
+export function nearestTo(times: readonly {time: number}[], wanted: number): number {
+  let best = 0;
+  times.forEach(({time}, i) => {
+    if (Math.abs(time - wanted) < Math.abs(times[best]!.time - wanted)) best = i;
+  });
+  return best;
+}
+
 /** The parts of NAME@TIME; null for a name that does not end in "@" and a finite number. */
 export function instantName(name: string): ({series: string} & Time) | null {
   const at = name.lastIndexOf('@');

@@ -1,7 +1,7 @@
 // The time of a series: play, step, loop, and which instants are here.
 
 import type {FieldInfo} from '../../core/protocol/fields';
-import {instantsOf, isSameTime, shownInstant} from '../../core/protocol/series';
+import {instantsOf, isSameTime, nearestTo, shownInstant} from '../../core/protocol/series';
 import type {StreamState} from '../../core/session/worker_messages';
 import {find, onClick, setText} from '../page/find';
 import type {Attributes} from '../page/page';
@@ -301,14 +301,6 @@ export class TimeBar {
   private get speed(): HTMLSelectElement {
     return find<HTMLSelectElement>(this.bar, 'select');
   }
-}
-
-function nearestTo(times: readonly {time: number}[], wanted: number): number {
-  let best = 0;
-  times.forEach(({time}, i) => {
-    if (Math.abs(time - wanted) < Math.abs(times[best]!.time - wanted)) best = i;
-  });
-  return best;
 }
 
 /** By time the fields of a series (-1: none): those to fetch while the one at `at` is shown. */
