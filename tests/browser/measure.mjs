@@ -4,10 +4,11 @@
 // FOLDER holds comb.vtu and post-welded.vtu.
 
 import {execFileSync} from 'node:child_process';
-import {existsSync, mkdirSync, readdirSync, readFileSync, statSync} from 'node:fs';
+import {existsSync, mkdirSync, statSync} from 'node:fs';
 import {join} from 'node:path';
 import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
+import {graphicsSeconds, rendererMegabytes, workerSeconds} from './browser_processes.mjs';
 import {PoorLine} from './poor_line.mjs';
 import {Server} from './programs.mjs';
 
@@ -38,60 +39,6 @@ const row = (what, bar, value) => rows.push(`| ${what} | ${bar} | ${value} |`);
 const server = new Server(options.bin, folder, options.viewer);
 await server.start();
 const browser = await Browser.launch(options.out);
-
-/**
- * The browser's processes of this kind that this process has started: process id and resident
- * megabytes.
- */
-function browsers(kind) {
-  const processes = readdirSync('/proc')
-    .filter((name) => /^\d+$/.test(name))
-    .flatMap((pid) => {
-      try {
-        const status = readFileSync(`/proc/${pid}/status`, 'utf8');
-        return [
-          {
-            pid,
-            parent: /PPid:\s+(\d+)/.exec(status)[1],
-            resident: Number(/VmRSS:\s+(\d+)/.exec(status)?.[1] ?? 0) / 1024,
-            words: readFileSync(`/proc/${pid}/cmdline`, 'utf8'),
-          },
-        ];
-      } catch {
-        return []; // the process has ended
-      }
-    });
-  const parents = new Map(processes.map(({pid, parent}) => [pid, parent]));
-  const isOurs = (pid) =>
-    pid === String(process.pid) || (parents.has(pid) && isOurs(parents.get(pid)));
-  return processes.filter(({pid, words}) => words.includes(`--type=${kind}`) && isOurs(pid));
-}
-
-const rendererMegabytes = () => Math.max(0, ...browsers('renderer').map(({resident}) => resident));
-
-const kTicks = 100; // per second: USER_HZ
-const ticksOf = (path) =>
-  readFileSync(path, 'utf8')
-    .replace(/.*\) /, '')
-    .split(' ')
-    .slice(11, 13)
-    .reduce((sum, text) => sum + Number(text), 0);
-
-/** The processor time of the graphics. */
-const graphicsSeconds = () =>
-  browsers('gpu-process').reduce((sum, {pid}) => sum + ticksOf(`/proc/${pid}/stat`) / kTicks, 0);
-
-/** The processor time of the pages' workers, without other programs on this machine. */
-function workerSeconds() {
-  let ticks = 0;
-  for (const {pid} of browsers('renderer')) {
-    for (const thread of readdirSync(`/proc/${pid}/task`)) {
-      const path = `/proc/${pid}/task/${thread}/stat`;
-      if (/\(DedicatedWorker/.test(readFileSync(path, 'utf8'))) ticks += ticksOf(path);
-    }
-  }
-  return ticks / kTicks;
-}
 
 /**
  * The longest tasks of the page's thread between opening and the whole mesh, in time and in

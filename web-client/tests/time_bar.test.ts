@@ -5,6 +5,7 @@ import type {Manifest} from '../core/protocol/manifest';
 import {markSeries} from '../core/protocol/series';
 import {listedInstant, readSegmentList} from '../core/protocol/segment_list';
 import type {Snapshot, StreamState} from '../core/session/worker_messages';
+import {untilBeat} from '../viewer/page/beat';
 import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
 import {fieldsAhead, TimeBar} from '../viewer/panels/time_bar';
 
@@ -40,6 +41,7 @@ function field(name: string): FieldInfo {
 
 let mesh: ShownMesh;
 let opening: StreamState | null;
+let isHurried: boolean;
 let bar: TimeBar;
 let root: Part;
 let attributes: Map<string, string>;
@@ -51,6 +53,7 @@ beforeEach(() => {
   vi.useFakeTimers();
   mesh = new ShownMesh();
   opening = null;
+  isHurried = false;
   const fields = ['T@0', 'T@1', 'S@0', 'S@1', 'p'].map(field);
   markSeries(fields);
   mesh.manifest = {fields} as Manifest;
@@ -79,6 +82,9 @@ beforeEach(() => {
       },
       get opening() {
         return opening;
+      },
+      get isHurried() {
+        return isHurried;
       },
       apply,
       timeChanged: (...change) => {
@@ -180,6 +186,22 @@ test('tenInstantsASecondPassAtTheFirstSpeed', () => {
     drawn();
   }
   expect(attributes.get('time')).toBe('5');
+});
+
+test.each([
+  [false, ['t = 0', 't = 1', 't = 2', 't = 3']],
+  [true, ['t = 0', 't = 0', 't = 1', 't = 1']],
+])('whilePlayingTheBarHasThePicturesTimeAndOverSlowGraphicsAtTheBeat', (slow, times) => {
+  isHurried = slow;
+  showSeries(kAll);
+  vi.advanceTimersByTime(untilBeat() - 50);
+  bar.toggle();
+  const shown = times.map((_, i) => {
+    vi.advanceTimersByTime(125);
+    if (i > 0) drawn();
+    return root.querySelector('.time').querySelector('output').textContent;
+  });
+  expect(shown).toEqual(times);
 });
 
 test('instantsWhoseTimePassesWhileOneIsDrawnAreLeftOut', () => {

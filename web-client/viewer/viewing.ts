@@ -6,6 +6,7 @@ import type {CoarseCells} from '../core/picture/volume';
 import type {Client} from '../core/session/client';
 import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
+import {kMovingMs} from '../webgl/frame_budget';
 import type {View} from '../webgl/view';
 import {Graphics, type ViewStart} from './graphics';
 import {CameraWatch} from './page/camera_watch';
@@ -53,6 +54,8 @@ export class Viewing implements LaterHost {
   private shownSettings = '';
   /** The `complete` event has been dispatched. */
   private completeTold = false;
+  /** The graphics are too slow for what plays: the page spares them what it can. */
+  isHurried = false;
 
   /** REQUIRES: the page's root holds the markup. */
   constructor(
@@ -137,6 +140,7 @@ export class Viewing implements LaterHost {
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     view?.setPlaying(this.isPlaying);
+    if (!this.isPlaying) this.hurry(false);
     const {limit} = this.settings;
     if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
     this.showDisplay();
@@ -155,6 +159,12 @@ export class Viewing implements LaterHost {
 
   get isPlaying(): boolean {
     return this.later?.time.isPlaying === true;
+  }
+
+  private hurry(isHurried: boolean): void {
+    if (isHurried === this.isHurried) return;
+    this.isHurried = isHurried;
+    this.page.element.classList.toggle('hurried', isHurried);
   }
 
   private startPlaying(): void {
@@ -313,6 +323,7 @@ export class Viewing implements LaterHost {
         page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
         mesh.drawn = snapshot.statistics;
         page.element.classList.add('loaded');
+        if (this.isPlaying && drawingMs > kMovingMs) this.hurry(true);
         void this.loadLater();
         this.tellComplete();
       },

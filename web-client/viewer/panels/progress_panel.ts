@@ -6,6 +6,7 @@ import type {Statistics} from '../../core/decode/statistics';
 import {errorOfLevel, type Limit} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {StreamState} from '../../core/session/worker_messages';
+import {untilBeat} from '../page/beat';
 import {find, onClick, setText} from '../page/find';
 import {formatBytes, formatCount, formatDuration, formatError, percentOf} from '../page/format';
 import type {ErrorCurve} from './error_curve';
@@ -22,8 +23,6 @@ const kStateTexts: Record<StreamState, string> = {
 const kOnTheWay: readonly StreamState[] = ['connecting', 'streaming', 'complete'];
 /** Screen readers get a message at every multiple of so many per cent. */
 const kAnnouncedPercent = 25;
-/** Nobody reads figures that change faster, and each change makes the browser redraw the page. */
-const kFiguresMs = 250;
 /**
  * The rate covers the last so many milliseconds: short enough to follow the line, long enough to be
  * calm.
@@ -37,7 +36,6 @@ export class ProgressPanel {
   private readonly root: HTMLElement;
   private foldTimer: ReturnType<typeof setTimeout> | undefined;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private drawnAt = -kFiguresMs;
   private statistics: Statistics | null = null;
   private manifest: Manifest | null = null;
   private fields: number[] = [];
@@ -79,14 +77,12 @@ export class ProgressPanel {
     this.limit = limit;
   }
 
-  /** Draws the figures soon, and only once for a burst of changes. */
+  /** Draws the first figures at once, later ones at the beat. */
   show(statistics: Statistics): void {
+    const delayMs = this.statistics ? untilBeat() : 0;
     this.statistics = statistics;
     this.arrivals.push({at: performance.now(), bytes: statistics.bytes});
-    this.timer ??= setTimeout(
-      () => this.draw(),
-      Math.max(0, this.drawnAt + kFiguresMs - performance.now()),
-    );
+    this.timer ??= setTimeout(() => this.draw(), delayMs);
   }
 
   /** `isNext`: of another segment. While it is on its way, the card stays as it is, and silent. */
@@ -131,7 +127,6 @@ export class ProgressPanel {
   private draw(): void {
     clearTimeout(this.timer);
     this.timer = undefined;
-    this.drawnAt = performance.now();
     if (!this.statistics) return;
     const {bytes, bytesNeeded, tetrahedra, total} = this.statistics;
     const percent = percentOf(bytes, bytesNeeded);

@@ -1,11 +1,9 @@
 // The figures about the pictures: their cost, and the rate of new cells.
 
 import type {Statistics} from '../../core/decode/statistics';
+import {untilBeat} from '../page/beat';
 import {find, setText} from '../page/find';
 import {formatCount} from '../page/format';
-
-/** Nobody reads times that change faster, and each change makes the browser redraw the page. */
-const kTimesMs = 500;
 
 export class StatisticsPanel {
   /** The previous picture; there was none if `at` is 0. */
@@ -30,7 +28,7 @@ export class StatisticsPanel {
     }
     this.last = {at: now, cells: statistics.tetrahedra};
     this.times = {frameMs, costMs};
-    this.timer ??= setTimeout(() => this.showTimes(), kTimesMs);
+    this.timer ??= setTimeout(() => this.showTimes(), untilBeat());
     this.write('.level', `${statistics.level} of ${statistics.lastLevel}`);
     this.write('.vertices', formatCount(statistics.vertices));
     this.write('.triangles', formatCount(statistics.boundaryTriangles));

@@ -3,6 +3,7 @@
 import type {FieldInfo} from '../../core/protocol/fields';
 import {instantsOf, isSameTime, nearestTo, shownInstant} from '../../core/protocol/series';
 import type {StreamState} from '../../core/session/worker_messages';
+import {untilBeat} from '../page/beat';
 import {find, onClick, setText} from '../page/find';
 import type {Attributes} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
@@ -23,6 +24,8 @@ const kPatienceMs = 1000;
 const kAhead = 32;
 const kSpeeds = [0.5, 1, 2, 4];
 
+const kHere = 'currentcolor';
+const kNone = 'transparent';
 const kPlay = 'M6.5 4.5v11l9-5.5z';
 const kPause = 'M7.5 5v10M12.5 5v10';
 
@@ -43,6 +46,8 @@ export interface TimeHost {
   readonly mesh: ShownMesh;
   /** The state of another segment that is opened, before it has a picture; null: none is. */
   readonly opening: StreamState | null;
+  /** The graphics are too slow for what plays. */
+  readonly isHurried: boolean;
   /** Brings the picture in line with the bar. */
   apply(): void;
   /** The bar shows another instant, or begins or ends to play. */
@@ -57,10 +62,16 @@ export class TimeBar {
   /** For each of them, by time: its field, -1 for none. */
   private tracks: number[][] = [];
   private at = 0;
+  /** The instant whose time the bar shows: while it plays, that of the picture. */
+  private seen = 0;
   private timer: ReturnType<typeof setInterval> | undefined;
   private waitingSince = 0;
   /** When the next instant is due. */
   private dueAt = 0;
+  /** The bar shows the time at the next beat. */
+  private beat: ReturnType<typeof setTimeout> | undefined;
+  /** The instants that are here, as shown; null: none are shown yet. */
+  private here: string | null = null;
   /** The shown instant was not here when it was asked for. */
   private isLate = false;
   /** The list of segments, or else the manifest, that `times` are of. */
@@ -122,14 +133,26 @@ export class TimeBar {
     this.at = nearestTo(this.times, wanted);
     const ahead = (track: number[]): number[] => fieldsAhead(track, this.at);
     mesh.playing = this.isPlaying ? this.tracks.flatMap(ahead) : [];
-    const {slider} = this;
-    slider.max = String(this.times.length - 1);
-    slider.value = String(this.at);
-    const {text} = this.times[this.at]!;
-    slider.setAttribute('aria-valuetext', text);
-    setText(find(this.bar, 'output'), `t = ${text}`);
+    this.slider.max = String(this.times.length - 1);
     this.follow();
     this.tell();
+  }
+
+  /** Over slow graphics the time changes at the beat. */
+  private followTime(): void {
+    if (!this.isPlaying || this.isOnScreen || this.isLate) this.seen = this.at;
+    if (!this.isPlaying || !this.host.isHurried) this.showTime();
+    else this.beat ??= setTimeout(() => this.showTime(), untilBeat());
+  }
+
+  private showTime(): void {
+    clearTimeout(this.beat);
+    this.beat = undefined;
+    const {slider} = this;
+    const {text} = this.times[this.seen]!;
+    slider.value = String(this.seen);
+    slider.setAttribute('aria-valuetext', text);
+    setText(find(this.bar, 'output'), `t = ${text}`);
   }
 
   /** The host may change the time at once. */
@@ -161,18 +184,29 @@ export class TimeBar {
   /** Must be called when more is here, or on the screen. */
   follow(): void {
     if (this.bar.hidden) return;
-    const last = this.times.length - 1;
-    const shares = this.times.flatMap((_, i) => {
-      if (!this.isHere(i)) return [];
-      const [from, to] = [i - 0.5, i + 0.5].map(
-        (place) => `${(100 * Math.min(Math.max(place, 0), last)) / last}%`,
-      );
-      return [`transparent ${from}, currentcolor ${from} ${to}, transparent ${to}`];
-    });
-    find(this.bar, '.here').style.backgroundImage =
-      shares.length > 0 ? `linear-gradient(to right, ${shares.join(', ')})` : 'none';
+    this.followTime();
+    this.showHere();
     this.bar.classList.toggle('waits', !this.isOnScreen && !this.isHere(this.at));
     if (this.isPlaying) this.tick();
+  }
+
+  /** Draws the runs of instants that are here. */
+  private showHere(): void {
+    const last = this.times.length - 1;
+    const place = (at: number): string =>
+      `${(100 * Math.min(Math.max(at - 0.5, 0), last)) / last}%`;
+    const isHere = [...this.times.map((_, i) => this.isHere(i)), false];
+    const edges = isHere.flatMap((here, i) =>
+      here === (isHere[i - 1] ?? false) ? [] : [place(i)],
+    );
+    const colors = edges.map((edge, i) => {
+      const [before, behind] = i % 2 === 0 ? [kNone, kHere] : [kHere, kNone];
+      return `${before} ${edge}, ${behind} ${edge}`;
+    });
+    const here = colors.length > 0 ? `linear-gradient(to right, ${colors.join(', ')})` : 'none';
+    if (here === this.here) return;
+    this.here = here;
+    find(this.bar, '.here').style.backgroundImage = here;
   }
 
   toggle(): void {

@@ -1,0 +1,9 @@
+// The beat of the page's figures. Nobody reads figures that change faster. Each change makes the
+// browser compose the page anew, which costs slow graphics a frame: figures change together.
+
+export const kBeatMs = 250;
+
+/** Milliseconds until figures change next. */
+export function untilBeat(): number {
+  return kBeatMs - (performance.now() % kBeatMs);
+}
