@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "proto/field_key.h"
+#include "proto/field_list.h"
 #include "proto/json_reader.h"
 #include "proto/level_error_json.h"
 
@@ -24,11 +25,10 @@ std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_vi
 }
 
 Error noSuchField(const Manifest& manifest, std::string_view key) {
-  std::string keys;
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
-    keys += (f == 0 ? "" : ", ") + fieldKey(manifest, f);
-  return {ErrorCode::kNotFound, "the log has no field '" + std::string(key) +
-                                    "'; it has: " + (keys.empty() ? "none" : keys)};
+  std::vector<std::string> keys;
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f) keys.push_back(fieldKey(manifest, f));
+  return {ErrorCode::kNotFound,
+          "the log has no field '" + std::string(key) + "'; it has: " + fieldList(keys)};
 }
 
 std::array<double, 6> focusCorners(const Manifest& manifest) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "proto/field_key.h"
+#include "proto/field_list.h"
 #include "proto/limits.h"
 #include "proto/utf8.h"
 
@@ -19,10 +20,10 @@ const std::string kLabelsInstead =
     "number its different values 0, 1, 2 ... and store these labels as int32";
 
 std::string namesOf(const std::vector<MeshField>& fields, const std::vector<std::string>& others) {
-  std::string out;
-  for (const MeshField& field : fields) out += (out.empty() ? "" : ", ") + field.name;
-  for (const std::string& name : others) out += (out.empty() ? "" : ", ") + name;
-  return out.empty() ? "none" : out;
+  std::vector<std::string> out;
+  for (const MeshField& field : fields) out.push_back(field.name);
+  out.insert(out.end(), others.begin(), others.end());
+  return fieldList(out);
 }
 
 bool isWithin(const Threshold& threshold, const MeshField& field, std::size_t tuple) {
