@@ -9,6 +9,7 @@ import {parseArgs} from 'node:util';
 import {Browser, kDesktop, kPhone} from './browser.mjs';
 import {makeLog, Server} from './programs.mjs';
 import {SlowLine} from './slow_line.mjs';
+import {drawSheet} from './sheet.mjs';
 import {threeHosts} from './three_hosts.mjs';
 
 const {values: options, positionals} = parseArgs({
@@ -21,7 +22,6 @@ if (!options.bin || !options.viewer || !options.out) {
 }
 const kLine = {bytesPerSecond: 50000, roundTripMs: 300};
 const kSeconds = [1, 2, 4, 8];
-const kWidth = 300; // pixels of a picture on the sheet
 
 /** The page as it was painted so many seconds after the navigation: JPEGs, as data addresses. */
 async function film(port, path) {
@@ -50,29 +50,6 @@ async function film(port, path) {
   }
 }
 
-/** `rows`: [title, pictures], `titles` stand over the columns. */
-async function sheet(name, titles, rows, heights = titles.map(() => 188)) {
-  const browser = await Browser.launch(options.out);
-  const page = await browser.blank({viewport: {width: 100, height: 100}});
-  const cell = (picture, i) =>
-    `<td>${picture ? `<img src="${picture}" style="height:${heights[i]}px">` : '<i></i>'}</td>`;
-  const row = ([title, pictures]) =>
-    `<tr><th colspan="${titles.length}">${title}</th></tr>` +
-    `<tr>${pictures.map(cell).join('')}</tr>`;
-  await page.setContent(`<style>
-      body { margin: 0; font: 14px system-ui, sans-serif; width: max-content; background: #fff; }
-      th { font-weight: 600; text-align: left; padding: 4px; color: #333; }
-      i { display: block; width: ${kWidth}px; height: 188px; background: #f2f2f2; }
-      td { padding: 2px 4px; } img { display: block; }
-    </style><table><tr>${titles.map((title) => `<th>${title}</th>`).join('')}</tr>
-${rows.map(row).join('')}</table>`);
-  await page.waitForFunction(() => [...document.images].every((image) => image.complete));
-  const path = join(options.out, `${name}.jpg`);
-  await page.locator('table').screenshot({path, type: 'jpeg', quality: 80});
-  await browser.close();
-  console.log(path);
-}
-
 async function filmOfFin() {
   const {name, folder} = makeLog(options.bin, 'fin', options.out);
   const hosts = await threeHosts({...options, logs: [join(folder, `${name}.qtet`)]});
@@ -80,7 +57,7 @@ async function filmOfFin() {
   for (const {what, port} of hosts) rows.push([what, await film(port, `?mesh=${name}`)]);
   for (const host of hosts) host.close();
   const titles = kSeconds.map((seconds) => `${seconds} s`);
-  await sheet('film', titles, rows);
+  await drawSheet(options.out, 'film', titles, rows);
 }
 
 /** Each mesh as it opens, once it is whole. */
@@ -112,7 +89,7 @@ async function meshes() {
   }
   await browser.close();
   server.kill();
-  await sheet('meshes', ['light', 'dark', 'phone'], rows, [240, 240, 240]);
+  await drawSheet(options.out, 'meshes', ['light', 'dark', 'phone'], rows, 240);
 }
 
 await filmOfFin();
