@@ -7,8 +7,8 @@ const kWidth = 300; // of a place whose picture is missing
 const kHeight = 188;
 
 /**
- * Writes OUT/NAME.jpg. `titles` stand over the columns; `rows` are [title, pictures], data addresses
- * or null; each picture is `height` pixels high.
+ * Writes OUT/NAME.jpg. `titles` stand over the columns. `rows` are [title, pictures]. A picture is
+ * a data address or null; each is `height` pixels high.
  */
 export async function drawSheet(out, name, titles, rows, height = kHeight) {
   const browser = await Browser.launch(out);
