@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <exception>
 #include <string>
 
@@ -76,14 +77,15 @@ Result<std::vector<std::int32_t>> decode(ByteView bytes, std::uint32_t component
       cloud.value()->num_attributes() == 1 ? cloud.value()->attribute(0) : nullptr;
   if (attribute == nullptr || attribute->data_type() != draco::DT_INT32 ||
       static_cast<std::uint32_t>(attribute->num_components()) != components ||
-      cloud.value()->num_points() != tuples || attribute->size() < tuples)
+      cloud.value()->num_points() != tuples || attribute->size() < tuples ||
+      !attribute->is_mapping_identity() ||
+      attribute->byte_stride() != static_cast<std::int64_t>(sizeof(std::int32_t) * components))
     return fail(
         ErrorCode::kBadValue,
         "a value block holds another number of tuples or components than the chunk table says");
   std::vector<std::int32_t> values(std::size_t{tuples} * components);
-  for (std::uint32_t i = 0; i < tuples; ++i)
-    attribute->GetValue(attribute->mapped_index(draco::PointIndex(i)),
-                        values.data() + std::size_t{i} * components);
+  std::memcpy(values.data(), attribute->GetAddress(draco::AttributeValueIndex(0)),
+              sizeof(std::int32_t) * values.size());
   return values;
 }
 

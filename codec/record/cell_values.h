@@ -2,6 +2,7 @@
 // tetrahedra that it brings (FORMAT.md, "Cell values").
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,6 +29,11 @@ class CellAncestry {
   /// brings, from slot `first` on. REQUIRES: called for every split.
   void addRestored(std::span<const CellRef> star, const Link& link,
                    std::span<const LocalCell> restored, CellId first);
+  /// The earlier tetrahedra that this one's values are predicted from.
+  [[nodiscard]] std::span<const CellId> parents(CellId cell) const {
+    const std::array<CellId, 4>& known = known_[cell];
+    return {known.begin(), std::ranges::find(known, kNone)};
+  }
   /// The prediction of a value of tetrahedron `cell`; `at(t)` reads that of an earlier tetrahedron
   /// t; missing values do not count.
   template <class At>

@@ -67,6 +67,10 @@ class PointAncestry {
   /// Notes the split of v. REQUIRES: link built, the split not yet applied.
   void add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split);
   [[nodiscard]] std::span<const Birth> births() const { return births_; }
+  /// Those that a record's tuples are predicted by. REQUIRES: there are slopes.
+  [[nodiscard]] std::span<const Slope> slopesAt(const Birth& b) const {
+    return std::span(slopes_).subspan(b.firstSlope, b.k == 2 ? 1 : b.k);
+  }
 
   /// Codes the k tuples of a record into `at(vertex, component)`, references to the field's values.
   /// With missing values, neighbours that are missing change nothing. REQUIRES components <=

@@ -56,6 +56,8 @@ class Values {
     return hasMissing ? codeOrMissing<kEncoding>(predicted, truth)
                       : code<kEncoding>(predicted, truth);
   }
+  /// The value that is read next. REQUIRES: place <= the number of values.
+  void seek(std::size_t place) { next_ = place; }
   /// Marks the values as bad: a result is out of range.
   void spoil() { bad_ = true; }
   [[nodiscard]] bool bad() const { return bad_; }

@@ -151,6 +151,10 @@ Status Refiner::readLater(ByteView part) {
   return {};
 }
 
+void Refiner::fieldsOnlyAt(Association association, std::span<const std::uint32_t> elements) {
+  state_->fields.onlyAt(association, elements);
+}
+
 void Refiner::forgetField(std::uint32_t field) { state_->fields.forget(field); }
 
 void Refiner::observe(SplitObserver* observer) { state_->requests.observer = observer; }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "codec/log/field_shape.h"
 #include "codec/mesh/mesh.h"
 #include "codec/refine/patch_requests.h"
 #include "proto/bytes.h"
@@ -44,6 +45,11 @@ class Refiner {
   /// Gives the memory of a field's values back, as if none of its blocks had come. REQUIRES: a
   /// field of the log.
   void forgetField(std::uint32_t field);
+
+  /// From now on fields of this association have values at these elements alone, once all their
+  /// blocks are applied. Values at other elements mean nothing. This takes much less time than all
+  /// values. REQUIRES: the elements are there; no such field was applied; no chunk comes later.
+  void fieldsOnlyAt(Association association, std::span<const std::uint32_t> elements);
 
   /// A chunk that goes beyond `level` then ends there, and chunks that begin beyond it are refused.
   /// Once level() is `level`, the mesh is that level's.

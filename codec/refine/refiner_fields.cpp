@@ -83,11 +83,14 @@ Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
   Field& f = fields_[field];
   const FieldShape shape = plan_.index.fields[field];
   Values coded(values);
-  if (shape.association == Association::kPoint)
+  if (isNeededAlone(shape))
+    codeNeeded(f, shape, chunk, coded);
+  else if (shape.association == Association::kPoint)
     codePoints(f, shape, chunk, coded);
   else
     codeCells(f, shape, chunk, coded);
-  f.broken = coded.bad() || !(coded.atEnd() || added_[chunk].extent == Extent::kPartial);
+  const bool isPart = isNeededAlone(shape) || added_[chunk].extent == Extent::kPartial;
+  f.broken = coded.bad() || !(coded.atEnd() || isPart);
   if (f.broken)
     return refuseChunk(ErrorCode::kBadValue, chunk, "field values out of range or left over");
   ++f.chunks;
@@ -114,20 +117,103 @@ void RefinerFields::codePoints(Field& f, const FieldShape& shape, std::uint32_t 
   f.values.resize(records_.mesh().points.size() * n);
   coded.resize(f.values.size());
   if (chunk == 0) codeBase(coded, shape, residuals);
-  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return coded[v * n + c]; };
   const PointAncestry& ancestry = records_.ancestry().points;
   const AddedElements& b = added_[chunk];
   const std::size_t baseVertices = chunk == 0 ? base_.size() : 0;
   for (VertexId v = 0; isPredicted && v < baseVertices; ++v) restore(f, shape, v);
   if (chunk == 0) inheritPoints(f, shape.components, 0);
   for (const Birth& birth : ancestry.births().subspan(b.firstBirth, b.endBirth - b.firstBirth)) {
-    ancestry.code<false>(
-        birth, residuals, shape.components, at, [](std::size_t, std::uint32_t) { return 0; },
-        shape.hasMissing);
+    codeRecord(coded, shape, birth, residuals);
     if (!isPredicted) continue;
     restore(f, shape, birth.slot);
     for (std::size_t j = 0; j + 1 < birth.k; ++j) restore(f, shape, birth.firstNew + j);
   }
+}
+
+void RefinerFields::codeRecord(std::vector<std::int32_t>& coded, const FieldShape& shape,
+                               const Birth& birth, Values& residuals) const {
+  const std::size_t n = shape.components;
+  records_.ancestry().points.code<false>(
+      birth, residuals, shape.components,
+      [&](VertexId v, std::uint32_t c) -> std::int32_t& { return coded[v * n + c]; },
+      [](std::size_t, std::uint32_t) { return 0; }, shape.hasMissing);
+}
+
+void RefinerFields::codeCell(std::vector<std::int32_t>& coded, const FieldShape& shape, CellId cell,
+                             Values& residuals) const {
+  const std::size_t n = shape.components;
+  for (std::size_t c = 0; c < n; ++c)
+    coded[cell * n + c] = residuals.codeField<false>(
+        shape.hasMissing,
+        records_.ancestry().cells->predict(cell, [&](CellId u) { return coded[u * n + c]; }), 0);
+}
+
+void RefinerFields::onlyAt(Association association, std::span<const std::uint32_t> elements) {
+  const bool ofPoints = association == Association::kPoint;
+  const std::vector<bool> isNeeded = ofPoints ? neededRecords(elements) : neededCells(elements);
+  Needed needed{association, {elements.begin(), elements.end()}, {}};
+  for (std::uint32_t chunk = 0; chunk < added_.size(); ++chunk) {
+    const AddedElements& added = added_[chunk];
+    const std::size_t first = ofPoints ? added.firstBirth : plan_.slots[chunk].tetrahedra;
+    const std::size_t end = ofPoints ? added.endBirth : added.endTetrahedron;
+    std::size_t place = ofPoints && chunk == 0 ? base_.size() : 0;
+    std::vector<Coded>& coded = needed.chunks.emplace_back();
+    for (std::size_t i = first; i < end; ++i) {
+      if (isNeeded[i])
+        coded.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(place)});
+      place += ofPoints ? records_.ancestry().points.births()[i].k : 1;
+    }
+  }
+  needed_ = std::move(needed);
+}
+
+// From the last record to the first: `before` are the vertices whose values before it count.
+std::vector<bool> RefinerFields::neededRecords(std::span<const std::uint32_t> vertices) const {
+  const PointAncestry& ancestry = records_.ancestry().points;
+  std::vector<bool> out(ancestry.births().size()), before(records_.mesh().points.size());
+  for (const VertexId v : vertices) before[v] = true;
+  for (std::size_t b = out.size(); b-- > 0;) {
+    const Birth& birth = ancestry.births()[b];
+    out[b] = before[birth.slot];
+    for (VertexId v = birth.firstNew; v + 1 < birth.firstNew + birth.k; ++v)
+      if (before[v]) out[b] = true, before[v] = false;
+    if (!out[b]) continue;
+    before[birth.slot] = true;
+    for (const Slope& slope : ancestry.slopesAt(birth))
+      for (std::size_t i = 0; i < slope.vertex.size(); ++i)
+        if (slope.weight[i] != 0) before[slope.vertex[i]] = true;
+  }
+  return out;
+}
+
+std::vector<bool> RefinerFields::neededCells(std::span<const std::uint32_t> cells) const {
+  std::vector<bool> out(records_.mesh().tetrahedra.size());
+  for (const CellId t : cells) out[t] = true;
+  for (CellId t = static_cast<CellId>(out.size()); t-- > 0;)
+    if (out[t])
+      for (const CellId parent : records_.ancestry().cells->parents(t)) out[parent] = true;
+  return out;
+}
+
+void RefinerFields::codeNeeded(Field& f, const FieldShape& shape, std::uint32_t chunk,
+                               Values& residuals) const {
+  const bool ofPoints = shape.association == Association::kPoint;
+  const bool isPredicted = !shape.prediction.isNone();
+  std::vector<std::int32_t>& coded = isPredicted ? f.differences : f.values;
+  const std::size_t elements =
+      ofPoints ? records_.mesh().points.size() : records_.mesh().tetrahedra.size();
+  f.values.resize(elements * shape.components);
+  coded.resize(f.values.size());
+  if (ofPoints && chunk == 0) codeBase(coded, shape, residuals);
+  for (const Coded& next : needed_->chunks[chunk]) {
+    residuals.seek(std::size_t{next.place} * shape.components);
+    if (ofPoints)
+      codeRecord(coded, shape, records_.ancestry().points.births()[next.number], residuals);
+    else
+      codeCell(coded, shape, next.number, residuals);
+  }
+  if (isPredicted)
+    for (const std::uint32_t element : needed_->elements) restore(f, shape, element);
 }
 
 void RefinerFields::codeBase(std::vector<std::int32_t>& coded, const FieldShape& shape,
@@ -145,13 +231,10 @@ void RefinerFields::codeCells(Field& f, const FieldShape& shape, std::uint32_t c
   const bool isPredicted = !shape.prediction.isNone();
   std::vector<std::int32_t>& coded = isPredicted ? f.differences : f.values;
   const std::size_t n = shape.components;
-  const CellAncestry& ancestry = *records_.ancestry().cells;
   f.values.resize(records_.mesh().tetrahedra.size() * n);
   coded.resize(f.values.size());
   for (CellId t = plan_.slots[chunk].tetrahedra; t < added_[chunk].endTetrahedron; ++t) {
-    for (std::size_t c = 0; c < n; ++c)
-      coded[t * n + c] = residuals.codeField<false>(
-          shape.hasMissing, ancestry.predict(t, [&](CellId u) { return coded[u * n + c]; }), 0);
+    codeCell(coded, shape, t, residuals);
     if (isPredicted) restore(f, shape, t);
   }
   if (chunk == 0)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,8 @@ class RefinerFields {
   void planHasGrown();
   /// Implements Refiner::forgetField.
   void forget(std::uint32_t field) { fields_[field] = {}; }
+  /// Implements Refiner::fieldsOnlyAt.
+  void onlyAt(Association association, std::span<const std::uint32_t> elements);
   /// Gives a chunk's new elements stand-in values in every field, until the field's own block
   /// arrives.
   void inherit(std::uint32_t chunk);
@@ -52,11 +55,35 @@ class RefinerFields {
     bool broken = false;       // a block failed half-way: what it wrote is noise
   };
 
+  /// A record, or a tetrahedron, whose values are coded though others' are not.
+  struct Coded {
+    std::uint32_t number;
+    std::uint32_t place;  // tuples of its chunk before its own
+  };
+  /// A few elements, and by chunk all that codes their values: what they are predicted from, and
+  /// they.
+  struct Needed {
+    Association association;
+    std::vector<std::uint32_t> elements;
+    std::vector<std::vector<Coded>> chunks;
+  };
+
   [[nodiscard]] Status mayCome(std::uint32_t field, std::uint32_t chunk, std::size_t values) const;
   void inheritPoints(Field& field, std::uint32_t components, std::size_t firstBirth) const;
   void inheritCells(Field& field, const FieldShape& shape, CellId first, CellId end) const;
   void codePoints(Field& field, const FieldShape& shape, std::uint32_t chunk,
                   Values& residuals) const;
+  void codeNeeded(Field& field, const FieldShape& shape, std::uint32_t chunk,
+                  Values& residuals) const;
+  [[nodiscard]] bool isNeededAlone(const FieldShape& shape) const {
+    return needed_ && needed_->association == shape.association;
+  }
+  [[nodiscard]] std::vector<bool> neededRecords(std::span<const std::uint32_t> vertices) const;
+  [[nodiscard]] std::vector<bool> neededCells(std::span<const std::uint32_t> cells) const;
+  void codeRecord(std::vector<std::int32_t>& coded, const FieldShape& shape, const Birth& birth,
+                  Values& residuals) const;
+  void codeCell(std::vector<std::int32_t>& coded, const FieldShape& shape, CellId cell,
+                Values& residuals) const;
   void codeBase(std::vector<std::int32_t>& coded, const FieldShape& shape, Values& residuals) const;
   void codeCells(Field& field, const FieldShape& shape, std::uint32_t chunk,
                  Values& residuals) const;
@@ -68,6 +95,7 @@ class RefinerFields {
   const std::vector<BaseBirth>& base_;
   const std::vector<AddedElements>& added_;
   std::vector<Field> fields_;
+  std::optional<Needed> needed_;
 };
 
 }  // namespace qtet

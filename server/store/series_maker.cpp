@@ -165,6 +165,11 @@ Result<Bytes> makeSeries(const LevelRequest& request, const std::stop_token& sto
                   nearStepsOf(refiner.points(), manifest.levels[request.level].error));
   if (!place) return isOutside(request, refiner.points(), lattice);
 
+  const Tetrahedron& corners = refiner.tetrahedra()[place->cell];
+  if (manifest.fields[request.fields.front()].association == "cell")
+    refiner.fieldsOnlyAt(Association::kCell, std::span(&place->cell, 1));
+  else
+    refiner.fieldsOnlyAt(Association::kPoint, corners);
   std::string name;
   std::vector<Instant> instants;
   const auto take = [&](std::uint32_t f) {
@@ -172,9 +177,8 @@ Result<Bytes> makeSeries(const LevelRequest& request, const std::stop_token& sto
     const ManifestField& field = manifest.fields[f];
     const std::optional<InstantName> instant = instantName(field.name);
     name = instant ? instant->series : field.name;
-    instants.push_back(
-        {instant ? std::optional(instant->time) : std::nullopt,
-         valuesAt(field, refiner.fieldValues(f), *place, refiner.tetrahedra()[place->cell])});
+    instants.push_back({instant ? std::optional(instant->time) : std::nullopt,
+                        valuesAt(field, refiner.fieldValues(f), *place, corners)});
   };
   if (Status s = eachField(request, refiner, stop, take); !s) return std::unexpected(s.error());
   std::ranges::sort(instants, {}, &Instant::time);

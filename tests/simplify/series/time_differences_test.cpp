@@ -80,6 +80,53 @@ TEST_F(TimeDifferences, everyLevelHasEveryInstant) {
 
 TEST_F(WithGaps, everyLevelHasEveryInstant) { expectEveryLevel(log(), history_); }
 
+Refiner refinedTo(const LogFile& log, std::uint32_t level) {
+  Refiner out(log.index());
+  out.stopAtLevel(level);
+  for (std::uint32_t chunk = 0; chunk == 0 || out.level() < level; ++chunk)
+    EXPECT_TRUE(applyChunk(log, out, chunk, {}));
+  return out;
+}
+
+void applyFields(const LogFile& log, Refiner& refiner, Association association) {
+  for (std::uint32_t f = 0; f < log.fields().size(); ++f)
+    if (log.fields()[f].association == association)
+      for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk)
+        ASSERT_TRUE(applyFieldBlock(log, refiner, chunk, f));
+}
+
+void expectSameAtFewElements(const LogFile& log, std::uint32_t level, Association association) {
+  Refiner whole = refinedTo(log, level), few = refinedTo(log, level);
+  const std::size_t count =
+      association == Association::kPoint ? few.points().size() : few.tetrahedra().size();
+  const auto last = static_cast<std::uint32_t>(count - 1);
+  const std::array<std::uint32_t, 3> elements{last / 3, last, 0};
+  few.fieldsOnlyAt(association, elements);
+  applyFields(log, whole, association);
+  applyFields(log, few, association);
+  for (std::uint32_t f = 0; f < log.fields().size(); ++f) {
+    const FieldShape& shape = log.fields()[f];
+    if (shape.association != association) continue;
+    for (const std::uint32_t e : elements)
+      for (std::size_t i = e * shape.components; i < (e + 1) * shape.components; ++i)
+        ASSERT_EQ(few.fieldValues(f)[i], whole.fieldValues(f)[i]) << "level " << level;
+  }
+}
+
+void expectSameAtFewElements(const LogFile& log, std::uint32_t levels) {
+  for (const std::uint32_t level : {0u, levels / 2, levels})
+    for (const Association association : {Association::kPoint, Association::kCell})
+      expectSameAtFewElements(log, level, association);
+}
+
+TEST_F(TimeDifferences, aFewElementsHaveTheValuesThatTheyHaveAmongAll) {
+  expectSameAtFewElements(log(), history_.levels);
+}
+
+TEST_F(WithGaps, aFewElementsHaveTheValuesThatTheyHaveAmongAll) {
+  expectSameAtFewElements(log(), history_.levels);
+}
+
 /// The most that a value of the field moves, of the last level's vertices and of fused ones.
 std::array<std::int32_t, 2> movedBy(const FusionHistory& before, const FusionHistory& after,
                                     std::size_t f) {
