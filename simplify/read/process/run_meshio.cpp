@@ -35,6 +35,7 @@ import os
 import xml.etree.ElementTree as tree
 
 source, folder, kind, wanted = sys.argv[1:5]
+os.chdir(os.path.dirname(source))  # meshio looks there for the binary files that an XDMF names
 
 # faces and lines of second order, which Gmsh writes beside the volume
 OTHERS = {"CPS6": "triangle6", "CPS8": "quad8", "T3D3": "line3", "B32": "line3", "S8": "quad8"}
@@ -48,16 +49,19 @@ def write(mesh, name):
     mesh.cell_sets, mesh.point_sets, mesh.field_data, mesh.info = {}, {}, {}, None
     meshio.write(folder + "/" + name, mesh, file_format="vtu", binary=True)
 
-def is_meant(time, number, count):
-    if ":" in wanted:  # a range, from which the reader of the result takes steps
+def is_one(what, time, number, count):
+    if ":" in what:  # a range, from which the reader of the result takes steps
         return True
-    if wanted in ("first", "last", "all"):
-        return wanted == "all" or count == 1 or number == (0 if wanted == "first" else count - 1)
+    if what in ("first", "last", "all"):
+        return what == "all" or count == 1 or number == (0 if what == "first" else count - 1)
     try:
-        other = float(wanted)
+        other = float(what)
     except ValueError:
         return False
     return abs(time - other) <= 1e-9 * max(abs(time), abs(other))
+
+def is_meant(time, number, count):
+    return any(is_one(what, time, number, count) for what in wanted.split(","))
 
 def formats_of(ending):
     helpers = meshio._helpers
