@@ -28,6 +28,7 @@ OpenMessage readOpen(const JsonCursor& json) {
   out.digest = readDigest(json.optional("digest"));
   for (const JsonCursor& name : json.optional("fields").items(0, kMaxRequestFields))
     out.fields.push_back(readName(name));
+  out.time = readStreamTime(json.optional("time"));
   out.have = readHave(json.optional("have"));
   out.target = readTarget(json.optional("target"));
   out.credit = json["credit"].count(0, kMaxCredit);
@@ -64,6 +65,7 @@ Result<Message> checked(Message message, const std::optional<Error>& error) {
 Json openToJson(const OpenMessage& m) {
   Json out = {{"type", "open"}, {"mesh", m.mesh}, {"fields", m.fields}, {"credit", m.credit}};
   if (!m.digest.empty()) out["digest"] = m.digest;
+  if (m.time) out["time"] = toJson(*m.time);
   out["have"] = toJson(m.have);
   if (!std::holds_alternative<EverythingTarget>(m.target)) out["target"] = toJson(m.target);
   return out;

@@ -32,6 +32,7 @@ struct OpenMessage {
   std::string mesh;
   std::string digest;               ///< empty: any
   std::vector<std::string> fields;  ///< to send, in any order
+  std::optional<StreamTime> time;   ///< nullopt: no name means a series
   Have have;
   Target target;
   std::uint64_t credit = 0;  ///< bytes

@@ -14,4 +14,15 @@ struct Have {
   std::vector<std::pair<std::string, std::uint32_t>> fields{};  ///< by key; at most `chunks` each
 };
 
+/// Which instants of the series asked for come, and in which order (STREAM.md, "Time").
+struct StreamTime {
+  double at = 0;            ///< the nearest instant comes first
+  std::uint32_t ahead = 0;  ///< so many behind it, at most kMaxAhead
+  enum class First : std::uint8_t {
+    kSpace,  ///< an instant is whole before the next one begins
+    kTime,   ///< a chunk has all instants before the next one begins
+  };
+  First first = First::kSpace;
+};
+
 }  // namespace qtet

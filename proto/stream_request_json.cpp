@@ -8,6 +8,9 @@ namespace {
 /// The largest integer that JSON keeps exactly in every language.
 constexpr std::uint64_t kMaxInteger = (std::uint64_t{1} << 53) - 1;
 
+constexpr const char* kSpaceFirst = "space";
+constexpr const char* kTimeFirst = "time";
+
 std::string readName(const JsonCursor& json) {
   std::string out = json.text(kMaxNameBytes);
   if (json.present() && out.empty()) json.fail("must not be empty");
@@ -61,6 +64,24 @@ Target readTarget(const JsonCursor& json) {
   if (found != 1)
     json.fail("must have one of level, bytes, tetrahedra, error (with field) and boundaryError");
   return out;
+}
+
+std::optional<StreamTime> readStreamTime(const JsonCursor& json) {
+  if (!json.present() || json.isNull()) return std::nullopt;
+  StreamTime out;
+  out.at = json["at"].number();
+  out.ahead = json.optional("ahead").count32(0, kMaxAhead);
+  const JsonCursor first = json.optional("first");
+  const std::string name = first.present() ? first.text(kMaxNameBytes) : kSpaceFirst;
+  if (name != kSpaceFirst && name != kTimeFirst) first.fail("must be 'space' or 'time'");
+  if (name == kTimeFirst) out.first = StreamTime::First::kTime;
+  return out;
+}
+
+Json toJson(const StreamTime& time) {
+  return {{"at", time.at},
+          {"ahead", time.ahead},
+          {"first", time.first == StreamTime::First::kTime ? kTimeFirst : kSpaceFirst}};
 }
 
 Json toJson(const Have& have) {

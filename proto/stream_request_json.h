@@ -13,7 +13,10 @@ namespace qtet {
 /// Absent and null: everything.
 [[nodiscard]] Target readTarget(const JsonCursor& json);
 
+[[nodiscard]] std::optional<StreamTime> readStreamTime(const JsonCursor& json);
+
 [[nodiscard]] Json toJson(const Have& have);
+[[nodiscard]] Json toJson(const StreamTime& time);
 /// null: everything.
 [[nodiscard]] Json toJson(const Target& target);
 

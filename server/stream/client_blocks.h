@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "codec/log/log_index.h"
+#include "server/stream/field_turns.h"
 
 namespace qtet {
 
@@ -18,9 +19,12 @@ namespace qtet {
 /// must outlive it. Everything REQUIRES chunks of the log and columns below columns().
 class ClientBlocks {
  public:
-  /// Nothing yet. REQUIRES: fields ascending, distinct, below the log's fields.
-  ClientBlocks(const LogIndex& index, std::vector<std::uint32_t> fields)
-      : index_(&index), fields_(std::move(fields)), held_(index.chunks.size() * columns(), false) {
+  /// Nothing yet. REQUIRES: fieldTurns's order, fields of the log.
+  ClientBlocks(const LogIndex& index, FieldTurns turns) : index_(&index), turns_(std::move(turns)) {
+    for (const std::vector<std::uint32_t>& turn : turns_)
+      fields_.insert(fields_.end(), turn.begin(), turn.end());
+    std::ranges::sort(fields_);
+    held_.assign(index.chunks.size() * columns(), false);
     assert(std::ranges::adjacent_find(fields_, std::greater_equal()) == fields_.end());
     assert(fields_.empty() || fields_.back() < index.fields.size());
   }
@@ -31,7 +35,18 @@ class ClientBlocks {
     return column < kFirstFieldPart ? static_cast<std::uint32_t>(column)
                                     : kFirstFieldPart + fields_[column - kFirstFieldPart];
   }
+  /// Ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& fields() const { return fields_; }
+  [[nodiscard]] const FieldTurns& turns() const { return turns_; }
+  /// Those of a turn, ascending. The first one begins with the mesh.
+  [[nodiscard]] std::vector<std::size_t> columnsOf(std::size_t turn) const {
+    std::vector<std::size_t> out;
+    if (turn == 0) out = {kStructurePart, kPositionsPart};
+    for (const std::uint32_t f : turns_[turn])
+      out.push_back(kFirstFieldPart + static_cast<std::size_t>(
+                                          std::ranges::lower_bound(fields_, f) - fields_.begin()));
+    return out;
+  }
 
   [[nodiscard]] bool has(std::uint32_t chunk, std::size_t column) const {
     assert(chunk < index_->chunks.size() && column < columns());
@@ -56,6 +71,7 @@ class ClientBlocks {
 
  private:
   const LogIndex* index_;
+  FieldTurns turns_;
   std::vector<std::uint32_t> fields_;
   std::vector<bool> held_;
 };

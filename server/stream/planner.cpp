@@ -44,9 +44,12 @@ std::vector<BlockRun> planStream(const LogIndex& index, const ClientBlocks& bloc
                                  std::uint32_t lastChunk, std::uint32_t payloadBytes) {
   assert(lastChunk < index.chunks.size());
   Runs runs(index, payloadBytes);
-  for (std::uint32_t chunk = 0; chunk <= lastChunk; ++chunk)
-    for (std::size_t column = 0; column < blocks.columns(); ++column)
-      if (!blocks.has(chunk, column)) runs.add(chunk, blocks.partOf(column));
+  for (std::size_t turn = 0; turn < blocks.turns().size(); ++turn) {
+    const std::vector<std::size_t> columns = blocks.columnsOf(turn);
+    for (std::uint32_t chunk = 0; chunk <= lastChunk; ++chunk)
+      for (const std::size_t column : columns)
+        if (!blocks.has(chunk, column)) runs.add(chunk, blocks.partOf(column));
+  }
   return runs.take();
 }
 

@@ -20,29 +20,14 @@ Refusal unknownField(const ServedMesh& mesh, const std::string& name) {
   return {kUnknownField, "'" + mesh.id + "' has no field '" + name + "'"};
 }
 
-/// Fields asked for, as indices, ascending and each once.
-std::expected<std::vector<std::uint32_t>, Refusal> fieldsOf(const std::vector<std::string>& names,
-                                                            const ServedMesh& mesh) {
-  std::vector<std::uint32_t> out;
-  for (const std::string& name : names) {
-    const auto field = fieldOfKey(mesh.manifest, name);
-    if (!field) return std::unexpected(unknownField(mesh, name));
-    out.push_back(*field);
-  }
-  std::ranges::sort(out);
-  const auto twice = std::ranges::unique(out);
-  out.erase(twice.begin(), twice.end());
-  return out;
-}
-
-std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, std::vector<std::uint32_t> fields,
+std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, FieldTurns turns,
                                               const ServedMesh& mesh) {
   const std::size_t chunks = mesh.log.index().chunks.size();
   if (have.chunks > chunks)
     return std::unexpected(Refusal{kLogChanged, "have names chunk " +
                                                     std::to_string(have.chunks - 1) +
                                                     " and this log has " + std::to_string(chunks)});
-  ClientBlocks out(mesh.log.index(), std::move(fields));
+  ClientBlocks out(mesh.log.index(), std::move(turns));
   out.addLeading(have.chunks, kStructurePart);
   out.addLeading(have.chunks, kPositionsPart);
   for (const auto& [name, held] : have.fields) {
@@ -109,9 +94,12 @@ void StreamProtocol::handle(const OpenMessage& message) {
   if (!message.digest.empty() && message.digest != mesh->log.digest())
     return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " +
                                    mesh->log.digest() + " by now");
-  auto fields = fieldsOf(message.fields, *mesh);
-  if (!fields) return refuse(fields.error().code, std::move(fields.error().detail));
-  auto blocks = blocksOf(message.have, std::move(*fields), *mesh);
+  auto turns = fieldTurns(message.fields, message.time, mesh->manifest, mesh->log.fields());
+  if (!turns) {
+    Refusal unknown = unknownField(*mesh, turns.error());
+    return refuse(unknown.code, std::move(unknown.detail));
+  }
+  auto blocks = blocksOf(message.have, std::move(*turns), *mesh);
   if (!blocks) return refuse(blocks.error().code, std::move(blocks.error().detail));
   auto last = lastChunkOf(message.target, *mesh);
   if (!last) return refuse(last.error().code, std::move(last.error().detail));
@@ -166,7 +154,7 @@ void StreamProtocol::handle(const ResumeMessage& message) {
   if (!stream_) return;
   if (message.have) {
     if (!countChange()) return;
-    auto blocks = blocksOf(*message.have, stream_->blocks.fields(), *stream_->mesh);
+    auto blocks = blocksOf(*message.have, stream_->blocks.turns(), *stream_->mesh);
     if (!blocks) return answerError(blocks.error().code, blocks.error().detail);
     catchUp();  // what is due is said of the blocks before
     stream_->blocks = std::move(*blocks);

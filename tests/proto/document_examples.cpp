@@ -48,6 +48,10 @@ std::string judgeTarget(const std::string& text) {
   return judgeClient(R"({"type":"target","target":)" + text + "}");
 }
 
+std::string judgeTime(const std::string& text) {
+  return judgeClient(R"({"type":"open","mesh":"a","credit":1,"time":)" + text + "}");
+}
+
 const OpenapiSchemas& schemas() {
   static const OpenapiSchemas kSchemas;
   return kSchemas;
@@ -75,9 +79,10 @@ std::string judgeTurn(const std::string& text) {
 }
 
 const std::map<std::string, std::function<std::string(const std::string&)>> kJudges{
-    {"json client", judgeClient},     {"json server", judgeServer}, {"json have", judgeHave},
-    {"json target", judgeTarget},     {"json list", judgeList},     {"json mesh", judgeMesh},
-    {"json manifest", judgeManifest}, {"json series", judgeSeries}, {"text transcript", judgeTurn}};
+    {"json client", judgeClient},  {"json server", judgeServer},     {"json have", judgeHave},
+    {"json target", judgeTarget},  {"json time", judgeTime},         {"json list", judgeList},
+    {"json mesh", judgeMesh},      {"json manifest", judgeManifest}, {"json series", judgeSeries},
+    {"text transcript", judgeTurn}};
 
 /// A value or a turn, and the line that it begins in.
 struct Example {

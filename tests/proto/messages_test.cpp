@@ -13,6 +13,7 @@ OpenMessage sampleOpen() {
   return {.mesh = "comb",
           .digest = std::string(64, 'a'),
           .fields = {"density", "velocity"},
+          .time = StreamTime{0.5, 8, StreamTime::First::kTime},
           .have = {7, {{"density", 3}, {"velocity", 7}}},
           .target = FieldErrorTarget{0.01, "density"},
           .credit = 1 << 20};
@@ -31,6 +32,10 @@ TEST(Messages, openIsReadBack) {
   EXPECT_EQ(open.mesh, "comb");
   EXPECT_EQ(open.digest, std::string(64, 'a'));
   EXPECT_EQ(open.fields, (std::vector<std::string>{"density", "velocity"}));
+  ASSERT_TRUE(open.time);
+  EXPECT_EQ(open.time->at, 0.5);
+  EXPECT_EQ(open.time->ahead, 8u);
+  EXPECT_EQ(open.time->first, StreamTime::First::kTime);
   EXPECT_EQ(open.have.chunks, 7u);
   ASSERT_EQ(open.have.fields.size(), 2u);
   EXPECT_EQ(open.have.fields[0].first, "density");
@@ -111,6 +116,11 @@ TEST(Messages, wrongShapesAreBadValues) {
         R"({"type":"open","mesh":"a","have":{"chunks":1,"fields":{"x":2}},"credit":1})",
         R"({"type":"open","mesh":"a","have":{"fields":[]},"credit":1})",
         R"({"type":"open","mesh":"a","digest":"abc","credit":1})",
+        R"({"type":"open","mesh":"a","time":1,"credit":1})",
+        R"({"type":"open","mesh":"a","time":{"ahead":1},"credit":1})",
+        R"({"type":"open","mesh":"a","time":{"at":"0"},"credit":1})",
+        R"({"type":"open","mesh":"a","time":{"at":0,"ahead":-1},"credit":1})",
+        R"({"type":"open","mesh":"a","time":{"at":0,"first":"both"},"credit":1})",
         R"({"type":"view","view":null})",
         R"({"type":"target"})",
         R"({"type":"target","target":{}})",
@@ -141,6 +151,16 @@ TEST(Messages, oneFieldTooManyIsRefused) {
   open.fields.assign(kMaxRequestFields, "f");
   EXPECT_TRUE(parseClientMessage(toJson(ClientMessage(open))));
   open.fields.push_back("f");
+  EXPECT_EQ(refusal(toJson(ClientMessage(open))), ErrorCode::kBadValue);
+}
+
+TEST(Messages, oneInstantAheadTooManyIsRefused) {
+  OpenMessage open = sampleOpen();
+  for (const std::uint32_t ahead : {kMaxAhead - 1, kMaxAhead}) {
+    open.time->ahead = ahead;
+    EXPECT_TRUE(parseClientMessage(toJson(ClientMessage(open))));
+  }
+  open.time->ahead = kMaxAhead + 1;
   EXPECT_EQ(refusal(toJson(ClientMessage(open))), ErrorCode::kBadValue);
 }
 

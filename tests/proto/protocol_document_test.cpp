@@ -49,8 +49,9 @@ TEST(ProtocolDocument, aBlockOfNoKindIsAFault) {
 }
 
 TEST(ProtocolDocument, aKindWithoutAnExampleIsAFault) {
-  for (const char* kind : {"json client", "json server", "json have", "json target", "json list",
-                           "json mesh", "json manifest", "json series", "text transcript"})
+  for (const char* kind :
+       {"json client", "json server", "json have", "json target", "json time", "json list",
+        "json mesh", "json manifest", "json series", "text transcript"})
     EXPECT_THAT(faultsOfExamples(changed("```" + std::string(kind), "```elsewhere")),
                 Contains(HasSubstr("no example is '" + std::string(kind) + "'")));
 }

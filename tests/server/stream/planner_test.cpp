@@ -23,7 +23,7 @@ struct Planned {
 
   [[nodiscard]] ClientBlocks blocks(const std::vector<std::uint32_t>& fields, std::uint32_t mesh,
                                     const std::vector<std::uint32_t>& have) const {
-    ClientBlocks out(index, fields);
+    ClientBlocks out(index, {fields});
     for (const std::size_t column : {kStructurePart, kPositionsPart}) out.addLeading(mesh, column);
     for (std::size_t f = 0; f < fields.size(); ++f) out.addLeading(have[f], kFirstFieldPart + f);
     return out;
@@ -63,6 +63,20 @@ TEST(Planner, fieldsThatNobodyAskedForSplitTheRuns) {
   EXPECT_EQ(
       log.plan(log.blocks({1}, 0, {0})),
       (std::vector<BlockRun>{{0, 0, 2}, {0, 3, 1}, {1, 0, 2}, {1, 3, 1}, {2, 0, 2}, {2, 3, 1}}));
+}
+
+TEST(Planner, aTurnEndsBeforeTheNextBegins) {
+  const Planned log = threeChunks();
+  ClientBlocks blocks(log.index, {{1}, {0}});
+  EXPECT_EQ(log.plan(blocks), (std::vector<BlockRun>{{0, 0, 2},
+                                                     {0, 3, 1},
+                                                     {1, 0, 2},
+                                                     {1, 3, 1},
+                                                     {2, 0, 2},
+                                                     {2, 3, 1},
+                                                     {0, 2, 1},
+                                                     {1, 2, 1},
+                                                     {2, 2, 1}}));
 }
 
 TEST(Planner, aClientThatComesBackGetsOnlyTheRest) {

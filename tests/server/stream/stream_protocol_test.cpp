@@ -16,6 +16,8 @@ class StreamProtocolTest : public testing::Test {
   void SetUp() override {
     folder_.write("noise.qtet", test::makeLog({.chunks = 6}));
     folder_.write("known.qtet", test::makeLog({.chunks = 16, .seed = 3, .errors = true}));
+    folder_.write("series.qtet",
+                  test::makeLog({.chunks = 3, .fields = {"T@0", "velocity", "T@1", "T@2"}}));
     Result<MeshStore> store = MeshStore::open(folder_.path());
     ASSERT_TRUE(store);
     store_.emplace(std::move(*store));
@@ -358,6 +360,22 @@ TEST_F(StreamProtocolTest, whatDoesNotExistIsNamedAndTheSocketStays) {
   EXPECT_TRUE(silent());
   open(1, R"(,"digest":")" + mesh().log.digest() + "\"");
   EXPECT_EQ(opened().stream, 6u);
+}
+
+TEST_F(StreamProtocolTest, instantsComeInTheOrderOfTheirTimes) {
+  const auto openSeries = [&](const std::string& more) {
+    say(R"({"type":"open","mesh":"series","fields":["T"],"credit":9007199254740991)" + more + "}");
+  };
+  openSeries("");
+  EXPECT_EQ(errorCode(), "unknown-field");
+  openSeries(R"(,"time":{"at":1,"ahead":1})");
+  EXPECT_GT(opened().planned, 0u);
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2, 0, 1, 2}));
+  openSeries(R"(,"time":{"at":1,"ahead":1,"first":"time"})");
+  EXPECT_GT(opened().planned, 0u);
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2}));
+  say(R"({"type":"resume","have":{"chunks":3,"fields":{"T@1":2}}})");
+  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
 TEST_F(StreamProtocolTest, aRefusedOpenEndsTheStreamBeforeIt) {

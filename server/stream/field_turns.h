@@ -1,0 +1,30 @@
+// Which fields an `open` means, and in which order they come (STREAM.md, "Time").
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codec/log/field_shape.h"
+#include "proto/stream_request.h"
+
+namespace qtet {
+
+struct Manifest;
+
+/// The blocks of one turn's fields come before those of the next turn's. Each turn is ascending,
+/// and no field is in two.
+using FieldTurns = std::vector<std::vector<std::uint32_t>>;
+
+/// One turn at least; the first has all fields that are no wished instants. With a time a name that
+/// no field has means the series of points of that name, else that of cells, or the one that
+/// "cell:NAME" means. Beside its instants stand the fields that they are predicted from. Returns
+/// the first name that means nothing instead. REQUIRES: `shapes` are those of the manifest's fields.
+[[nodiscard]] std::expected<FieldTurns, std::string> fieldTurns(
+    std::span<const std::string> names, const std::optional<StreamTime>& time,
+    const Manifest& manifest, std::span<const FieldShape> shapes);
+
+}  // namespace qtet

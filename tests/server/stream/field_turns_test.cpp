@@ -1,0 +1,83 @@
+#include "server/stream/field_turns.h"
+
+#include <gtest/gtest.h>
+
+#include "proto/manifest.h"
+
+namespace qtet {
+namespace {
+
+using First = StreamTime::First;
+
+/// T of points at 0, 4, 2, 1, 3 in the order of decoding, T of cells at 0 and 1, and p.
+struct Log {
+  Log() {
+    for (const auto& [name, association] : {std::pair("T@0", "point"),
+                                            {"T@4", "point"},
+                                            {"T@2", "point"},
+                                            {"T@1", "point"},
+                                            {"T@3", "point"},
+                                            {"T@0", "cell"},
+                                            {"T@1", "cell"},
+                                            {"p", "point"}}) {
+      ManifestField& field = manifest.fields.emplace_back();
+      field.name = name;
+      field.association = association;
+      field.components = 1;
+      field.type = "float32";
+      shapes.push_back(
+          {.association = field.association == "cell" ? Association::kCell : Association::kPoint});
+    }
+    predict(2, {0, 1});
+    predict(3, {0, 2});
+    predict(4, {2, 1});
+  }
+  void predict(std::size_t field, const std::vector<std::uint16_t>& parents) {
+    for (const std::uint16_t parent : parents) {
+      TimePrediction& prediction = shapes[field].prediction;
+      prediction.parents[prediction.count++] = {parent, 8};
+    }
+  }
+  [[nodiscard]] FieldTurns turns(const std::vector<std::string>& names,
+                                 const std::optional<StreamTime>& time) const {
+    return fieldTurns(names, time, manifest, shapes).value_or(FieldTurns{});
+  }
+
+  Manifest manifest;
+  std::vector<FieldShape> shapes;
+};
+
+TEST(FieldTurns, withoutATimeNamesMeanFieldsAlone) {
+  const Log log;
+  EXPECT_EQ(log.turns({"p", "T@2", "p"}, {}), (FieldTurns{{2, 7}}));
+  EXPECT_EQ(log.turns({}, {}), FieldTurns{{}});
+  EXPECT_EQ(fieldTurns(std::vector<std::string>{"p", "T"}, {}, log.manifest, log.shapes).error(),
+            "T");
+}
+
+TEST(FieldTurns, theNearestInstantComesWithItsParentsBeforeTheOnesAhead) {
+  const Log log;
+  EXPECT_EQ(log.turns({"T"}, StreamTime{2.9, 0, First::kSpace}), (FieldTurns{{0, 1, 2, 4}}));
+  EXPECT_EQ(log.turns({"p", "T"}, StreamTime{0, 1, First::kSpace}),
+            (FieldTurns{{0, 7}, {1, 2, 3}}));
+  EXPECT_EQ(log.turns({"T"}, StreamTime{0, 1, First::kTime}), (FieldTurns{{0, 1, 2, 3}}));
+  EXPECT_EQ(log.turns({"T"}, StreamTime{0.5, 0, First::kSpace}), FieldTurns{{0}})
+      << "the earlier of two";
+}
+
+TEST(FieldTurns, instantsAheadGoRoundTheEndAndEachComesOnce) {
+  const Log log;
+  EXPECT_EQ(log.turns({"T"}, StreamTime{4, 9, First::kSpace}), (FieldTurns{{1}, {0}, {2, 3}, {4}}));
+}
+
+TEST(FieldTurns, aSeriesOfCellsHasItsKey) {
+  const Log log;
+  EXPECT_EQ(log.turns({"cell:T"}, StreamTime{1, 1, First::kSpace}), (FieldTurns{{6}, {5}}));
+  EXPECT_EQ(log.turns({"point:T"}, StreamTime{0, 0, First::kSpace}), FieldTurns{{0}});
+  EXPECT_EQ(fieldTurns(std::vector<std::string>{"cell:U"}, StreamTime{}, log.manifest, log.shapes)
+                .error(),
+            "cell:U");
+}
+
+}  // namespace
+}  // namespace qtet
