@@ -20,9 +20,9 @@ struct Manifest;
 using FieldTurns = std::vector<std::vector<std::uint32_t>>;
 
 /// One turn at least; the first has all fields that are no wished instants. With a time a name that
-/// no field has means the series of points of that name, else that of cells, or the one that
-/// "cell:NAME" means. Beside its instants stand the fields that they are predicted from. Returns
-/// the first name that means nothing instead. REQUIRES: `shapes` are those of the manifest's fields.
+/// no field has means a series: that of points, else that of cells. "cell:NAME" means the latter.
+/// Beside its instants stand the fields that they are predicted from. Returns the first name that
+/// means nothing instead. REQUIRES: `shapes` are those of the manifest's fields.
 [[nodiscard]] std::expected<FieldTurns, std::string> fieldTurns(
     std::span<const std::string> names, const std::optional<StreamTime>& time,
     const Manifest& manifest, std::span<const FieldShape> shapes);

@@ -20,9 +20,8 @@ struct BlockRun {
 };
 
 /// The runs that a client lacks up to chunk `lastChunk`, the head left out. In each turn
-/// (field_turns.h) chunks come in the file's order, so whatever has arrived is a mesh with its fields.
-/// A run takes neighbouring blocks
-/// until it would exceed `payloadBytes`, and one block at least.
+/// (field_turns.h) chunks come in the file's order: whatever has arrived is a mesh with its fields.
+/// A run takes neighbouring blocks until it would exceed `payloadBytes`, and one block at least.
 [[nodiscard]] std::vector<BlockRun> planStream(const LogIndex& index, const ClientBlocks& blocks,
                                                std::uint32_t lastChunk, std::uint32_t payloadBytes);
 
