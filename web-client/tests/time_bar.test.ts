@@ -204,6 +204,27 @@ test.each([
   expect(shown).toEqual(times);
 });
 
+test('atTheBeatBehindAnotherMeshTheBarIsStill', () => {
+  isHurried = true;
+  showSeries(kAll);
+  bar.toggle();
+  vi.advanceTimersByTime(125);
+  drawn();
+  mesh.manifest = {fields: [field('p')]} as Manifest;
+  write('range', '0,2');
+  vi.advanceTimersByTime(300);
+  expect([bar.isShown, bar.isPlaying]).toEqual([false, false]);
+});
+
+test('whilePlayingTheHandleStaysWhereItIsHeld', () => {
+  showSeries(kAll);
+  bar.toggle();
+  const slider = root.querySelector('.time').querySelector('input');
+  slider.value = '7';
+  slider.dispatch('input');
+  expect([slider.value, attributes.get('time')]).toEqual(['7', '7']);
+});
+
 test('instantsWhoseTimePassesWhileOneIsDrawnAreLeftOut', () => {
   showSeries(kAll);
   bar.toggle();

@@ -1,7 +1,7 @@
 // The beat of the page's figures. Nobody reads figures that change faster. Each change makes the
 // browser compose the page anew, which costs slow graphics a frame: figures change together.
 
-export const kBeatMs = 250;
+const kBeatMs = 250;
 
 /** Milliseconds until figures change next. */
 export function untilBeat(): number {

@@ -92,7 +92,10 @@ export class TimeBar {
     this.speed.value = '1';
     this.showPlaying();
     onClick(this.bar, '.play', () => this.toggle());
-    this.slider.addEventListener('input', () => this.show(Number(this.slider.value)));
+    this.slider.addEventListener('input', () => {
+      this.seen = Number(this.slider.value); // the handle stays where it is held
+      this.show(this.seen);
+    });
     this.speed.addEventListener('change', () => this.isPlaying && this.play());
     signal.addEventListener('abort', () => this.end());
   }
@@ -236,7 +239,8 @@ export class TimeBar {
 
   private end(): void {
     clearInterval(this.timer);
-    this.timer = undefined;
+    clearTimeout(this.beat);
+    this.timer = this.beat = undefined;
     this.showPlaying();
   }
 
