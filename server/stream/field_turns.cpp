@@ -55,6 +55,7 @@ std::expected<FieldTurns, std::string> fieldTurns(std::span<const std::string> n
   FieldTurns turns(1);
   const std::vector<Series> all =
       time ? seriesOf(std::span(manifest.fields)) : std::vector<Series>{};
+  std::vector<const Series*> taken;  // else a name a thousand times would take long
   for (const std::string& name : names) {
     if (const auto field = fieldOfKey(manifest, name)) {
       turns.front().push_back(*field);
@@ -62,6 +63,8 @@ std::expected<FieldTurns, std::string> fieldTurns(std::span<const std::string> n
     }
     const Series* series = seriesOfKey(all, manifest, name);
     if (series == nullptr) return std::unexpected(name);
+    if (std::ranges::find(taken, series) != taken.end()) continue;
+    taken.push_back(series);
     const std::vector<std::uint32_t> instants = instantsOf(*series, *time);
     const bool inTurns = time->first == StreamTime::First::kSpace;
     if (inTurns && turns.size() < instants.size()) turns.resize(instants.size());
