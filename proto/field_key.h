@@ -44,25 +44,35 @@ struct InstantName {
           key[association.size()] == ':' && key.ends_with(name));
 }
 
-/// The fields that `key` means where it may mean several, ascending. First choice: the fields of
-/// that name. Second: the one field of that name after "point:" or "cell:". Third: every step of a
-/// series, NAME@TIME.
+/// The fields that `isMeant` is true of, ascending.
+template <std::ranges::random_access_range Fields, class IsMeant>
+[[nodiscard]] std::vector<std::uint32_t> fieldsThat(const Fields& fields, const IsMeant& isMeant) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t f = 0; f < fields.size(); ++f)
+    if (isMeant(fields[f])) out.push_back(f);
+  return out;
+}
+
+/// The fields of this name, ascending; without one, that of this name after "point:" or "cell:".
+template <std::ranges::random_access_range Fields>
+[[nodiscard]] std::vector<std::uint32_t> fieldsOfName(const Fields& fields, std::string_view key) {
+  std::vector<std::uint32_t> out =
+      fieldsThat(fields, [&](const auto& field) { return field.name == key; });
+  if (!out.empty()) return out;
+  return fieldsThat(
+      fields, [&](const auto& field) { return isCalled(field.association, field.name, key); });
+}
+
+/// The fields that `key` means where it may mean several, ascending: fieldsOfName's, else every
+/// step of a series, NAME@TIME.
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::vector<std::uint32_t> fieldsOfKey(const Fields& fields, std::string_view key) {
-  std::vector<std::uint32_t> out;
-  const auto all = [&](const auto& isMeant) {
-    for (std::uint32_t f = 0; f < fields.size(); ++f)
-      if (isMeant(fields[f])) out.push_back(f);
-    return !out.empty();
-  };
-  if (all([&](const auto& field) { return field.name == key; })) return out;
-  if (all([&](const auto& field) { return isCalled(field.association, field.name, key); }))
-    return out;
-  all([&](const auto& field) {
+  std::vector<std::uint32_t> out = fieldsOfName(fields, key);
+  if (!out.empty()) return out;
+  return fieldsThat(fields, [&](const auto& field) {
     const auto name = nameWithoutStep(field.name);
     return name && isCalled(field.association, *name, key);
   });
-  return out;
 }
 
 /// The one field that `key` means: the point field of that name, else the cell field of that name.
@@ -70,10 +80,8 @@ template <std::ranges::random_access_range Fields>
 template <std::ranges::random_access_range Fields>
 [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(const Fields& fields, std::string_view key) {
   std::optional<std::uint32_t> out;
-  for (const std::uint32_t f : fieldsOfKey(fields, key)) {
-    if (fields[f].name != key && !isCalled(fields[f].association, fields[f].name, key)) continue;
+  for (const std::uint32_t f : fieldsOfName(fields, key))
     if (!out || (fields[f].association == "point" && fields[*out].association != "point")) out = f;
-  }
   return out;
 }
 

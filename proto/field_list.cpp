@@ -1,6 +1,7 @@
 #include "proto/field_list.h"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 #include <vector>
 
@@ -11,8 +12,8 @@ namespace {
 
 /// Names that differ in their instant alone, or one name.
 struct Item {
-  std::string_view stem;
-  std::string_view first, last;
+  std::string_view first, last;  // by time
+  double from = 0, to = 0;
   std::size_t count = 1;
 };
 
@@ -26,13 +27,19 @@ std::string textOf(const Item& item) {
 
 std::string fieldList(std::span<const std::string> names) {
   std::vector<Item> items;
+  std::map<std::string_view, std::size_t> placeOf;
   for (const std::string& name : names) {
-    const auto stem = nameWithoutStep(name);
-    const auto same = stem ? std::ranges::find(items, *stem, &Item::stem) : items.end();
-    if (same == items.end())
-      items.push_back({stem.value_or(std::string_view()), name, name});
-    else
-      same->last = name, ++same->count;
+    const auto instant = instantName(name);
+    if (!instant || placeOf.try_emplace(instant->series, items.size()).second) {
+      const double time = instant ? instant->time : 0;
+      items.push_back({name, name, time, time});
+      continue;
+    }
+    const double time = instant->time;
+    Item& item = items[placeOf.at(instant->series)];
+    ++item.count;
+    if (time < item.from) item.first = name, item.from = time;
+    if (time > item.to) item.last = name, item.to = time;
   }
   std::string out;
   for (std::size_t i = 0; i < std::min(items.size(), kMaxListedFields); ++i)

@@ -22,8 +22,8 @@ inline constexpr std::uint32_t kMaxChunks = 1u << 20;
 inline constexpr std::uint32_t kMaxFields = 8192;
 /// Fields that one request of a client names: the instants of a film are asked for in parts.
 inline constexpr std::uint32_t kMaxRequestFields = 1024;
-/// Instants that one request can ask for behind another: as many as it could name.
-inline constexpr std::uint32_t kMaxAhead = kMaxRequestFields;
+/// Instants that one request can ask for behind another: with that one as many as it could name.
+inline constexpr std::uint32_t kMaxAhead = kMaxRequestFields - 1;
 /// The highest number of a field that a manifest's opening can name, in a byte.
 inline constexpr std::uint32_t kMaxOpeningField = 255;
 /// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is

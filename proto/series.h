@@ -20,14 +20,20 @@ inline constexpr double kNearTime = 1e-9;
   return std::abs(a - b) <= kNearTime * std::max(std::abs(a), std::abs(b));
 }
 
+/// The number of the time nearest to `wanted`, of two the first. REQUIRES: one time at least.
+[[nodiscard]] inline std::size_t nearestTime(std::span<const double> times, double wanted) {
+  const auto nearest = std::ranges::min_element(
+      times, {}, [wanted](double time) { return std::abs(time - wanted); });
+  return static_cast<std::size_t>(nearest - times.begin());
+}
+
 /// The number of the time that is meant: the exact one if it is there, else the nearest that is the
 /// same (isSameTime). So times one apart stay apart, also where they are 1e9 and more.
 [[nodiscard]] inline std::optional<std::size_t> placeOfTime(std::span<const double> times,
                                                             double wanted) {
-  const auto nearest = std::ranges::min_element(
-      times, {}, [wanted](double time) { return std::abs(time - wanted); });
-  if (nearest == times.end() || !isSameTime(*nearest, wanted)) return std::nullopt;
-  return static_cast<std::size_t>(nearest - times.begin());
+  if (times.empty()) return std::nullopt;
+  const std::size_t nearest = nearestTime(times, wanted);
+  return isSameTime(times[nearest], wanted) ? std::optional(nearest) : std::nullopt;
 }
 
 struct Series {
@@ -58,6 +64,21 @@ template <class Field>
     out[s].times.insert(at, name->time);
   }
   std::erase_if(out, [&](const Series& series) { return series.fields.size() < fewest; });
+  return out;
+}
+
+/// The series among those of `fields` that `key` means: of points before of cells. "cell:NAME"
+/// means one of cells. nullptr: none.
+template <class Field>
+[[nodiscard]] const Series* seriesOfKey(std::span<const Series> all, std::span<const Field> fields,
+                                        std::string_view key) {
+  const Series* out = nullptr;
+  for (const Series& series : all) {
+    const Field& first = fields[series.fields.front()];
+    if (!isCalled(first.association, series.name, key)) continue;
+    if (first.association == "point") return &series;
+    if (out == nullptr) out = &series;
+  }
   return out;
 }
 

@@ -48,7 +48,8 @@ class Refiner {
 
   /// From now on fields of this association have values at these elements alone, once all their
   /// blocks are applied. Values at other elements mean nothing. This takes much less time than all
-  /// values. REQUIRES: the elements are there; no such field was applied; no chunk comes later.
+  /// values. REQUIRES: the log has such a field and none was applied; the elements are there; no
+  /// chunk comes later.
   void fieldsOnlyAt(Association association, std::span<const std::uint32_t> elements);
 
   /// A chunk that goes beyond `level` then ends there, and chunks that begin beyond it are refused.

@@ -13,22 +13,16 @@ namespace {
 
 /// Numbers of the fields that `key` means, ascending: a series, of points before of cells; else the
 /// one field; else an instant that is alone.
-std::vector<std::uint32_t> fieldsOfSeries(const Manifest& manifest, std::string_view key) {
-  const std::vector<Series> all = seriesOf(std::span(manifest.fields));
-  const Series* found = nullptr;
-  for (const Series& series : all) {
-    const std::string& association = manifest.fields[series.fields.front()].association;
-    if (isCalled(association, series.name, key) && (found == nullptr || association == "point") &&
-        (found == nullptr || manifest.fields[found->fields.front()].association != "point"))
-      found = &series;
-  }
+std::vector<std::uint32_t> fieldsOfSeries(const ServedMesh& mesh, std::string_view key) {
+  const std::span<const ManifestField> all = mesh.manifest.fields;
+  const Series* found = seriesOfKey(std::span<const Series>(mesh.series), all, key);
   std::vector<std::uint32_t> out;
   if (found != nullptr) {
     for (const std::size_t f : found->fields) out.push_back(static_cast<std::uint32_t>(f));
     std::ranges::sort(out);
-  } else if (const auto one = fieldOfKey(manifest, key)) {
+  } else if (const auto one = fieldOfKey(mesh.manifest, key)) {
     out = {*one};
-  } else if (const auto meant = fieldsOfKey(manifest.fields, key); !meant.empty()) {
+  } else if (const auto meant = fieldsOfKey(all, key); !meant.empty()) {
     out = {meant.front()};
   }
   return out;
@@ -96,7 +90,7 @@ OrRefusal<LevelRequest> seriesOfTarget(const RequestTarget& target, const MeshPo
   if (!form) return std::unexpected(form.error());
   const std::optional<std::string> name = target.parameter("field");
   if (!name) return badRequest("field is missing; name a series or a field, like field=T");
-  std::vector<std::uint32_t> fields = fieldsOfSeries(mesh->manifest, *name);
+  std::vector<std::uint32_t> fields = fieldsOfSeries(*mesh, *name);
   if (fields.empty()) return notFound("this mesh has no series and no field '" + *name + "'");
   const OrRefusal<std::uint32_t> level = chosenLevel(target, *mesh, fields);
   if (!level) return std::unexpected(level.error());

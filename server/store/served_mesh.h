@@ -7,10 +7,13 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "codec/refine/log_file.h"
 #include "proto/manifest.h"
+#include "proto/series.h"
 #include "server/wire/document.h"
 
 namespace qtet {
@@ -49,6 +52,7 @@ struct ServedMesh {
   std::unique_ptr<Descriptor> descriptor{};
   /// Its part of limits::kMaxCopiedBytes; nullptr: the file is mapped.
   std::shared_ptr<void> copied{};
+  std::vector<Series> series = seriesOf(std::span<const ManifestField>(manifest.fields));
 
   /// `GET /v1/meshes/{id}`, made when it is first asked for, since compressing it takes ten times
   /// as long as opening a small log. Thread-safe, as the next one.

@@ -1,49 +1,52 @@
 #include "server/stream/field_turns.h"
 
 #include <algorithm>
-#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
 
 #include "proto/field_key.h"
+#include "proto/limits.h"
 #include "proto/manifest.h"
 #include "proto/series.h"
 
 namespace qtet {
 namespace {
 
-const Series* seriesOfKey(const std::vector<Series>& all, const Manifest& manifest,
-                          const std::string& key) {
-  const Series* out = nullptr;
-  for (const Series& series : all) {
-    const std::string& association = manifest.fields[series.fields.front()].association;
-    if (!isCalled(association, series.name, key)) continue;
-    if (out == nullptr || association == "point") out = &series;
-    if (association == "point") break;
-  }
-  return out;
+/// Adds the fields of the instants that are wished to a turn each.
+void addInstants(const Series& series, const StreamTime& time, FieldTurns& turns) {
+  const std::size_t count = std::min<std::size_t>(time.ahead + 1, series.times.size());
+  const std::size_t first = nearestTime(series.times, time.at);
+  if (turns.size() < count) turns.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    turns[i].push_back(
+        static_cast<std::uint32_t>(series.fields[(first + i) % series.fields.size()]));
 }
 
-/// The fields of the instants that are wished, in the order in which they are.
-std::vector<std::uint32_t> instantsOf(const Series& series, const StreamTime& time) {
-  const auto nearest = std::ranges::min_element(
-      series.times, {}, [&](double other) { return std::abs(other - time.at); });
-  const auto first = static_cast<std::size_t>(nearest - series.times.begin());
-  std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i < std::min<std::size_t>(time.ahead + 1, series.times.size()); ++i)
-    out.push_back(static_cast<std::uint32_t>(series.fields[(first + i) % series.times.size()]));
-  return out;
-}
-
-/// Gives each field its first turn alone, and with it those that it is predicted from.
-void complete(FieldTurns& turns, std::span<const FieldShape> shapes) {
+/// Gives each field its first turn alone, and with it those that it is predicted from. Ends before
+/// the turn with which there would be more than kMaxRequestFields.
+FieldTurns completed(const FieldTurns& turns, std::span<const FieldShape> shapes) {
+  FieldTurns out;
   std::vector<bool> isTaken(shapes.size());
-  for (std::vector<std::uint32_t>& turn : turns) {
-    turn = withParents(shapes, turn);
+  std::size_t count = 0;
+  for (const std::vector<std::uint32_t>& wanted : turns) {
+    std::vector<std::uint32_t> turn = withParents(shapes, wanted);
     std::erase_if(turn, [&](std::uint32_t f) { return isTaken[f]; });
+    count += turn.size();
+    if (!out.empty() && count > kMaxRequestFields) break;
+    if (!out.empty() && turn.empty()) continue;
     for (const std::uint32_t f : turn) isTaken[f] = true;
+    out.push_back(std::move(turn));
   }
-  const auto [first, last] =
-      std::ranges::remove_if(turns.begin() + 1, turns.end(), &std::vector<std::uint32_t>::empty);
-  turns.erase(first, last);
+  return out;
+}
+
+FieldTurns inOneTurn(const FieldTurns& turns) {
+  FieldTurns out(1);
+  for (const std::vector<std::uint32_t>& turn : turns)
+    out.front().insert(out.front().end(), turn.begin(), turn.end());
+  std::ranges::sort(out.front());
+  return out;
 }
 
 }  // namespace
@@ -51,32 +54,30 @@ void complete(FieldTurns& turns, std::span<const FieldShape> shapes) {
 std::expected<FieldTurns, std::string> fieldTurns(std::span<const std::string> names,
                                                   const std::optional<StreamTime>& time,
                                                   const Manifest& manifest,
+                                                  std::span<const Series> series,
                                                   std::span<const FieldShape> shapes) {
+  const std::span<const ManifestField> fields = manifest.fields;
   FieldTurns turns(1);
-  const std::vector<Series> all =
-      time ? seriesOf(std::span(manifest.fields)) : std::vector<Series>{};
-  std::vector<const Series*> taken;  // else a name a thousand times would take long
+  std::set<std::string_view> known;
+  std::set<const Series*> taken;
   for (const std::string& name : names) {
-    if (const auto field = fieldOfKey(manifest, name)) {
+    if (!known.insert(name).second) continue;
+    if (const auto field = fieldOfKey(fields, name)) {
       turns.front().push_back(*field);
       continue;
     }
-    const Series* series = seriesOfKey(all, manifest, name);
-    if (series == nullptr) return std::unexpected(name);
-    if (std::ranges::find(taken, series) != taken.end()) continue;
-    taken.push_back(series);
-    const std::vector<std::uint32_t> instants = instantsOf(*series, *time);
-    const bool inTurns = time->first == StreamTime::First::kSpace;
-    if (inTurns && turns.size() < instants.size()) turns.resize(instants.size());
-    for (std::size_t i = 0; i < instants.size(); ++i) turns[inTurns ? i : 0].push_back(instants[i]);
+    const Series* meant = time ? seriesOfKey(series, fields, name) : nullptr;
+    if (meant == nullptr) return std::unexpected(name);
+    if (taken.insert(meant).second) addInstants(*meant, *time, turns);
   }
-  for (std::vector<std::uint32_t>& turn : turns) {
-    std::ranges::sort(turn);
-    const auto twice = std::ranges::unique(turn);
-    turn.erase(twice.begin(), twice.end());
+  if (!time) {
+    std::ranges::sort(turns.front());
+    const auto twice = std::ranges::unique(turns.front());
+    turns.front().erase(twice.begin(), twice.end());
+    return turns;
   }
-  if (time) complete(turns, shapes);
-  return turns;
+  turns = completed(turns, shapes);
+  return time->first == StreamTime::First::kTime ? inOneTurn(turns) : turns;
 }
 
 }  // namespace qtet

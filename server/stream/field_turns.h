@@ -14,17 +14,19 @@
 namespace qtet {
 
 struct Manifest;
+struct Series;
 
 /// The blocks of one turn's fields come before those of the next turn's. Each turn is ascending,
 /// and no field is in two.
 using FieldTurns = std::vector<std::vector<std::uint32_t>>;
 
 /// One turn at least; the first has all fields that are no wished instants. With a time a name that
-/// no field has means a series: that of points, else that of cells. "cell:NAME" means the latter.
-/// Beside its instants stand the fields that they are predicted from. Returns the first name that
-/// means nothing instead. REQUIRES: `shapes` are those of the manifest's fields.
+/// no field has means a series (seriesOfKey). Then fields come with those that they are predicted
+/// from, and instants that would make more than kMaxRequestFields fields are left out. Returns the
+/// first name that means nothing instead. REQUIRES: `series` and `shapes` are those of the
+/// manifest's fields.
 [[nodiscard]] std::expected<FieldTurns, std::string> fieldTurns(
     std::span<const std::string> names, const std::optional<StreamTime>& time,
-    const Manifest& manifest, std::span<const FieldShape> shapes);
+    const Manifest& manifest, std::span<const Series> series, std::span<const FieldShape> shapes);
 
 }  // namespace qtet

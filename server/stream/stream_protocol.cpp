@@ -94,7 +94,8 @@ void StreamProtocol::handle(const OpenMessage& message) {
   if (!message.digest.empty() && message.digest != mesh->log.digest())
     return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " +
                                    mesh->log.digest() + " by now");
-  auto turns = fieldTurns(message.fields, message.time, mesh->manifest, mesh->log.fields());
+  auto turns =
+      fieldTurns(message.fields, message.time, mesh->manifest, mesh->series, mesh->log.fields());
   if (!turns) {
     Refusal unknown = unknownField(*mesh, turns.error());
     return refuse(unknown.code, std::move(unknown.detail));

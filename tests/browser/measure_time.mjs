@@ -19,7 +19,7 @@ if (!options.bin || !options.viewer || !options.out || positionals.length !== 1)
   process.exit(2);
 }
 const kPlayedMs = 10000;
-/** Instants between two that are sought: the page fetches 32 ahead of the shown one. */
+/** Instants that are not here: the page fetches 32 ahead, and only while it plays. */
 const kSought = [300, 500, 700, 900, 350, 550, 750];
 
 const folder = join(options.out, 'logs');

@@ -105,6 +105,7 @@ export class Viewing implements LaterHost {
   }
 
   dispose(): void {
+    this.hurry(false);
     clearTimeout(this.timer);
     this.endGround();
     this.camera.dispose();

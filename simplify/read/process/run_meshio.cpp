@@ -49,6 +49,8 @@ def write(mesh, name):
     mesh.cell_sets, mesh.point_sets, mesh.field_data, mesh.info = {}, {}, {}, None
     meshio.write(folder + "/" + name, mesh, file_format="vtu", binary=True)
 
+parts = wanted.split(",")
+
 def is_one(what, time, number, count):
     if ":" in what:  # a range, from which the reader of the result takes steps
         return True
@@ -61,7 +63,7 @@ def is_one(what, time, number, count):
     return abs(time - other) <= 1e-9 * max(abs(time), abs(other))
 
 def is_meant(time, number, count):
-    return any(is_one(what, time, number, count) for what in wanted.split(","))
+    return any(is_one(what, time, number, count) for what in parts)
 
 def formats_of(ending):
     helpers = meshio._helpers
@@ -132,7 +134,8 @@ except BaseException as error:
 /// Returns the program's exit code; kKilled also where it could not be started.
 int run(const char* python, const MeshioInput& input, const fs::path& folder,
         const fs::path& words) {
-  const std::string in = fs::absolute(input.path).string();
+  // whole, since the script leaves this process's folder
+  const std::string in = fs::absolute(input.path).string(), out = fs::absolute(folder).string();
   const pid_t child = ::fork();
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would wait for it
@@ -142,7 +145,7 @@ int run(const char* python, const MeshioInput& input, const fs::path& folder,
     ::dup2(file, STDOUT_FILENO);
     ::dup2(file, STDERR_FILENO);
     boundMemory();
-    ::execlp(python, python, "-c", kScript, in.c_str(), folder.c_str(), input.kind.c_str(),
+    ::execlp(python, python, "-c", kScript, in.c_str(), out.c_str(), input.kind.c_str(),
              input.time.c_str(), static_cast<char*>(nullptr));
     ::_exit(kNoProgram);
   }

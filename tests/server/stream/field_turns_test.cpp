@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "proto/limits.h"
 #include "proto/manifest.h"
+#include "proto/series.h"
 
 namespace qtet {
 namespace {
@@ -38,9 +40,10 @@ struct Log {
       prediction.parents[prediction.count++] = {parent, 8};
     }
   }
+  [[nodiscard]] std::vector<Series> series() const { return seriesOf(std::span(manifest.fields)); }
   [[nodiscard]] FieldTurns turns(const std::vector<std::string>& names,
                                  const std::optional<StreamTime>& time) const {
-    return fieldTurns(names, time, manifest, shapes).value_or(FieldTurns{});
+    return fieldTurns(names, time, manifest, series(), shapes).value_or(FieldTurns{});
   }
 
   Manifest manifest;
@@ -51,8 +54,10 @@ TEST(FieldTurns, withoutATimeNamesMeanFieldsAlone) {
   const Log log;
   EXPECT_EQ(log.turns({"p", "T@2", "p"}, {}), (FieldTurns{{2, 7}}));
   EXPECT_EQ(log.turns({}, {}), FieldTurns{{}});
-  EXPECT_EQ(fieldTurns(std::vector<std::string>{"p", "T"}, {}, log.manifest, log.shapes).error(),
-            "T");
+  EXPECT_EQ(
+      fieldTurns(std::vector<std::string>{"p", "T"}, {}, log.manifest, log.series(), log.shapes)
+          .error(),
+      "T");
 }
 
 TEST(FieldTurns, theNearestInstantComesWithItsParentsBeforeTheOnesAhead) {
@@ -70,11 +75,47 @@ TEST(FieldTurns, instantsAheadGoRoundTheEndAndEachComesOnce) {
   EXPECT_EQ(log.turns({"T"}, StreamTime{4, 9, First::kSpace}), (FieldTurns{{1}, {0}, {2, 3}, {4}}));
 }
 
+TEST(FieldTurns, seriesGoTogetherAndANameThatIsGivenTwiceCountsOnce) {
+  const Log log;
+  const StreamTime time{0, 1, First::kSpace};
+  EXPECT_EQ(log.turns({"T", "cell:T", "T", "point:T"}, time), (FieldTurns{{0, 5}, {1, 2, 3, 6}}));
+  EXPECT_EQ(log.turns({"T@2", "T"}, time), (FieldTurns{{0, 1, 2}, {3}}));
+}
+
+TEST(FieldTurns, instantsBeyondTheMostFieldsAreLeftOut) {
+  Log log;
+  log.manifest.fields.clear();
+  log.shapes.clear();
+  for (const char* name : {"T", "U"})
+    for (std::uint32_t i = 0; i < kMaxRequestFields; ++i) {
+      ManifestField& field = log.manifest.fields.emplace_back();
+      field.name = std::string(name) + "@" + std::to_string(i);
+      field.association = "point";
+      field.components = 1;
+      log.shapes.emplace_back();
+    }
+  const auto counted = [&](const std::vector<std::string>& names, std::uint32_t ahead,
+                           First first) {
+    std::size_t out = 0;
+    for (const auto& turn : log.turns(names, StreamTime{0, ahead, first})) out += turn.size();
+    return out;
+  };
+  for (const First first : {First::kSpace, First::kTime}) {
+    EXPECT_EQ(counted({"T"}, kMaxAhead, first), kMaxRequestFields);
+    EXPECT_EQ(counted({"T", "U"}, kMaxRequestFields / 2 - 2, first), kMaxRequestFields - 2);
+    EXPECT_EQ(counted({"T", "U"}, kMaxRequestFields / 2 - 1, first), kMaxRequestFields);
+    EXPECT_EQ(counted({"T", "U"}, kMaxRequestFields / 2, first), kMaxRequestFields);
+  }
+  log.predict(1, {1030});
+  EXPECT_EQ(counted({"T"}, kMaxAhead, First::kSpace), kMaxRequestFields) << "parents count";
+}
+
 TEST(FieldTurns, aSeriesOfCellsHasItsKey) {
   const Log log;
   EXPECT_EQ(log.turns({"cell:T"}, StreamTime{1, 1, First::kSpace}), (FieldTurns{{6}, {5}}));
   EXPECT_EQ(log.turns({"point:T"}, StreamTime{0, 0, First::kSpace}), FieldTurns{{0}});
-  EXPECT_EQ(fieldTurns(std::vector<std::string>{"cell:U"}, StreamTime{}, log.manifest, log.shapes)
+  EXPECT_EQ(fieldTurns(std::vector<std::string>{"cell:U"}, StreamTime{}, log.manifest, log.series(),
+                       log.shapes)
                 .error(),
             "cell:U");
 }

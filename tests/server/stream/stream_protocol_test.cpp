@@ -60,14 +60,19 @@ class StreamProtocolTest : public testing::Test {
     say(R"({"type":"open","mesh":"known","fields":["density"],"credit":9007199254740991)" + more +
         "}");
   }
-  /// The chunks of all frames up to the next word.
-  std::vector<std::uint32_t> chunks() {
-    std::vector<std::uint32_t> out;
+  /// Chunk and first part of all frames but the head up to the next word.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places() {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
     for (std::optional<Outgoing> o;
          (o = protocol_->next()) && std::holds_alternative<OutgoingFrame>(*o);) {
       const FrameHeader& header = std::get<OutgoingFrame>(*o).header;
-      if (header.firstPart != FrameHeader::kHead) out.push_back(header.chunk);
+      if (header.firstPart != FrameHeader::kHead) out.emplace_back(header.chunk, header.firstPart);
     }
+    return out;
+  }
+  std::vector<std::uint32_t> chunks() {
+    std::vector<std::uint32_t> out;
+    for (const auto& [chunk, part] : places()) out.push_back(chunk);
     return out;
   }
   static Bytes encoded(const OutgoingFrame& frame) {
@@ -370,12 +375,22 @@ TEST_F(StreamProtocolTest, instantsComeInTheOrderOfTheirTimes) {
   EXPECT_EQ(errorCode(), "unknown-field");
   openSeries(R"(,"time":{"at":1,"ahead":1})");
   EXPECT_GT(opened().planned, 0u);
-  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2, 0, 1, 2}));
+  using Places = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  const std::uint32_t second = kFirstFieldPart + 2, third = kFirstFieldPart + 3;
+  EXPECT_EQ(places(), (Places{{0, 0},
+                              {0, second},
+                              {1, 0},
+                              {1, second},
+                              {2, 0},
+                              {2, second},
+                              {0, third},
+                              {1, third},
+                              {2, third}}));
   openSeries(R"(,"time":{"at":1,"ahead":1,"first":"time"})");
   EXPECT_GT(opened().planned, 0u);
-  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2}));
+  EXPECT_EQ(places(), (Places{{0, 0}, {0, second}, {1, 0}, {1, second}, {2, 0}, {2, second}}));
   say(R"({"type":"resume","have":{"chunks":3,"fields":{"T@1":2}}})");
-  EXPECT_EQ(chunks(), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(places(), (Places{{0, third}, {1, third}, {2, second}}));
 }
 
 TEST_F(StreamProtocolTest, aRefusedOpenEndsTheStreamBeforeIt) {

@@ -377,6 +377,10 @@ def a_series_of_xdmf_is_read():
         mesh, _ = read(path, "--time", "0,0.5")
         assert {"point_T@0", "point_T@0.5"} == {name for name in mesh if "@" in name}, set(mesh)
         assert "it has 0, 0.25, 0.5" in refused("check", path, "--time", "9")
+    (out / "temporary").mkdir(exist_ok=True)
+    relative = dict(os.environ, TMPDIR="temporary")
+    done = subprocess.run([qtet, "check", path], cwd=out, env=relative, capture_output=True)
+    assert done.returncode == 0, done
 
 
 def xdmf(path, body, head=""):

@@ -21,6 +21,7 @@
 #include "simplify/mesh/missing_values.h"
 #include "tests/support/forged_log.h"
 #include "tests/support/series_mesh.h"
+#include "tests/support/written_log.h"
 
 namespace qtet {
 namespace {
@@ -116,11 +117,23 @@ void expectSameAtFewElements(const LogFile& log, std::uint32_t level, Associatio
 void expectSameAtFewElements(const LogFile& log, std::uint32_t levels) {
   for (const std::uint32_t level : {0u, levels / 2, levels})
     for (const Association association : {Association::kPoint, Association::kCell})
-      expectSameAtFewElements(log, level, association);
+      if (std::ranges::find(log.fields(), association, &FieldShape::association) !=
+          log.fields().end())
+        expectSameAtFewElements(log, level, association);
 }
 
 TEST_F(TimeDifferences, aFewElementsHaveTheValuesThatTheyHaveAmongAll) {
   expectSameAtFewElements(log(), history_.levels);
+}
+
+TEST(FewElements, pointsOfSeveralComponentsHaveTheValuesThatTheyHaveAmongAll) {
+  LatticeMesh mesh = testing::gridMesh(5, 1);
+  mesh.fields = {{"Swirl", 3, "float32", "point", 12, 0.25, {-3, 0, 2}, {-3, 1020}}};
+  mesh.values.assign(1, {});
+  for (const LatticePoint& p : mesh.points)
+    for (const int axis : {2, 0, 1}) mesh.values[0].push_back((7 * p[axis] + p[0]) & 4095);
+  const LogFile log = LogFile::fromBytes(testing::logBytes(mesh, {}, 600)).value();
+  expectSameAtFewElements(log, log.index().chunks.back().lastLevel);
 }
 
 TEST_F(WithGaps, aFewElementsHaveTheValuesThatTheyHaveAmongAll) {
