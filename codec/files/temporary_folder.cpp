@@ -53,8 +53,14 @@ void removeAbandoned(const fs::path& parent, const std::string& prefix) {
 
 TemporaryFolder::TemporaryFolder(std::string_view purpose) {
   const fs::path parent = fs::temp_directory_path(failure_);
-  if (failure_) return;
-  const std::string prefix = "qtet-" + std::string(purpose) + "-";
+  if (!failure_) make(parent, "qtet-" + std::string(purpose) + "-");
+}
+
+TemporaryFolder::TemporaryFolder(const fs::path& parent, const std::string& prefix) {
+  make(parent, prefix);
+}
+
+void TemporaryFolder::make(const fs::path& parent, const std::string& prefix) {
   removeAbandoned(parent, prefix);
   // somebody else may take a folder that has no lock yet for an abandoned one
   constexpr int kAttempts = 100;

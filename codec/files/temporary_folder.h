@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -14,6 +15,8 @@ class TemporaryFolder {
  public:
   /// `purpose` stands in its name: qtet-PURPOSE-XXXXXX. After a failure path() is empty.
   explicit TemporaryFolder(std::string_view purpose);
+  /// The same as `parent`/PREFIXXXXXXX. REQUIRES: nobody else's folder there begins with `prefix`.
+  TemporaryFolder(const std::filesystem::path& parent, const std::string& prefix);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -23,6 +26,8 @@ class TemporaryFolder {
   [[nodiscard]] const std::error_code& failure() const { return failure_; }
 
  private:
+  void make(const std::filesystem::path& parent, const std::string& prefix);
+
   std::filesystem::path path_;
   std::error_code failure_;
   int lock_ = -1;  // the folder itself, open

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "codec/files/atomic_file.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/log/write_mesh.h"
@@ -7,9 +9,14 @@ namespace qtet {
 namespace {
 
 std::string listOfSamples() {
+  std::size_t widest = 0;
+  for (const Sample& sample : samples()) widest = std::max(widest, sample.name.size());
   std::string out = "Writes a mesh that is computed, not read. NAME is one of:";
-  for (const Sample& sample : samples())
-    out += "\n  " + std::string(sample.name) + "  " + std::string(sample.description);
+  for (const Sample& sample : samples()) {
+    std::string name(sample.name);
+    name.resize(widest, ' ');
+    out += "\n  " + name + "  " + std::string(sample.description);
+  }
   return out;
 }
 

@@ -90,7 +90,8 @@ int runSimplify(const Words& words, Console& console) {
        "simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them,\n"
        "simplifies them level by level and writes the log, from which every level and the whole\n"
        "mesh come back.\n"
-       "A series whose cells change becomes a list of logs, NAME.json with NAME.0.qtet and so on.",
+       "A series whose cells change becomes a list of logs, NAME.json with NAME.0.DIGEST.qtet and "
+       "so on.",
        "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields "
        "Density,Velocity --field-bits 10 --json\n"
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "

@@ -36,8 +36,20 @@ std::size_t textWidth(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, beginsCharacter));
 }
 
+namespace {
+
+/// Where the text of an item begins, "  name  text"; 0: the line is none.
+std::size_t hangOf(std::string_view line) {
+  if (!line.starts_with("  ")) return 0;
+  const std::size_t name = line.find_first_not_of(' '), gap = line.find("  ", name);
+  const std::size_t text = line.find_first_not_of(' ', gap);
+  return text == std::string_view::npos ? 0 : text;
+}
+
+}  // namespace
+
 std::string filled(std::string_view text, std::string_view indent) {
-  std::string out;
+  std::string out, within;
   std::size_t column = 0;
   const auto newLine = [&](std::string_view begin) {
     out += '\n';
@@ -51,12 +63,17 @@ std::string filled(std::string_view text, std::string_view indent) {
       if (std::exchange(inParagraph, false)) out += '\n';
       continue;
     }
-    const bool begins = !std::exchange(inParagraph, true) || line.starts_with('-');
+    const std::size_t hang = hangOf(line);
+    const bool begins = !std::exchange(inParagraph, true) || line.starts_with('-') || hang > 0;
     if (begins && !out.empty()) newLine("");
+    if (begins) within = hang > 0 ? std::string(hang, ' ') : std::string(indent);
+    out += line.substr(0, hang);
+    column += hang;
+    line.erase(0, hang);
     bool first = begins;
     for (std::istringstream words(line); words >> word; first = false) {
       if (!first && column + 1 + textWidth(word) > kHelpColumns) {
-        newLine(indent);
+        newLine(within);
       } else if (!first) {
         out += ' ', ++column;
       }

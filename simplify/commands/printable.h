@@ -22,7 +22,8 @@ inline constexpr std::size_t kHelpColumns = 100;
 
 /// The text's paragraphs, filled to lines of at most kHelpColumns; a longer word has a line to
 /// itself. A paragraph begins at the text's start, behind an empty line, and at a line that begins
-/// with a dash. Its lines from the second on begin with `indent`.
+/// with a dash. Its lines from the second on begin with `indent`. A line "  name  text" is an item,
+/// and its further lines begin below the text.
 [[nodiscard]] std::string filled(std::string_view text, std::string_view indent = "");
 
 /// 1234567 as "1,234,567".

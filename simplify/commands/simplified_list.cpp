@@ -1,11 +1,14 @@
 #include "simplify/commands/simplified_list.h"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "codec/files/atomic_file.h"
+#include "codec/files/temporary_folder.h"
 #include "proto/field_key.h"
 #include "proto/number_text.h"
 #include "proto/text_bytes.h"
@@ -19,45 +22,84 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The logs of a list that is not published yet. They lie beside it under other names, which are
-/// removed with the object.
+constexpr std::size_t kDigits = 12;  // of a digest: 48 bits tell two logs of one list apart
+
+/// NAME.N.DIGEST.qtet for the log N of the list NAME.json. A new list's logs so never take the
+/// place of an older one's.
+std::string logName(const std::string& stem, std::size_t log, std::string_view digest) {
+  return stem + "." + std::to_string(log) + "." + std::string(digest.substr(0, kDigits)) + ".qtet";
+}
+
+/// Whether logName makes `name` of some digest.
+bool isLogName(std::string_view name, const std::string& stem, std::size_t log) {
+  const std::string sample = logName(stem, log, std::string(kDigits, '0'));
+  const std::size_t begin = sample.size() - kDigits - std::string_view(".qtet").size();
+  if (name.size() != sample.size() || !name.starts_with(sample.substr(0, begin))) return false;
+  const std::string_view digest = name.substr(begin, kDigits);
+  return name == logName(stem, log, digest) &&
+         digest.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+/// The logs of a list that is being made. They wait in a hidden folder beside it, which goes with
+/// the object. If the process is killed, it goes with the next one for this list.
 class UnpublishedLogs {
  public:
   explicit UnpublishedLogs(const fs::path& list)
-      : folder_(list.parent_path()), stem_(list.stem().string()) {}
-  UnpublishedLogs(const UnpublishedLogs&) = delete;
-  UnpublishedLogs& operator=(const UnpublishedLogs&) = delete;
-  ~UnpublishedLogs() {
-    std::error_code ignored;
-    for (std::size_t i = 0; i < count_; ++i) fs::remove(fileOf(i), ignored);
-  }
+      : beside_(list.has_parent_path() ? list.parent_path() : fs::path(".")),
+        stem_(list.stem().string()),
+        waiting_(beside_, "." + stem_ + ".qtet-unpublished-") {}
 
-  /// Where the next log is written.
-  [[nodiscard]] fs::path next() { return fileOf(count_++); }
-  /// The name of a log when it is published.
-  [[nodiscard]] std::string nameOf(std::size_t log) const {
-    return stem_ + "." + std::to_string(log) + ".qtet";
+  [[nodiscard]] Status made() const {
+    if (!waiting_.path().empty()) return {};
+    return fail(ErrorCode::kIo, "cannot make a folder for the logs of " + stem_ + ".json in " +
+                                    beside_.string() + ": " + waiting_.failure().message());
   }
-  /// Gives all logs their names.
-  [[nodiscard]] Status publish() const {
-    for (std::size_t i = 0; i < count_; ++i) {
-      std::error_code code;
-      fs::rename(fileOf(i), folder_ / nameOf(i), code);
-      if (code)
-        return fail(ErrorCode::kIo,
-                    "cannot write " + (folder_ / nameOf(i)).string() + ": " + code.message());
-    }
-    return {};
+  /// Where the next log is written.
+  [[nodiscard]] fs::path next() const { return fileOf(names_.size()); }
+  /// Takes the log of this digest, which was written there. Returns its name beside the list.
+  std::string add(std::string_view digest) {
+    return names_.emplace_back(logName(stem_, names_.size(), digest));
+  }
+  /// Moves the logs beside the list and writes it. Then those of the older list go, or after an
+  /// error the new ones: all that the list does not name. Logs that somebody renamed stay.
+  [[nodiscard]] Status publish(const fs::path& list, std::string_view text) const {
+    std::set<std::string> ours;
+    if (const Result<SegmentList> old = openList(list))
+      for (std::size_t log = 0; log < old->segments.size(); ++log)
+        if (isLogName(old->segments[log].log, stem_, log)) ours.insert(old->segments[log].log);
+    Status out = moveBeside(ours);
+    if (out) out = writeFileAtomically(list, viewOf(text));
+    const Result<SegmentList> now = openList(list);
+    if (!now && now.error().code != ErrorCode::kNotFound) return out;
+    if (now)
+      for (const Segment& segment : now->segments) ours.erase(segment.log);
+    std::error_code ignored;
+    for (const std::string& name : ours) fs::remove(beside_ / name, ignored);
+    return out;
   }
 
  private:
+  /// Adds to `ours` the names that were not there.
+  [[nodiscard]] Status moveBeside(std::set<std::string>& ours) const {
+    for (std::size_t log = 0; log < names_.size(); ++log) {
+      const fs::path file = beside_ / names_[log];
+      std::error_code code;
+      const bool isThere = fs::exists(file, code);
+      fs::rename(fileOf(log), file, code);
+      if (code)
+        return fail(ErrorCode::kIo, "cannot write " + file.string() + ": " + code.message());
+      if (!isThere) ours.insert(names_[log]);
+    }
+    return {};
+  }
   [[nodiscard]] fs::path fileOf(std::size_t log) const {
-    return folder_ / ("." + nameOf(log) + ".part");
+    return waiting_.path() / (std::to_string(log) + ".qtet");
   }
 
-  fs::path folder_;
+  fs::path beside_;
   std::string stem_;
-  std::size_t count_ = 0;
+  TemporaryFolder waiting_;
+  std::vector<std::string> names_;
 };
 
 /// "0,0.1,0.2"
@@ -134,9 +176,7 @@ Result<std::vector<std::vector<double>>> segmentsOf(const SimplifyRequest& reque
 /// Makes the log of one segment, and puts it into the list and the report.
 Status addSegment(const SimplifyRequest& request, std::vector<double> times, UnpublishedLogs& logs,
                   Progress& progress, SegmentList& list, OrderedJson& report) {
-  const std::string name = logs.nameOf(list.segments.size());
   SimplifyRequest ofOne = request;
-  ofOne.output = (fs::path(request.output).parent_path() / name).string();
   ofOne.read.namesTime = true;
   if (!times.empty()) ofOne.read.time = timesText(times);
   const fs::path file = logs.next();
@@ -152,6 +192,8 @@ Status addSegment(const SimplifyRequest& request, std::vector<double> times, Unp
     for (const OrderedJson& text : (*made)[texts])
       if (std::ranges::find(report[texts], text) == report[texts].end())
         report[texts].push_back(text);
+  const std::string name = logs.add(log->file.digest());
+  (*made)["output"] = (fs::path(request.output).parent_path() / name).string();
   report["segments"].push_back({{"log", name}, {"times", times}, {"made", std::move(*made)}});
   list.segments.push_back({name, std::move(times)});
   return {};
@@ -160,9 +202,12 @@ Status addSegment(const SimplifyRequest& request, std::vector<double> times, Unp
 }  // namespace
 
 Result<OrderedJson> makeList(const SimplifyRequest& request, Progress& progress) {
-  UnpublishedLogs logs(request.output);
-  if (Status checked = checkName(logs.nameOf(0), request.output); !checked)
+  const std::string sample =
+      logName(fs::path(request.output).stem().string(), 0, std::string(kDigits, '0'));
+  if (Status checked = checkName(sample, request.output); !checked)
     return std::unexpected(checked.error());
+  UnpublishedLogs logs(request.output);
+  if (Status s = logs.made(); !s) return std::unexpected(s.error());
   std::vector<std::string> notes;
   auto segments = segmentsOf(request, progress, notes);
   if (!segments) return std::unexpected(segments.error());
@@ -179,9 +224,7 @@ Result<OrderedJson> makeList(const SimplifyRequest& request, Progress& progress)
         text.error().code,
         request.output + ": its list of logs is none that can be read: " + text.error().message);
   report["times"] = list.times();
-  if (Status s = logs.publish(); !s) return std::unexpected(s.error());
-  if (Status s = writeFileAtomically(request.output, viewOf(*text)); !s)
-    return std::unexpected(s.error());
+  if (Status s = logs.publish(request.output, *text); !s) return std::unexpected(s.error());
   return report;
 }
 

@@ -55,6 +55,17 @@ TEST(TemporaryFolder, isOnesOwnAndGoesWithEverythingInIt) {
   EXPECT_TRUE(fs::is_empty(parent));
 }
 
+TEST(TemporaryFolder, canHaveAnotherPlaceAndName) {
+  const fs::path parent = testing::freshFolder("temporary-folder");
+  fs::create_directory(parent / ".mine-abcdef");
+  fs::create_directory(parent / ".mine-abcdefg");
+  const TemporaryFolder one(parent, ".mine-"), none(parent / "missing", ".mine-");
+  EXPECT_TRUE(one.path().string().starts_with((parent / ".mine-").string()));
+  EXPECT_FALSE(fs::exists(parent / ".mine-abcdef")) << "abandoned";
+  EXPECT_TRUE(fs::exists(parent / ".mine-abcdefg"));
+  EXPECT_EQ(none.failure(), std::errc::no_such_file_or_directory);
+}
+
 TEST(TemporaryFolder, takesAwayWhatAKilledProcessLeftAndNothingElse) {
   const fs::path parent = testing::freshFolder("temporary-folder");
   const TmpDir where(parent);

@@ -36,6 +36,9 @@ TEST(Printable, widthIsOfCharactersAndCountsHaveTheirWord) {
 TEST(Printable, paragraphsAreFilledAndKeptApart) {
   EXPECT_EQ(filled("one\ntwo\n\nthree\n--json: four\nfive"), "one two\n\nthree\n--json: four five");
   EXPECT_EQ(filled(""), "");
+  const std::string item(92, 'i');
+  EXPECT_EQ(filled("one of:\n  a    " + item + " x\n  b c  y\n  d\nend"),
+            "one of:\n  a    " + item + "\n       x\n  b c  y d end");
   std::string words;
   for (int i = 0; i < 60; ++i) words += "w\u00F6rd ";
   const std::string text = filled(words + std::string(120, 'x') + " end", "  ");

@@ -45,6 +45,9 @@ class SegmentListTool : public Tool {
   SegmentList list(const std::string& name = "run.json") {
     return readSegmentList(contentOf(folder_ / name)).value();
   }
+  /// The name of a log of run.json.
+  std::string log(std::size_t number) { return list().segments.at(number).log; }
+  std::string digestOf(const std::string& log) { return openLog(folder_ / log)->file.digest(); }
   std::vector<std::string> fieldsOf(const std::string& log) {
     const Result<OpenedLog> opened = openLog(folder_ / log);
     EXPECT_TRUE(opened) << log;
@@ -70,14 +73,13 @@ TEST_F(SegmentListTool, eachRunOfEqualCellsIsALog) {
   const Ran ran = run("simplify run.pvd --time all --measure none -o run.json --json");
   ASSERT_EQ(ran.code, 0) << ran.err;
   ASSERT_EQ(list().segments.size(), 2u);
-  EXPECT_EQ(list().segments[0].log, "run.0.qtet");
+  EXPECT_EQ(log(0), "run.0." + digestOf(log(0)).substr(0, 12) + ".qtet");
   EXPECT_EQ(list().segments[0].times, (std::vector<double>{0, 0.1, 0.2}));
-  EXPECT_EQ(list().segments[1].log, "run.1.qtet");
   EXPECT_EQ(list().segments[1].times, (std::vector<double>{0.3, 0.4}));
-  EXPECT_EQ(fieldsOf("run.0.qtet"), (std::vector<std::string>{"T@0", "T@0.1", "T@0.2"}));
-  EXPECT_EQ(fieldsOf("run.1.qtet"), (std::vector<std::string>{"T@0.3", "T@0.4"}));
+  EXPECT_EQ(fieldsOf(log(0)), (std::vector<std::string>{"T@0", "T@0.1", "T@0.2"}));
+  EXPECT_EQ(fieldsOf(log(1)), (std::vector<std::string>{"T@0.3", "T@0.4"}));
   EXPECT_EQ(ran.json()["times"].size(), 5u);
-  EXPECT_EQ(ran.json()["segments"][1]["made"]["output"], "run.1.qtet");
+  EXPECT_EQ(ran.json()["segments"][1]["made"]["output"], log(1));
   EXPECT_EQ(filesLike(".run"), std::vector<std::string>{}) << "unpublished logs";
 }
 
@@ -85,15 +87,15 @@ TEST_F(SegmentListTool, aSegmentOfOneStepHasItsFieldAsAnInstant) {
   ASSERT_EQ(run("simplify run.pvd --time 0:0.3:3 --measure none -o run.json").code, 0);
   ASSERT_EQ(list().segments.size(), 2u);
   EXPECT_EQ(list().segments[0].times, std::vector<double>{0});
-  EXPECT_EQ(fieldsOf("run.0.qtet"), std::vector<std::string>{"T@0"});
-  EXPECT_EQ(fieldsOf("run.1.qtet"), std::vector<std::string>{"T@0.3"});
+  EXPECT_EQ(fieldsOf(log(0)), std::vector<std::string>{"T@0"});
+  EXPECT_EQ(fieldsOf(log(1)), std::vector<std::string>{"T@0.3"});
 }
 
 TEST_F(SegmentListTool, stepsWithTheSameCellsAreOneSegment) {
   ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.json").code, 0);
   ASSERT_EQ(list().segments.size(), 1u);
   ASSERT_EQ(run("simplify run.pvd --time :0.2 --measure none -o run.qtet").code, 0);
-  EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), contentOf(folder_ / "run.qtet"));
+  EXPECT_EQ(contentOf(folder_ / log(0)), contentOf(folder_ / "run.qtet"));
 }
 
 TEST_F(SegmentListTool, timesInUnixSecondsStayApart) {
@@ -118,8 +120,8 @@ TEST_F(SegmentListTool, oneLogOfChangingCellsIsRefused) {
 
 TEST_F(SegmentListTool, afterAnErrorAnOlderListStays) {
   makeList();
-  const std::string before = contentOf(folder_ / "run.json"),
-                    log = contentOf(folder_ / "run.0.qtet");
+  const std::string before = contentOf(folder_ / "run.json"), first = log(0),
+                    content = contentOf(folder_ / first);
   put("step-4.vtu", "no mesh");
   expectFailure("simplify run.pvd --time all --measure none --fields none -o run.json", 1,
                 "step-4.vtu");
@@ -128,14 +130,50 @@ TEST_F(SegmentListTool, afterAnErrorAnOlderListStays) {
   write("step-4.vtu", other);
   expectFailure("simplify run.pvd --time all --measure none --fields T -o run.json", 1, "T");
   EXPECT_EQ(contentOf(folder_ / "run.json"), before);
-  EXPECT_EQ(contentOf(folder_ / "run.0.qtet"), log);
+  EXPECT_EQ(contentOf(folder_ / first), content);
   EXPECT_EQ(filesLike(".run"), std::vector<std::string>{});
+}
+
+TEST_F(SegmentListTool, aNewListTakesThePlaceOfTheOlderLogs) {
+  makeList();
+  const std::string first = log(0), second = log(1);
+  makeList();
+  EXPECT_EQ(filesLike("run."), (std::vector<std::string>{first, second, "run.json", "run.pvd"}));
+  SegmentList renamed = list();
+  renamed.segments[1].log = "run.1.mine.qtet";
+  std::filesystem::rename(folder_ / second, folder_ / "run.1.mine.qtet");
+  put("run.json", segmentListText(renamed).value());
+  put("run.0.0123456789ab.qtet", "of no list");
+  std::filesystem::create_directory(folder_ / ".run.qtet-unpublished-abcdef");
+  ASSERT_EQ(run("simplify run.pvd --time all --measure none --field-bits 9 -o run.json").code, 0);
+  EXPECT_NE(log(0), first);
+  std::vector<std::string> expected{
+      log(0), log(1), "run.0.0123456789ab.qtet", "run.1.mine.qtet", "run.json", "run.pvd"};
+  std::ranges::sort(expected);
+  EXPECT_EQ(filesLike("run."), expected);
+  EXPECT_EQ(filesLike(".run"), std::vector<std::string>{}) << "what a killed process left";
+}
+
+TEST_F(SegmentListTool, aLogThatCannotBeMovedLeavesTheOlderList) {
+  makeList();
+  const std::string first = log(0), second = log(1), before = contentOf(folder_ / "run.json");
+  std::filesystem::remove(folder_ / "run.json");
+  std::filesystem::remove(folder_ / first);
+  std::filesystem::remove(folder_ / second);
+  std::filesystem::create_directories(folder_ / second / "in the way");
+  expectFailure("simplify run.pvd --time all --measure none -o run.json", 1, second);
+  EXPECT_EQ(filesLike("run."), (std::vector<std::string>{second, "run.pvd"}));
+  put("run.json", before);
+  put(first, "of the older list");
+  expectFailure("simplify run.pvd --time all --measure none -o run.json", 1, second);
+  EXPECT_EQ(contentOf(folder_ / "run.json"), before);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / first));
 }
 
 TEST_F(SegmentListTool, aListNeedsTimesAndANameThatItCanHold) {
   expectFailure("simplify box.vtu -o box.json", 1, "box.vtu has no times");
   EXPECT_EQ(filesLike("box."), std::vector<std::string>{"box.vtu"});
-  expectFailure("simplify run.pvd --time all -o a..b.json", 1, "a..b.0.qtet");
+  expectFailure("simplify run.pvd --time all -o a..b.json", 1, "a..b.0.");
   expectFailure("simplify run.pvd --time all -o run.json --time-statistics", 2, "-o NAME.qtet");
 }
 
@@ -160,7 +198,7 @@ TEST_F(SegmentListTool, infoShowsEachSegment) {
   ASSERT_EQ(info["segments"].size(), 2u);
   EXPECT_EQ(info["instants"], 5);
   EXPECT_EQ(info["timeRange"], nlohmann::json({0., 0.4}));
-  EXPECT_EQ(info["segments"][1]["log"], "run.1.qtet");
+  EXPECT_EQ(info["segments"][1]["log"], log(1));
   EXPECT_EQ(info["segments"][0]["tetrahedra"].get<int>() - 1, info["segments"][1]["tetrahedra"]);
   const Ran ran = run("info run.json");
   EXPECT_NE(ran.out.find("2 logs, 5 instants, 0 to 0.4"), std::string::npos) << ran.out;
@@ -172,7 +210,7 @@ TEST_F(SegmentListTool, extractTakesTheLogThatHasTheTime) {
     const Ran ran =
         run("extract run.json --ratio 1 --time " + shortestText(step / 10.) + " -o out.vtu --json");
     ASSERT_EQ(ran.code, 0) << ran.err;
-    EXPECT_EQ(ran.json()["log"], step < 3 ? "run.0.qtet" : "run.1.qtet");
+    EXPECT_EQ(ran.json()["log"], log(step < 3 ? 0 : 1));
     const TetMesh mesh = readMesh(folder_ / "out.vtu").value().mesh;
     ASSERT_EQ(mesh.fields.size(), 1u);
     EXPECT_EQ(mesh.fields[0].name, "T");
@@ -194,7 +232,8 @@ TEST_F(SegmentListTool, anErrorHoldsAtEachOfTheChosenTimes) {
   };
   std::uint32_t worst = 0;
   for (const std::string time : {"0.1", "0.2"}) {
-    const auto alone = run("extract run.0.qtet --json -o o.vtu --error T@" + time + "=1e-4").json();
+    const auto alone =
+        run("extract " + log(0) + " --json -o o.vtu --error T@" + time + "=1e-4").json();
     EXPECT_EQ(levelAt(time, "o.vtu"), alone["level"].get<std::uint32_t>()) << time;
     worst = std::max(worst, alone["level"].get<std::uint32_t>());
   }
@@ -215,8 +254,8 @@ TEST_F(SegmentListTool, allTimesAreOneCollection) {
   EXPECT_EQ(list("out.json").times(), list().times());
   EXPECT_EQ(list("out.json").segments[1].times, list().segments[1].times);
   std::filesystem::remove_all(folder_ / "out");
-  std::filesystem::remove(folder_ / "run.1.qtet");
-  expectFailure("extract run.json --ratio 1 -o out.pvd", 1, "run.1.qtet");
+  std::filesystem::remove(folder_ / log(1));
+  expectFailure("extract run.json --ratio 1 -o out.pvd", 1, log(1));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
@@ -230,11 +269,12 @@ TEST_F(SegmentListTool, aListThatIsDamagedIsRefused) {
   SegmentList other = list();
   other.segments[0].times = {0, 0.15};
   put("run.json", segmentListText(other).value());
-  expectFailure("info run.json", 1, "the log run.0.qtet has no instant at time 0.15");
-  put("run.0.qtet", "no log");
+  expectFailure("info run.json", 1, "the log " + log(0) + " has no instant at time 0.15");
+  put(log(0), "no log");
   expectFailure("info run.json", 1, "run.json names it");
-  std::filesystem::remove(folder_ / "run.0.qtet");
-  expectFailure("info run.json", 1, "run.json names the log run.0.qtet, which is not beside it");
+  std::filesystem::remove(folder_ / log(0));
+  expectFailure("info run.json", 1,
+                "run.json names the log " + log(0) + ", which is not beside it");
 }
 
 TEST_F(SegmentListTool, aPublishedListIsOneMesh) {
@@ -248,11 +288,11 @@ TEST_F(SegmentListTool, aPublishedListIsOneMesh) {
   const auto& mesh = index["meshes"][0];
   EXPECT_EQ(mesh["id"], "run");
   EXPECT_EQ(mesh["links"]["list"], "run.json");
-  EXPECT_EQ(mesh["links"]["log"], "run.0.qtet");
+  EXPECT_EQ(mesh["links"]["log"], log(0));
   ASSERT_EQ(mesh["segments"].size(), 2u);
-  EXPECT_EQ(mesh["segments"][1]["log"], "run.1.qtet");
+  EXPECT_EQ(mesh["segments"][1]["log"], log(1));
   EXPECT_EQ(mesh["segments"][1]["times"].size(), 2u);
-  for (const char* name : {"run.json", "run.0.qtet", "run.1.qtet", "run.webp"})
+  for (const std::string& name : {std::string("run.json"), log(0), log(1), std::string("run.webp")})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "site" / name)) << name;
   EXPECT_EQ(readSegmentList(contentOf(folder_ / "site" / "run.json"))->segments.size(), 2u);
 }
