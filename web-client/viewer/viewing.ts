@@ -56,6 +56,7 @@ export class Viewing implements LaterHost {
   private completeTold = false;
   /** The graphics are too slow for what plays: the page spares them what it can. */
   isHurried = false;
+  private wasSlow = false;
 
   /** REQUIRES: the page's root holds the markup. */
   constructor(
@@ -140,7 +141,7 @@ export class Viewing implements LaterHost {
     this.startPlaying();
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
-    view?.setPlaying(this.isPlaying);
+    view?.setPlaying(this.playsEveryMs);
     if (!this.isPlaying) this.hurry(false);
     const {limit} = this.settings;
     if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
@@ -160,6 +161,18 @@ export class Viewing implements LaterHost {
 
   get isPlaying(): boolean {
     return this.later?.time.isPlaying === true;
+  }
+
+  /** Between two instants; 0: nothing plays. */
+  private get playsEveryMs(): number {
+    return this.isPlaying ? this.later!.time.stepMs : 0;
+  }
+
+  /** One slow picture may be chance, as where the mesh has just grown. */
+  private notePace(drawingMs: number): void {
+    const isSlow = this.isPlaying && drawingMs > Math.min(kMovingMs, this.playsEveryMs);
+    if (isSlow && this.wasSlow) this.hurry(true);
+    this.wasSlow = isSlow;
   }
 
   private hurry(isHurried: boolean): void {
@@ -324,7 +337,7 @@ export class Viewing implements LaterHost {
         page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
         mesh.drawn = snapshot.statistics;
         page.element.classList.add('loaded');
-        if (this.isPlaying && drawingMs > kMovingMs) this.hurry(true);
+        this.notePace(drawingMs);
         void this.loadLater();
         this.tellComplete();
       },

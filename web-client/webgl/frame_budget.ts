@@ -51,17 +51,18 @@ export class FrameBudget {
   private perPicture = 10 * kMovingMs;
   private last: {share: number; ms: number} | null = null;
 
-  share(): number {
-    if (this.fixed + this.perPicture <= kMovingMs) return 1;
+  /** The pixels of a picture that takes at most `mostMs`, each way. */
+  share(mostMs = kMovingMs): number {
+    if (this.fixed + this.perPicture <= mostMs) return 1;
     return Math.max(
       kMinShare,
-      Math.min(1, Math.sqrt(Math.max(0, kMovingMs - this.fixed) / this.perPicture)),
+      Math.min(1, Math.sqrt(Math.max(0, mostMs - this.fixed) / this.perPicture)),
     );
   }
 
   /** share() in few steps, so that pictures that follow each other seldom differ in size. */
-  steadyShare(): number {
-    const share = this.share();
+  steadyShare(everyMs: number): number {
+    const share = this.share(Math.min(kMovingMs, everyMs));
     return kSteps.find((step) => step <= share) ?? kSteps.at(-1)!;
   }
 

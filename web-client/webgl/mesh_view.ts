@@ -39,7 +39,8 @@ export class MeshView implements View {
   private frame = 0;
   private frameMs = 0;
   private pixelRatio = 1;
-  private isPlaying = false;
+  /** 0: nothing plays. */
+  private playsEveryMs = 0;
   /** The pictures without a volume learn and use it. */
   private readonly budget = new FrameBudget();
   private afterFrame: ((ms: number) => void)[] = [];
@@ -146,10 +147,10 @@ export class MeshView implements View {
     this.camera.moveTo(state);
   }
 
-  setPlaying(playing: boolean): void {
-    if (playing === this.isPlaying) return;
-    this.isPlaying = playing;
-    if (!playing && !this.hasVolume) this.invalidate();
+  setPlaying(everyMs: number): void {
+    if (everyMs === this.playsEveryMs) return;
+    this.playsEveryMs = everyMs;
+    if (everyMs === 0 && !this.hasVolume) this.invalidate();
   }
 
   /** Turns the camera round its target, in radians. */
@@ -333,7 +334,8 @@ export class MeshView implements View {
 
   /** The share of the canvas's pixels that a picture of now gets, each way. */
   private get share(): number {
-    return this.isPlaying && !this.hasVolume ? this.budget.steadyShare() : 1;
+    const isPlaying = this.playsEveryMs > 0 && !this.hasVolume;
+    return isPlaying ? this.budget.steadyShare(this.playsEveryMs) : 1;
   }
 
   private draw(share = this.share): void {

@@ -100,10 +100,10 @@ export interface View {
   look(direction: Direction | null): void;
   setParallel(parallel: boolean): void;
   /**
-   * Pictures follow each other: a surface that takes long has fewer pixels. With `false` all its
-   * pixels come back.
+   * Pictures follow each other, one in `everyMs`: a surface that takes longer has fewer pixels.
+   * With 0 nothing plays, and all pixels come back.
    */
-  setPlaying(playing: boolean): void;
+  setPlaying(everyMs: number): void;
   /** Turns the camera round its target, in radians. */
   turn(horizontal: number, vertical: number): void;
   /** Moves the camera by shares of the picture's height: the mesh goes right and up. */

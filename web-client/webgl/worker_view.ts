@@ -173,8 +173,8 @@ class WorkerView implements View {
   setParallel(parallel: boolean): void {
     this.command('setParallel', parallel);
   }
-  setPlaying(playing: boolean): void {
-    this.command('setPlaying', playing);
+  setPlaying(everyMs: number): void {
+    this.command('setPlaying', everyMs);
   }
   turn(horizontal: number, vertical: number): void {
     this.command('turn', horizontal, vertical);

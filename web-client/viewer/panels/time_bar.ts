@@ -299,7 +299,8 @@ export class TimeBar {
     return fields.length > 0 && fields.every((field) => here.includes(field));
   }
 
-  private get stepMs(): number {
+  /** Between two instants that play. */
+  get stepMs(): number {
     return kStepMs / Number(this.speed.value);
   }
 
