@@ -11,6 +11,7 @@
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/progress.h"
 #include "simplify/log/kept_input.h"
+#include "simplify/log/opened_list.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/read/read_mesh.h"
 
@@ -65,33 +66,63 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Inpu
   return {};
 }
 
-Result<OrderedJson> verify(const ParsedWords& parsed, Progress& progress) {
-  progress.stage("checking checksums");
-  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
-  if (!log) return std::unexpected(log.error());
+std::optional<Input> inputOf(const ParsedWords& parsed) {
+  if (!parsed.has("against")) return std::nullopt;
+  return Input{parsed.get<std::string>("against"), readOptionsOf(parsed)};
+}
+
+Result<OrderedJson> verify(const OpenedLog& log, const std::optional<Input>& input,
+                           Progress& progress) {
   progress.stage("decoding");
   const Result<Refiner> refiner = decodeVerified(
-      log->file, log->manifest, [&](double fraction) { return progress.update(fraction), true; },
-      parsed.has("against") ? Verified::kFields : Verified::kMesh);
+      log.file, log.manifest, [&](double fraction) { return progress.update(fraction), true; },
+      input ? Verified::kFields : Verified::kMesh);
   if (!refiner) return std::unexpected(refiner.error());
-  const ManifestLevel& finest = log->manifest.levels.back();
+  const ManifestLevel& finest = log.manifest.levels.back();
   OrderedJson report = {{"ok", true},
-                        {"digest", log->file.digest()},
+                        {"digest", log.file.digest()},
                         {"meshDigest", toHex(refiner->digest())},
-                        {"bytes", log->file.bytes().size()},
-                        {"chunks", log->file.chunks().size()},
-                        {"levels", log->manifest.levels.size()},
+                        {"bytes", log.file.bytes().size()},
+                        {"chunks", log.file.chunks().size()},
+                        {"levels", log.manifest.levels.size()},
                         {"tetrahedra", finest.tetrahedra},
                         {"vertices", finest.vertices},
                         {"boundaryTriangles", finest.boundaryTriangles}};
-  if (!parsed.has("against")) return report;
+  if (!input) return report;
   OrderedJson against;
-  if (Status compared = compareWithInput(
-          *log, *refiner, {parsed.get<std::string>("against"), readOptionsOf(parsed)}, progress,
-          against);
-      !compared)
-    return std::unexpected(compared.error());
+  if (Status s = compareWithInput(log, *refiner, *input, progress, against); !s)
+    return std::unexpected(s.error());
   report["against"] = against;
+  return report;
+}
+
+Result<OrderedJson> verifyLog(const std::string& path, const std::optional<Input>& input,
+                              Progress& progress) {
+  progress.stage("checking checksums");
+  const Result<OpenedLog> log = openLog(path);
+  if (!log) return std::unexpected(log.error());
+  return verify(*log, input, progress);
+}
+
+/// Each log of a list; against the steps of the input at the segment's times.
+Result<OrderedJson> verifyList(const std::string& path, std::optional<Input> input,
+                               Progress& progress) {
+  const Result<SegmentList> list = openList(path);
+  if (!list) return std::unexpected(list.error());
+  OrderedJson report = {{"ok", true}, {"segments", OrderedJson::array()}};
+  for (const Segment& segment : list->segments) {
+    if (input) input->options.time = timesText(segment.times), input->options.namesTime = true;
+    progress.stage("checking checksums of " + segment.log);
+    const Result<OpenedLog> log = openSegment(path, segment);
+    if (!log) return std::unexpected(log.error());
+    Result<OrderedJson> one = verify(*log, input, progress);
+    if (!one) {
+      one.error().message = path + ", " + segment.log + ": " + one.error().message;
+      return one;
+    }
+    report["segments"].push_back(
+        {{"log", segment.log}, {"times", segment.times}, {"verified", std::move(*one)}});
+  }
   return report;
 }
 
@@ -132,6 +163,14 @@ void printReport(const OrderedJson& report, std::ostream& out) {
       out << "its values of " << printable(name) << " are those of the file, bit for bit\n";
 }
 
+void printReports(const OrderedJson& report, std::ostream& out) {
+  if (!report.contains("segments")) return printReport(report, out);
+  for (const OrderedJson& segment : report["segments"]) {
+    out << printable(segment["log"].get<std::string>()) << "\n";
+    printReport(segment["verified"], out);
+  }
+}
+
 }  // namespace
 
 int runVerify(const Words& words, Console& console) {
@@ -142,7 +181,7 @@ int runVerify(const Words& words, Console& console) {
   addReadOptions(options);
   const ParsedWords parsed(
       words,
-      {"verify", "verify LOG.qtet [--against IN] [--json]",
+      {"verify", "verify LOG.qtet|LIST.json [--against IN] [--json]",
        "Checks every checksum, decodes every chunk and compares every level and field with what "
        "the manifest says. With --against the finest level\n"
        "must be the input's mesh cell for cell, positions within half a lattice step, fields "
@@ -150,16 +189,22 @@ int runVerify(const Words& words, Console& console) {
        "(--weld, --curved, ...) has to be read with the same ones. Where the log was made with "
        "--keep-order or\n"
        "--lossless, the numbering and the numbers themselves must be those of the file too, and "
-       "what was proved is said.",
+       "what was proved is said. Each log of a list is checked, against the steps of its own "
+       "times.",
        "  qtet verify fin.qtet\n  qtet verify fin.qtet --against fin.vtu --json\n"},
       options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const bool asJson = parsed.has("json");
+  const auto path = parsed.get<std::string>("LOG");
+  const std::optional<Input> input = inputOf(parsed);
+  if (isSegmentList(path) && input && input->options.time != ReadOptions().time)
+    throw UsageError("'" + path + "' has times of its own; leave out --time");
   Progress progress(console);
-  const Result<OrderedJson> report = verify(parsed, progress);
+  const Result<OrderedJson> report =
+      isSegmentList(path) ? verifyList(path, input, progress) : verifyLog(path, input, progress);
   progress.clear();
   if (!report) return reportFailure(report.error(), asJson, console);
-  asJson ? printJson(*report, console) : printReport(*report, console.out);
+  asJson ? printJson(*report, console) : printReports(*report, console.out);
   return kExitOk;
 }
 

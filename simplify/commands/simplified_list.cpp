@@ -102,13 +102,6 @@ class UnpublishedLogs {
   std::vector<std::string> names_;
 };
 
-/// "0,0.1,0.2"
-std::string timesText(const std::vector<double>& times) {
-  std::string out;
-  for (const double time : times) out += (out.empty() ? "" : ",") + shortestText(time);
-  return out;
-}
-
 bool hasInstants(const TetMesh& mesh) {
   return std::ranges::any_of(
       mesh.fields, [](const MeshField& field) { return instantName(field.name).has_value(); });

@@ -53,6 +53,12 @@ std::vector<double> instantTimes(const Manifest& manifest) {
   return out;
 }
 
+std::string timesText(std::span<const double> times) {
+  std::string out;
+  for (const double time : times) out += (out.empty() ? "" : ",") + shortestText(time);
+  return out;
+}
+
 Result<OpenedLog> openSegment(const fs::path& list, const Segment& segment) {
   const fs::path path = list.parent_path() / segment.log;
   std::error_code code;

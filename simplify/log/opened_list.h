@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "proto/segment_list.h"
@@ -18,6 +20,9 @@ namespace qtet {
 
 /// The times of a log's instants, ascending, each once. Empty: its fields hold for all times.
 [[nodiscard]] std::vector<double> instantTimes(const Manifest& manifest);
+
+/// Times as the option `time` takes them: "0,0.1,0.2".
+[[nodiscard]] std::string timesText(std::span<const double> times);
 
 /// Opens the log of a segment of the list at `list`. Errors: openLog's with the list's name;
 /// not-found (there is no such log; it has instants, but not one of the segment's times).

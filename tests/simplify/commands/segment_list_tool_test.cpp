@@ -259,6 +259,23 @@ TEST_F(SegmentListTool, allTimesAreOneCollection) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
+TEST_F(SegmentListTool, eachLogIsVerifiedAgainstItsSteps) {
+  makeList();
+  const Ran ran = run("verify run.json --against run.pvd --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  ASSERT_EQ(ran.json()["segments"].size(), 2u);
+  EXPECT_EQ(ran.json()["segments"][1]["log"], log(1));
+  const nlohmann::json against = ran.json()["segments"][1]["verified"]["against"];
+  EXPECT_EQ(against["largestFieldErrorSteps"].size(), 2u) << against;
+  EXPECT_NE(run("verify run.json").out.find(log(1) + "\ndigest "), std::string::npos);
+  expectFailure("verify run.json --against run.pvd --time all", 2, "leave out --time");
+  std::filesystem::copy_file(folder_ / "step-0.vtu", folder_ / "step-4.vtu",
+                             std::filesystem::copy_options::overwrite_existing);
+  expectFailure("verify run.json --against run.pvd", 1, "time 0.4");
+  put(log(1), contentOf(folder_ / log(1)) + "more");
+  expectFailure("verify run.json", 1, log(1));
+}
+
 TEST_F(SegmentListTool, aListThatIsDamagedIsRefused) {
   expectFailure("info run.json", 1, "there is no list run.json");
   put("run.json", R"({"qtet":"series","segments":[{"log":"../a.qtet","times":[0]}]})");
