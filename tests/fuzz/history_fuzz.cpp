@@ -1,9 +1,12 @@
 // Fuzzes by structure: the input chooses a mesh, the simplifier's options and where chunks end.
 // Every decoded level must be the mesh that the simplifier had. Then the rest of the input damages
 // blocks below their checksums, and no id may leave its range.
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -75,15 +78,9 @@ Result<FusionHistory> historyFrom(const LatticeMesh& mesh, Input& in) {
 }
 
 struct Log {
-  Bytes bytes;
   LogIndex index;
+  std::vector<Bytes> structures;                               // by chunk
   std::vector<std::vector<std::vector<std::int32_t>>> values;  // chunk, part; none of the structure
-
-  [[nodiscard]] Bytes structure(std::uint32_t chunk) const {
-    const BlockEntry& b = index.block(chunk, kStructurePart);
-    return Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(b.offset),
-                 bytes.begin() + static_cast<std::ptrdiff_t>(b.offset + b.size));
-  }
 };
 
 Log logOf(const FusionHistory& history, Input& in) {
@@ -92,18 +89,22 @@ Log logOf(const FusionHistory& history, Input& in) {
   options.chunkBytes = 16u + in.next16() % 4096u;
   Result<EncodedLog> encoded = encodeLog(history, options);
   require(encoded.has_value(), encoded ? "" : "not encoded: " + encoded.error().text());
-  Log log{std::move(encoded->bytes), {}, {}};
-  Result<LogIndex> index = LogIndex::parse(log.bytes);
+  Log log;
+  Result<LogIndex> index = LogIndex::parse(encoded->bytes);
   require(index.has_value(), index ? "" : "not parsed: " + index.error().text());
   log.index = std::move(*index);
   require(manifestOf(log.index).has_value(), "the manifest contradicts the table");
+  const auto block = [&](std::uint32_t chunk, std::uint32_t part) {
+    const BlockEntry& b = log.index.block(chunk, part);
+    return ByteView(encoded->bytes).subspan(static_cast<std::size_t>(b.offset), b.size);
+  };
   for (std::uint32_t chunk = 0; chunk < log.index.chunks.size(); ++chunk) {
+    const ByteView structure = block(chunk, kStructurePart);
+    log.structures.emplace_back(structure.begin(), structure.end());
     log.values.emplace_back(1);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
-      const BlockEntry& b = log.index.block(chunk, part);
-      auto values =
-          decodeValueBlock(ByteView(log.bytes).subspan(static_cast<std::size_t>(b.offset), b.size),
-                           log.index.components(part), log.index.tuples(chunk, part));
+      auto values = decodeValueBlock(block(chunk, part), log.index.components(part),
+                                     log.index.tuples(chunk, part));
       require(values.has_value(), "a value block does not decode");
       log.values.back().push_back(std::move(*values));
     }
@@ -111,22 +112,64 @@ Log logOf(const FusionHistory& history, Input& in) {
   return log;
 }
 
-Status apply(const Log& log, Refiner& refiner, std::uint32_t chunk, ByteView structure) {
-  if (Status s = refiner.apply(chunk, structure, log.values[chunk][kPositionsPart]); !s) return s;
+Status applyMesh(const Log& log, Refiner& refiner, std::uint32_t chunk) {
+  return refiner.apply(chunk, log.structures[chunk], log.values[chunk][kPositionsPart]);
+}
+
+Status applyField(const Log& log, Refiner& refiner, std::uint32_t chunk, std::uint32_t field) {
+  return refiner.applyField(field, chunk, log.values[chunk][kFirstFieldPart + field]);
+}
+
+Status apply(const Log& log, Refiner& refiner, std::uint32_t chunk) {
+  if (Status s = applyMesh(log, refiner, chunk); !s) return s;
   for (std::uint32_t f = 0; f < log.index.fields.size(); ++f)
-    if (Status s = refiner.applyField(f, chunk, log.values[chunk][kFirstFieldPart + f]); !s)
-      return s;
+    if (Status s = applyField(log, refiner, chunk, f); !s) return s;
   return {};
 }
 
-void compareLevel(const FusionHistory& history, const Log& log, std::uint32_t level) {
+/// The same values come at a few elements alone, as a server makes those of a point.
+void compareFew(const Log& log, const Refiner& whole, Association association, Input& in) {
+  const auto isOthers = [&](std::uint32_t f) {
+    return log.index.fields[f].association != association;
+  };
+  std::vector<std::uint32_t> fields(log.index.fields.size());
+  std::iota(fields.begin(), fields.end(), 0u);
+  std::erase_if(fields, isOthers);
+  const std::size_t count =
+      association == Association::kPoint ? whole.points().size() : whole.tetrahedra().size();
+  if (fields.empty() || count == 0) return;
+  std::array<std::uint32_t, 3> elements{};
+  for (std::uint32_t& e : elements) e = static_cast<std::uint32_t>(in.next16() % count);
+  Refiner few(log.index);
+  few.stopAtLevel(whole.level());
+  for (std::uint32_t chunk = 0; chunk < whole.chunksApplied(); ++chunk)
+    require(applyMesh(log, few, chunk).has_value(), "a mesh that was made once is not made again");
+  few.fieldsOnlyAt(association, elements);
+  for (const std::uint32_t f : fields) {
+    const std::size_t width = log.index.fields[f].components;
+    for (std::uint32_t chunk = 0; chunk < whole.chunksApplied(); ++chunk)
+      require(applyField(log, few, chunk, f).has_value(), "a field is not made again");
+    for (const std::uint32_t e : elements)
+      require(std::ranges::equal(few.fieldValues(f).subspan(e * width, width),
+                                 whole.fieldValues(f).subspan(e * width, width)),
+              "a few elements have other values than among all");
+  }
+}
+
+void compareFew(const Log& log, const Refiner& whole, Input& in) {
+  for (const Association association : {Association::kPoint, Association::kCell})
+    compareFew(log, whole, association, in);
+}
+
+void compareLevel(const FusionHistory& history, const Log& log, std::uint32_t level, Input& in) {
   Refiner refiner(log.index);
   refiner.stopAtLevel(level);
   for (std::uint32_t chunk = 0;
        chunk < log.index.chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
-    const Status applied = apply(log, refiner, chunk, log.structure(chunk));
+    const Status applied = apply(log, refiner, chunk);
     require(applied.has_value(), applied ? "" : applied.error().text());
   }
+  compareFew(log, refiner, in);
   const LatticeMesh expected = testing::meshOfHistory(history, level);
   LatticeMesh decoded;
   decoded.lattice = expected.lattice;
@@ -147,7 +190,7 @@ void compareLevel(const FusionHistory& history, const Log& log, std::uint32_t le
 /// as far as it goes.
 void decodeDamaged(Log& log, Input& in) {
   const std::uint32_t bad = in.next() % static_cast<std::uint32_t>(log.index.chunks.size());
-  Bytes structure = log.structure(bad);
+  Bytes& structure = log.structures[bad];
   for (int left = 16; left > 0 && !in.empty(); --left) {
     const std::uint16_t at = in.next16();
     const std::uint8_t value = in.next();
@@ -162,11 +205,11 @@ void decodeDamaged(Log& log, Input& in) {
   }
   Refiner refiner(log.index);
   for (std::uint32_t chunk = 0; chunk < log.index.chunks.size(); ++chunk) {
-    const Status applied =
-        apply(log, refiner, chunk, chunk == bad ? structure : log.structure(chunk));
+    const Status applied = apply(log, refiner, chunk);
     fuzz::abortUnlessSound(refiner);
     if (!applied) return;
   }
+  compareFew(log, refiner, in);
 }
 
 }  // namespace
@@ -181,8 +224,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(history.has_value(), history ? "" : history.error().text());
   Log log = logOf(*history, in);
   require(log.index.chunks.back().lastLevel == history->levels, "another number of levels");
-  compareLevel(*history, log, history->levels);
-  compareLevel(*history, log, in.next() % (history->levels + 1));
+  compareLevel(*history, log, history->levels, in);
+  compareLevel(*history, log, in.next() % (history->levels + 1), in);
   decodeDamaged(log, in);
   return 0;
 }
