@@ -1,9 +1,9 @@
 #include "simplify/commands/old_log.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "proto/log_digest.h"
-#include "simplify/commands/command_line.h"
 
 namespace qtet {
 namespace {
@@ -29,9 +29,10 @@ Result<std::string> bodyOf(const HttpUrl& server, const HttpRequest& request, un
 Result<OldLog> fetchOldLog(const HttpUrl& server, const HttpRequest& request) {
   const Result<std::string> description = bodyOf(server, request, 200);
   if (!description) return std::unexpected(description.error());
-  const auto json = OrderedJson::parse(*description, nullptr, false);
-  if (!json.is_object() || !json.value("digest", OrderedJson()).is_string() ||
-      !json.value("bytes", OrderedJson()).is_number_unsigned())
+  using Json = nlohmann::json;
+  const auto json = Json::parse(*description, nullptr, false);
+  if (!json.is_object() || !json.value("digest", Json()).is_string() ||
+      !json.value("bytes", Json()).is_number_unsigned())
     return fail(ErrorCode::kIo, request.target + ": this is no mesh's description");
   OldLog out{.digest = json["digest"].get<std::string>(), .index = {}};
   if (!isLogDigest(out.digest))

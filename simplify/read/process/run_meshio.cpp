@@ -47,7 +47,9 @@ except (ImportError, AttributeError):
 
 def write(mesh, name):
     mesh.cell_sets, mesh.point_sets, mesh.field_data, mesh.info = {}, {}, {}, None
-    meshio.write(folder + "/" + name, mesh, file_format="vtu", binary=True)
+    # read once and removed: compressing would take most of the time
+    meshio.write(folder + "/" + name, mesh, file_format="vtu", binary=True, compression=None,
+                 header_type="UInt64")
 
 parts = wanted.split(",")
 

@@ -9,9 +9,9 @@
 
 namespace qtet::test {
 
-CannedServer::CannedServer(std::string answer, Manner manner)
+CannedServer::CannedServer(Answers answers, Manner manner)
     : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)),
-      answer_(std::move(answer)),
+      answers_(std::move(answers)),
       manner_(manner) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -37,28 +37,31 @@ std::vector<std::string> CannedServer::requests() const {
   return requests_;
 }
 
-bool CannedServer::readHead(int client) {
+std::string CannedServer::readHead(int client) {
   std::string head;
   std::array<char, 4096> piece;
   while (head.find("\r\n\r\n") == std::string::npos) {
     const ssize_t bytes = ::recv(client, piece.data(), piece.size(), 0);
-    if (bytes <= 0) return false;
+    if (bytes <= 0) return {};
     head.append(piece.data(), static_cast<std::size_t>(bytes));
   }
+  head.resize(head.find("\r\n\r\n") + 4);
   const std::scoped_lock lock(mutex_);
-  requests_.push_back(head.substr(0, head.find("\r\n\r\n") + 4));
-  return true;
+  requests_.push_back(head);
+  return head;
 }
 
 void CannedServer::serve() {
   std::vector<int> held;
   for (int client = 0; (client = ::accept(socket_, nullptr, nullptr)) >= 0;) {
     held.push_back(client);
-    if (manner_ == Manner::kMute || !readHead(client) || manner_ == Manner::kReadsOnly) continue;
+    const std::string head = manner_ == Manner::kMute ? "" : readHead(client);
+    if (head.empty() || manner_ == Manner::kReadsOnly) continue;
+    const std::string answer = answers_(head);
     std::size_t sent = 0;
-    while (sent < answer_.size()) {
+    while (sent < answer.size()) {
       const ssize_t bytes =
-          ::send(client, answer_.data() + sent, answer_.size() - sent, MSG_NOSIGNAL);
+          ::send(client, answer.data() + sent, answer.size() - sent, MSG_NOSIGNAL);
       if (bytes <= 0) break;
       sent += static_cast<std::size_t>(bytes);
     }

@@ -1,8 +1,8 @@
-// A server on a free port of this machine that answers every request with the same bytes, right or
-// wrong ones.
+// A server on a free port of this machine whose answers a test chooses, right or wrong ones.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,7 +15,13 @@ class CannedServer {
   /// How a request is treated: with an answer, or not at all, its connection being held open.
   enum class Manner : std::uint8_t { kAnswers, kReadsOnly, kMute };
 
-  explicit CannedServer(std::string answer, Manner manner = Manner::kAnswers);
+  /// The whole answer to a request's head, both as they travel.
+  using Answers = std::function<std::string(const std::string& head)>;
+
+  explicit CannedServer(Answers answers, Manner manner = Manner::kAnswers);
+  /// The same answer to every request.
+  explicit CannedServer(const std::string& answer, Manner manner = Manner::kAnswers)
+      : CannedServer([answer](const std::string&) { return answer; }, manner) {}
   ~CannedServer();
   CannedServer(const CannedServer&) = delete;
   CannedServer& operator=(const CannedServer&) = delete;
@@ -27,12 +33,12 @@ class CannedServer {
 
  private:
   void serve();
-  /// Reads a request's head; whether one came.
-  [[nodiscard]] bool readHead(int client);
+  /// Reads a request's head; "" where none came.
+  [[nodiscard]] std::string readHead(int client);
 
   int socket_;
   std::uint16_t port_ = 0;
-  std::string answer_;
+  Answers answers_;
   Manner manner_;
   mutable std::mutex mutex_;
   std::vector<std::string> requests_;
