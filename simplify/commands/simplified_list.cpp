@@ -32,10 +32,8 @@ std::string logName(const std::string& stem, std::size_t log, std::string_view d
 
 /// Whether logName makes `name` of some digest.
 bool isLogName(std::string_view name, const std::string& stem, std::size_t log) {
-  const std::string sample = logName(stem, log, std::string(kDigits, '0'));
-  const std::size_t begin = sample.size() - kDigits - std::string_view(".qtet").size();
-  if (name.size() != sample.size() || !name.starts_with(sample.substr(0, begin))) return false;
-  const std::string_view digest = name.substr(begin, kDigits);
+  constexpr std::size_t kEnd = kDigits + std::string_view(".qtet").size();
+  const std::string_view digest = name.substr(name.size() - std::min(name.size(), kEnd), kDigits);
   return name == logName(stem, log, digest) &&
          digest.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
