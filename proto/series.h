@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "proto/field_key.h"
@@ -47,21 +50,22 @@ struct Series {
 template <class Field>
 [[nodiscard]] std::vector<Series> seriesOf(std::span<const Field> fields, std::size_t fewest = 2) {
   std::vector<Series> out;
-  std::vector<const Field*> firsts;
+  std::map<std::tuple<std::string_view, decltype(Field::association), decltype(Field::components),
+                      decltype(Field::type)>,
+           std::size_t>
+      places;
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const auto name = instantName(fields[f].name);
+    const Field& field = fields[f];
+    const auto name = instantName(field.name);
     if (!name) continue;
-    std::size_t s = 0;
-    while (s < out.size() &&
-           !(out[s].name == name->series && firsts[s]->association == fields[f].association &&
-             firsts[s]->components == fields[f].components && firsts[s]->type == fields[f].type))
-      ++s;
-    if (s == out.size())
-      out.push_back({std::string(name->series), {}, {}}), firsts.push_back(&fields[f]);
-    const auto at = std::ranges::lower_bound(out[s].times, name->time);
-    if (at != out[s].times.end() && *at == name->time) continue;
-    out[s].fields.insert(out[s].fields.begin() + (at - out[s].times.begin()), f);
-    out[s].times.insert(at, name->time);
+    const auto [place, isNew] = places.try_emplace(
+        {name->series, field.association, field.components, field.type}, out.size());
+    if (isNew) out.push_back({std::string(name->series), {}, {}});
+    Series& series = out[place->second];
+    const auto at = std::ranges::lower_bound(series.times, name->time);
+    if (at != series.times.end() && *at == name->time) continue;
+    series.fields.insert(series.fields.begin() + (at - series.times.begin()), f);
+    series.times.insert(at, name->time);
   }
   std::erase_if(out, [&](const Series& series) { return series.fields.size() < fewest; });
   return out;

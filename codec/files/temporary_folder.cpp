@@ -6,7 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <climits>
 #include <string>
 #include <utility>
 
@@ -57,7 +59,9 @@ TemporaryFolder::TemporaryFolder(std::string_view purpose) {
 }
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent, const std::string& prefix) {
-  make(parent, prefix);
+  std::array<char, HOST_NAME_MAX + 1> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  make(parent, prefix + host.data() + "-");
 }
 
 void TemporaryFolder::make(const fs::path& parent, const std::string& prefix) {

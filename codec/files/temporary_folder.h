@@ -15,7 +15,9 @@ class TemporaryFolder {
  public:
   /// `purpose` stands in its name: qtet-PURPOSE-XXXXXX. After a failure path() is empty.
   explicit TemporaryFolder(std::string_view purpose);
-  /// The same as `parent`/PREFIXXXXXXX. REQUIRES: nobody else's folder there begins with `prefix`.
+  /// The same as `parent`/PREFIXHOST-XXXXXX, where HOST is the machine's name: machines that share
+  /// `parent` do not see each other's locks. REQUIRES: nobody else's folder there begins with
+  /// `prefix`.
   TemporaryFolder(const std::filesystem::path& parent, const std::string& prefix);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

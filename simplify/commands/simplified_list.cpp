@@ -1,7 +1,6 @@
 #include "simplify/commands/simplified_list.h"
 
 #include <algorithm>
-#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -58,27 +57,31 @@ class UnpublishedLogs {
   std::string add(std::string_view digest) {
     return names_.emplace_back(logName(stem_, names_.size(), digest));
   }
-  /// Moves the logs beside the list and writes it. Then those of the older list go, or after an
-  /// error the new ones: all that the list does not name. Logs that somebody renamed stay.
+  /// Moves the logs beside the list and writes it. Then the logs of the older list go that this one
+  /// lacks, but for those that somebody renamed. After an error the moved ones go, unless the list
+  /// that is there names them.
   [[nodiscard]] Status publish(const fs::path& list, std::string_view text) const {
-    std::set<std::string> ours;
-    if (const Result<SegmentList> old = openList(list))
-      for (std::size_t log = 0; log < old->segments.size(); ++log)
-        if (isLogName(old->segments[log].log, stem_, log)) ours.insert(old->segments[log].log);
-    Status out = moveBeside(ours);
-    if (out) out = writeFileAtomically(list, viewOf(text));
-    const Result<SegmentList> now = openList(list);
-    if (!now && now.error().code != ErrorCode::kNotFound) return out;
-    if (now)
-      for (const Segment& segment : now->segments) ours.erase(segment.log);
-    std::error_code ignored;
-    for (const std::string& name : ours) fs::remove(beside_ / name, ignored);
+    const Result<SegmentList> old = openList(list);
+    Names moved;
+    Status out = moveBeside(moved);
+    const bool allMoved = out.has_value();
+    if (allMoved) out = writeFileAtomically(list, viewOf(text));
+    std::error_code code;
+    if (out) {
+      if (old) remove(ownNames(*old), names_);
+    } else if (!allMoved || (!fs::exists(list, code) && !code)) {
+      remove(moved, {});
+    } else if (const Result<SegmentList> now = openList(list)) {
+      remove(moved, ownNames(*now));
+    }
     return out;
   }
 
  private:
-  /// Adds to `ours` the names that were not there.
-  [[nodiscard]] Status moveBeside(std::set<std::string>& ours) const {
+  using Names = std::vector<std::string>;
+
+  /// Adds to `moved` the names that were not there.
+  [[nodiscard]] Status moveBeside(Names& moved) const {
     for (std::size_t log = 0; log < names_.size(); ++log) {
       const fs::path file = beside_ / names_[log];
       std::error_code code;
@@ -86,9 +89,21 @@ class UnpublishedLogs {
       fs::rename(fileOf(log), file, code);
       if (code)
         return fail(ErrorCode::kIo, "cannot write " + file.string() + ": " + code.message());
-      if (!isThere) ours.insert(names_[log]);
+      if (!isThere) moved.push_back(names_[log]);
     }
     return {};
+  }
+  /// The logs of a list whose names are as this one would give them.
+  [[nodiscard]] Names ownNames(const SegmentList& list) const {
+    Names out;
+    for (std::size_t log = 0; log < list.segments.size(); ++log)
+      if (isLogName(list.segments[log].log, stem_, log)) out.push_back(list.segments[log].log);
+    return out;
+  }
+  void remove(const Names& names, const Names& kept) const {
+    std::error_code ignored;
+    for (const std::string& name : names)
+      if (std::ranges::find(kept, name) == kept.end()) fs::remove(beside_ / name, ignored);
   }
   [[nodiscard]] fs::path fileOf(std::size_t log) const {
     return waiting_.path() / (std::to_string(log) + ".qtet");
@@ -97,7 +112,7 @@ class UnpublishedLogs {
   fs::path beside_;
   std::string stem_;
   TemporaryFolder waiting_;
-  std::vector<std::string> names_;
+  Names names_;
 };
 
 bool hasInstants(const TetMesh& mesh) {

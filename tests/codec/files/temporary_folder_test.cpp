@@ -57,12 +57,17 @@ TEST(TemporaryFolder, isOnesOwnAndGoesWithEverythingInIt) {
 
 TEST(TemporaryFolder, canHaveAnotherPlaceAndName) {
   const fs::path parent = testing::freshFolder("temporary-folder");
-  fs::create_directory(parent / ".mine-abcdef");
-  fs::create_directory(parent / ".mine-abcdefg");
+  std::array<char, 256> host{};
+  ASSERT_EQ(::gethostname(host.data(), host.size() - 1), 0);
+  const std::string mine = std::string(".mine-") + host.data() + "-";
+  fs::create_directory(parent / (mine + "abcdef"));
+  fs::create_directory(parent / (mine + "abcdefg"));
+  fs::create_directory(parent / ".mine-another-abcdef");
   const TemporaryFolder one(parent, ".mine-"), none(parent / "missing", ".mine-");
-  EXPECT_TRUE(one.path().string().starts_with((parent / ".mine-").string()));
-  EXPECT_FALSE(fs::exists(parent / ".mine-abcdef")) << "abandoned";
-  EXPECT_TRUE(fs::exists(parent / ".mine-abcdefg"));
+  EXPECT_TRUE(one.path().string().starts_with((parent / mine).string()));
+  EXPECT_FALSE(fs::exists(parent / (mine + "abcdef"))) << "abandoned";
+  EXPECT_TRUE(fs::exists(parent / (mine + "abcdefg")));
+  EXPECT_TRUE(fs::exists(parent / ".mine-another-abcdef")) << "of another machine";
   EXPECT_EQ(none.failure(), std::errc::no_such_file_or_directory);
 }
 

@@ -1,6 +1,8 @@
 // Lists of logs: series whose cells change.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -144,7 +146,10 @@ TEST_F(SegmentListTool, aNewListTakesThePlaceOfTheOlderLogs) {
   std::filesystem::rename(folder_ / second, folder_ / "run.1.mine.qtet");
   put("run.json", segmentListText(renamed).value());
   put("run.0.0123456789ab.qtet", "of no list");
-  std::filesystem::create_directory(folder_ / ".run.qtet-unpublished-abcdef");
+  std::array<char, 256> host{};
+  ASSERT_EQ(::gethostname(host.data(), host.size() - 1), 0);
+  std::filesystem::create_directory(
+      folder_ / (std::string(".run.qtet-unpublished-") + host.data() + "-abcdef"));
   ASSERT_EQ(run("simplify run.pvd --time all --measure none --field-bits 9 -o run.json").code, 0);
   EXPECT_NE(log(0), first);
   std::vector<std::string> expected{
