@@ -142,8 +142,10 @@ export class Viewing implements LaterHost {
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     view?.setPlaying(this.playsEveryMs);
-    if (!this.isPlaying) this.wasSlow = false;
-    if (!this.isPlaying) this.hurry(false);
+    if (!this.isPlaying) {
+      this.wasSlow = false;
+      this.hurry(false);
+    }
     const {limit} = this.settings;
     if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
     this.showDisplay();
