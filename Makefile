@@ -6,6 +6,8 @@ MESH ?=
 PORT ?= 8080
 RESULTS ?=
 export MESH PORT
+# Steps, of how many, and seconds so far.
+export NINJA_STATUS := [%f/%t, %e s] 
 
 BUILD := build/release
 CHECKED := build/checked
@@ -39,7 +41,8 @@ help:
 	make lint                  the linter of TypeScript, with types
 	make fuzz                  run each fuzzer for 20 seconds, built with sanitizers
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
-	make fresh                 continuous integration in a new Debian 12 (needs root and mmdebstrap)
+	make fresh SUITE=trixie    continuous integration in a new Debian (needs root and mmdebstrap);
+	                           bookworm unless given; COMMAND="make demo" runs another command
 	make deb                   Debian packages: build/release/packages/*.deb
 	make release               wheel, Debian packages, npm package, gallery, sources, their bill of
 	                           materials and checksums: build/release/dist
@@ -64,11 +67,17 @@ help:
 	END
 
 setup: packages
-	@.ci/sources.sh
+	@[[ "$(PART)" == build ]] || .ci/sources.sh
+
+# The part of .ci/packages.txt that is wanted: `build`, or all of it.
+PART :=
 
 packages:
 	@say() { printf 'setup: %s\n' "$$@"; }
-	mapfile -t wanted < <(sed 's/#.*//' .ci/packages.txt | grep -o '[^[:space:]]*')
+	last='$$'
+	[[ "$(PART)" != build ]] || last='/^# ==== tests/'
+	mapfile -t wanted < <(sed -n "1,$$last p" .ci/packages.txt | sed 's/#.*//' |
+	  grep -o '[^[:space:]]*')
 	if ! command -v dpkg-query >/dev/null; then
 	  say "this is no Debian; if the build fails, install what .ci/packages.txt names from your \
 	system's packages"
@@ -83,7 +92,7 @@ packages:
 	}
 	nodeIsFine || missing+=(nodejs npm)
 	if [[ $${#missing[@]} == 0 ]]; then
-	  say "all $${#wanted[@]} packages of .ci/packages.txt and node $$(node --version) are here"
+	  say "all $${#wanted[@]} packages that are wanted and node $$(node --version) are here"
 	  exit 0
 	fi
 	say "installing $${#missing[@]} packages: $${missing[*]}"
@@ -113,21 +122,24 @@ packages:
 	}
 
 # Configures when there is no build yet, when the presets changed, or when the folder was moved;
-# ninja sees to everything else.
+# ninja sees to everything else. A build that was configured for the demo alone becomes a whole one.
+PRESET := release
 define configure
-if ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$$(pwd -P)" build/$(1)/CMakeCache.txt; then
-  cmake --preset $(1) --fresh
-elif [[ ! -f build/$(1)/build.ninja || CMakePresets.json -nt build/$(1)/build.ninja ]]; then
-  cmake --preset $(1)
+cache=build/$(1)/CMakeCache.txt
+if ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$$(pwd -P)" "$$cache"; then
+  cmake --preset $(2) --fresh
+elif [[ ! -f build/$(1)/build.ninja || CMakePresets.json -nt build/$(1)/build.ninja ]] ||
+  { [[ $(2) != demo ]] && grep -qx 'QTET_TESTS:[A-Z]*=OFF' "$$cache"; }; then
+  cmake --preset $(2)
 fi
 endef
 build:
-	@$(call configure,release)
+	@$(call configure,release,$(PRESET))
 	cmake --build --preset release --parallel $(JOBS) $(TARGETS)
 
 # The unit tests and the fuzzers, with assertions and sanitizers.
 build-checked:
-	@$(call configure,checked)
+	@$(call configure,checked,checked)
 	cmake --build --preset checked --parallel $(JOBS) $(CHECKED_TARGETS)
 
 # Before anything is built: a port in use is told at once.
@@ -159,6 +171,8 @@ endef
 
 # The demo waits for nothing that it does not show, the tests least of all.
 demo: TARGETS := --target qtet qtet-server qtet_viewer
+demo: PART := build
+demo: PRESET := demo
 
 # Makes build/demo/NAME.qtet, unless it is there already, from this very mesh and newer than mesh
 # and tool. This viewer may not read an older tool's log, and this tool may write a better one. The
@@ -235,7 +249,7 @@ test-system:
 
 # After a change in one room. ROOM=codec: its unit tests alone are built and run.
 ROOM ?=
-check: CHECKED_TARGETS := --target qtet_$(ROOM)_tests
+check: CHECKED_TARGETS := --target check_$(ROOM)
 check:
 	@case "$(ROOM)" in
 	  proto | codec | simplify | server)
@@ -290,8 +304,8 @@ web-packages:
 
 TIDY_SINCE ?=
 tidy: setup
-	@$(call configure,checked)
-	.ci/tidy.sh $(CHECKED) $(JOBS) $(TIDY_SINCE)
+	@$(call configure,tidy,tidy)
+	.ci/tidy.py build/tidy $(JOBS) $(TIDY_SINCE)
 
 # A fuzzer's finds stay in build/checked/fuzz/found.
 fuzz: CHECKED_TARGETS := --target qtet_fuzzers
@@ -299,7 +313,7 @@ fuzz: setup build-checked
 	@ctest --preset checked --parallel $(JOBS) -L fuzz
 
 sanitize: setup build build-checked
-	@$(call configure,tsan)
+	@$(call configure,tsan,tsan)
 	failed=
 	for preset in checked tsan; do
 	  start=$$SECONDS
@@ -312,8 +326,10 @@ sanitize: setup build build-checked
 	[[ -z $$failed ]] || { echo "sanitize: failures under$$failed; see above" >&2; exit 1; }
 
 # Proves that .ci/packages.txt names all that is needed.
+SUITE ?= bookworm
+COMMAND ?=
 fresh:
-	@.ci/fresh.sh
+	@.ci/fresh.sh $(SUITE) $(COMMAND)
 
 wheel: setup
 	@python3 .packaging/python_backend.py build/release/wheels

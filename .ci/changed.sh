@@ -16,7 +16,7 @@ if [[ -z $since ]]; then
   fi
 fi
 code() {
-  grep -v '^#include "' | g++-12 -fpreprocessed -dD -E -P -w -x c++ - 2>/dev/null |
+  grep -v '^#include "' | g++ -fpreprocessed -dD -E -P -w -x c++ - 2>/dev/null |
     tr -s ' \t\n' ' '
 }
 {

@@ -16,6 +16,12 @@ namespace qtet {
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
+/// The 32-bit integer in the four bytes from `p`, the lowest byte first.
+[[nodiscard]] inline std::uint32_t loadLittle(const std::uint8_t* p) {
+  return std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]} << 16 |
+         std::uint32_t{p[3]} << 24;
+}
+
 /// Reads integers from `view`; after the first failure every read gives 0 and `error()` stays what
 /// it was. The bytes must outlive the reader. Offsets in errors count from `origin`, the view's own
 /// place in a file.

@@ -42,11 +42,6 @@ const Tables& tables() {
   return tables;
 }
 
-std::uint32_t loadLittle(const std::uint8_t* p) {
-  return std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]} << 16 |
-         std::uint32_t{p[3]} << 24;
-}
-
 std::uint32_t byTables(ByteView bytes) {
   const auto& t = tables();
   std::uint32_t c = ~0u;

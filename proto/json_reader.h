@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "proto/error.h"
+#include "proto/limits.h"
 
 namespace qtet {
 
@@ -70,6 +71,13 @@ class JsonCursor {
       if (it != value_->end()) value = &*it;
     }
     return {value, pointer_ + "/" + key, error_};
+  }
+
+  /// A text of 1 to kMaxNameBytes bytes.
+  [[nodiscard]] std::string name() const {
+    std::string out = text(kMaxNameBytes);
+    if (present() && out.empty()) fail("must not be empty");
+    return out;
   }
 
   [[nodiscard]] std::string text(std::size_t maxBytes) const {

@@ -16,18 +16,12 @@ std::string readDigest(const JsonCursor& json) {
   return out;
 }
 
-std::string readName(const JsonCursor& json) {
-  std::string out = json.text(kMaxNameBytes);
-  if (json.present() && out.empty()) json.fail("must not be empty");
-  return out;
-}
-
 OpenMessage readOpen(const JsonCursor& json) {
   OpenMessage out;
-  out.mesh = readName(json["mesh"]);
+  out.mesh = json["mesh"].name();
   out.digest = readDigest(json.optional("digest"));
   for (const JsonCursor& name : json.optional("fields").items(0, kMaxRequestFields))
-    out.fields.push_back(readName(name));
+    out.fields.push_back(name.name());
   out.time = readStreamTime(json.optional("time"));
   out.have = readHave(json.optional("have"));
   out.target = readTarget(json.optional("target"));
@@ -136,7 +130,7 @@ Result<ServerMessage> parseServerMessage(std::string_view json) {
   const std::string type = root["type"].text(kMaxNameBytes);
   ServerMessage out;
   if (type == "opened") {
-    out = OpenedMessage{readStream(root), readName(root["mesh"]), readDigest(root["digest"]),
+    out = OpenedMessage{readStream(root), root["mesh"].name(), readDigest(root["digest"]),
                         root["bytes"].count(0, kMaxCredit), root["planned"].count(0, kMaxCredit)};
   } else if (type == "planned") {
     out = PlannedMessage{readStream(root), root["planned"].count(0, kMaxCredit)};
@@ -145,7 +139,7 @@ Result<ServerMessage> parseServerMessage(std::string_view json) {
   } else if (type == "stopped") {
     out = StoppedMessage{readStream(root)};
   } else if (type == "error") {
-    out = ErrorMessage{readName(root["code"]), root["detail"].text(kMaxTextBytes)};
+    out = ErrorMessage{root["code"].name(), root["detail"].text(kMaxTextBytes)};
   } else {
     root["type"].fail("must be 'opened', 'planned', 'done', 'stopped' or 'error'");
   }

@@ -11,12 +11,6 @@ constexpr std::uint64_t kMaxInteger = (std::uint64_t{1} << 53) - 1;
 constexpr const char* kSpaceFirst = "space";
 constexpr const char* kTimeFirst = "time";
 
-std::string readName(const JsonCursor& json) {
-  std::string out = json.text(kMaxNameBytes);
-  if (json.present() && out.empty()) json.fail("must not be empty");
-  return out;
-}
-
 struct TargetToJson {
   Json operator()(const EverythingTarget&) const { return nullptr; }
   Json operator()(const LevelTarget& t) const { return {{"level", t.level}}; }
@@ -58,7 +52,7 @@ Target readTarget(const JsonCursor& json) {
   if (const JsonCursor cells = json.optional("tetrahedra"); cells.present())
     ++found, out = TetrahedraTarget{cells.count(0, kMaxInteger)};
   if (const JsonCursor error = json.optional("error"); error.present())
-    ++found, out = FieldErrorTarget{readError(error), readName(json["field"])};
+    ++found, out = FieldErrorTarget{readError(error), json["field"].name()};
   if (const JsonCursor error = json.optional("boundaryError"); error.present())
     ++found, out = BoundaryErrorTarget{readError(error)};
   if (found != 1)

@@ -50,6 +50,15 @@ function(qtet_simplifier_object compiler source)
   set(simplifier_objects ${simplifier_objects} ${object} PARENT_SCOPE)
 endfunction()
 
+# Adds the commands for `files`, the files of a folder together. The rest are the flags.
+function(qtet_simplifier_objects compiler folder files)
+  qtet_groups(groups simplifier/${folder} ${files})
+  foreach(file IN LISTS groups)
+    qtet_simplifier_object(${compiler} ${file} -iquote ${PROJECT_SOURCE_DIR} ${ARGN})
+  endforeach()
+  set(simplifier_objects ${simplifier_objects} PARENT_SCOPE)
+endfunction()
+
 # The rooms' own. Exceptions end the module: what throws is stopping, memory that runs out, and the
 # command line, which is not here.
 set(own_flags -std=c++23 -fignore-exceptions -fno-rtti -DBOOST_NO_CXX98_FUNCTION_BASE
@@ -58,27 +67,27 @@ set(own_flags -std=c++23 -fignore-exceptions -fno-rtti -DBOOST_NO_CXX98_FUNCTION
 set(own ${portable}/in_browser.cpp ${portable}/wasi/filesystem.cpp
   ${PROJECT_SOURCE_DIR}/simplify/api/wasm_simplify.cpp)
 foreach(room IN ITEMS proto codec simplify read)
-  get_target_property(sources qtet_${room} SOURCES)
-  get_target_property(folder qtet_${room} SOURCE_DIR)
+  get_target_property(sources qtet_${room} QTET_FILES)
+  list(TRANSFORM sources REPLACE "^${PROJECT_SOURCE_DIR}/" "")
   # Not those that in_browser.cpp stands for, and those that no log is made with.
   list(FILTER sources EXCLUDE REGEX
-    "TARGET_OBJECTS|^api/|^files/|^commands/|^samples/|^read/(foam|hdf|process|xdmf)/|piece_files")
+    "/(api|files|commands|samples|foam|hdf|process|xdmf)/|piece_files")
   list(FILTER sources EXCLUDE REGEX
     "wasm_api|check_mesh|cell_transfer|read_apart|add_fields|match_mesh|opened_log|write_mesh|verify")
-  list(FILTER sources EXCLUDE REGEX "^(messages|stream_request_json)\\.")
-  foreach(source IN LISTS sources)
-    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder})
-    list(APPEND own ${source})
-  endforeach()
+  list(FILTER sources EXCLUDE REGEX "^proto/(messages|stream_request_json)[.]")
+  list(TRANSFORM sources PREPEND ${PROJECT_SOURCE_DIR}/)
+  list(APPEND own ${sources})
 endforeach()
 # Loops over records and cells are compiled for speed, the rest for size.
-foreach(source IN LISTS own)
-  set(optimise -Os)
-  if(source MATCHES "/(fuse|legality|cost|measure|mesh|coding|record|clean)/|/vtu_numbers")
-    set(optimise -O3)
-  endif()
-  qtet_simplifier_object(${QTET_WASM_CXX} ${source} ${own_flags} ${optimise})
-endforeach()
+set(fast ${own})
+list(FILTER fast INCLUDE REGEX "/(fuse|legality|cost|measure|mesh|coding|record|clean)/")
+list(REMOVE_ITEM own ${fast})
+qtet_simplifier_objects(${QTET_WASM_CXX} fast "${fast}" ${own_flags} -O3)
+set(numbers ${own})
+list(FILTER numbers INCLUDE REGEX "/vtu_numbers")
+list(REMOVE_ITEM own ${numbers})
+qtet_simplifier_object(${QTET_WASM_CXX} ${numbers} ${own_flags} -O3)
+qtet_simplifier_objects(${QTET_WASM_CXX} small "${own}" ${own_flags} -Os)
 
 # Draco without the decoding of meshes, as the values of a log are point clouds.
 file(GLOB draco_sources
@@ -94,10 +103,8 @@ file(GLOB draco_sources
   ${draco}/src/draco/metadata/*.cc
   ${draco}/src/draco/point_cloud/*.cc)
 list(FILTER draco_sources EXCLUDE REGEX "_test|test_|draco_tests")
-foreach(source IN LISTS draco_sources)
-  qtet_simplifier_object(${QTET_WASM_CXX} ${source} -std=c++17 -O2 -fignore-exceptions -fno-rtti -w
-    ${libraries_flags})
-endforeach()
+qtet_simplifier_objects(${QTET_WASM_CXX} draco "${draco_sources}" -std=c++17 -O2 -fignore-exceptions
+  -fno-rtti -w ${libraries_flags})
 
 foreach(name IN ITEMS xmlparse xmlrole xmltok)
   qtet_simplifier_object(${QTET_WASM_CC} ${expat}/expat/lib/${name}.c -O2 -w -isystem ${headers}

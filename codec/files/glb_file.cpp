@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "proto/version.h"
+
 namespace qtet {
 namespace {
 
@@ -30,7 +32,7 @@ Json document(const GlbContent& content, std::size_t bytes) {
   Json primitive = {
       {"attributes", content.attributes}, {"indices", 0}, {"material", 0}, {"mode", 4}};
   if (!content.extensions.is_null()) primitive["extensions"] = content.extensions;
-  Json out = {{"asset", {{"version", "2.0"}, {"generator", "qtet " QTET_VERSION}}}};
+  Json out = {{"asset", {{"version", "2.0"}, {"generator", "qtet " + version()}}}};
   if (!content.requiredExtensions.empty())
     for (const char* list : {"extensionsUsed", "extensionsRequired"})
       out[list] = content.requiredExtensions;

@@ -16,7 +16,7 @@ std::uint32_t gmshComponents(std::uint32_t components) {
 }
 
 /// A name between double quotes, for which the format has no escape.
-std::string quoted(const std::string& name) {
+std::string gmshQuoted(const std::string& name) {
   std::string out = "\"";
   for (const char c : name) out += c == '"' || static_cast<unsigned char>(c) < 0x20 ? '_' : c;
   return out + "\"";
@@ -27,7 +27,7 @@ void appendData(Bytes& out, const std::string& section, const FileField& field) 
   const std::size_t tuples = field.values.size() / field.components;
   // One string tag (the name), one real tag (the time), three integer tags: step, components,
   // entities.
-  appendText(out, "$" + section + "\n1\n" + quoted(field.name) + "\n1\n0\n3\n0\n" +
+  appendText(out, "$" + section + "\n1\n" + gmshQuoted(field.name) + "\n1\n0\n3\n0\n" +
                       std::to_string(shown) + "\n" + std::to_string(tuples) + "\n");
   for (std::size_t i = 0; i < tuples; ++i) {
     appendNumber(out, static_cast<std::int32_t>(i + 1));

@@ -41,7 +41,7 @@ constexpr auto kFloat = [](std::string& out, double x) {
   std::isfinite(x) ? appendShortest(out, static_cast<float>(x)) : appendUsd(out, x);
 };
 
-std::string quoted(const std::string& text) {
+std::string usdQuoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -67,7 +67,7 @@ std::string primvarText(const FileField& field, const char* interpolation,
     tuples.push_back(std::span(field.values).subspan(i, width));
   std::string out = kIndent + type + "[] primvars:" + newIdentifier(field.name, names) + " = " +
                     (isDouble ? arrayText(tuples, kDouble) : arrayText(tuples, kFloat)) + " (\n" +
-                    kIndent + "    displayName = " + quoted(field.name) + "\n" + kIndent +
+                    kIndent + "    displayName = " + usdQuoted(field.name) + "\n" + kIndent +
                     "    interpolation = \"" + interpolation + "\"\n";
   if (!tuple)
     out += kIndent + std::string("    elementSize = ") + std::to_string(field.components) + "\n";

@@ -60,13 +60,13 @@ double readStep(ByteReader& r) {
 
 // Beside a field's type, as beside its association in the chunk table: with one of the two changed,
 // other integers would come out.
-constexpr unsigned kMissingFlag = 0x80;
+constexpr unsigned kMissingTypeFlag = 0x80;
 
 void writeField(ByteWriter& w, const ManifestField& field) {
   writeText(w, field.name);
   const auto type =
       static_cast<unsigned>(std::ranges::find(kFieldTypes, field.type) - kFieldTypes.begin());
-  w.write(static_cast<std::uint8_t>(type | (field.hasMissing ? kMissingFlag : 0)));
+  w.write(static_cast<std::uint8_t>(type | (field.hasMissing ? kMissingTypeFlag : 0)));
   w.write(static_cast<std::uint8_t>(field.bits));
   writeNumber(w, field.step);
   for (const double value : field.minimum) writeNumber(w, value);
@@ -78,12 +78,12 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
   out.name = readText(r);
   if (out.name.empty()) r.fail(ErrorCode::kBadValue, "a field without a name; build the log again");
   const auto typeAndMissing = r.read<std::uint8_t>();
-  out.hasMissing = (typeAndMissing & kMissingFlag) != 0;
+  out.hasMissing = (typeAndMissing & kMissingTypeFlag) != 0;
   if (out.hasMissing != shape.hasMissing)
     r.fail(ErrorCode::kBadValue,
            "manifest and chunk table contradict each other in whether a field has missing values; "
            "fetch or build the log again");
-  const unsigned type = typeAndMissing & ~kMissingFlag;
+  const unsigned type = typeAndMissing & ~kMissingTypeFlag;
   if (type >= kFieldTypes.size())
     r.fail(ErrorCode::kBadValue, "a field of an unknown type; use a newer qtet");
   out.type = kFieldTypes[std::min<std::size_t>(type, kFieldTypes.size() - 1)];

@@ -93,6 +93,10 @@ Reply problem(unsigned status, std::string_view type, std::string_view detail) {
   return momentaryReply(status, "application/problem+json", dumpJson(json));
 }
 
+Reply badRequestReply(std::string_view detail) { return problem(400, "bad-request", detail); }
+
+Reply missingReply(std::string_view detail) { return problem(404, "not-found", detail); }
+
 Reply busyReply(std::string_view detail) {
   Reply out = problem(503, "busy", detail);
   out.headers.add("Retry-After", std::to_string(limits::kRetryAfterSeconds));

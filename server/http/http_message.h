@@ -80,6 +80,11 @@ void appendHead(std::string& out, const Reply& reply, Afterwards afterwards);
 /// An error as RFC 9457 has it; `type` is the last part of a path under /problems/.
 [[nodiscard]] Reply problem(unsigned status, std::string_view type, std::string_view detail);
 
+/// 400.
+[[nodiscard]] Reply badRequestReply(std::string_view detail);
+/// 404.
+[[nodiscard]] Reply missingReply(std::string_view detail);
+
 /// 503, to be asked for again in limits::kRetryAfterSeconds.
 [[nodiscard]] Reply busyReply(std::string_view detail);
 /// The same where all places are taken.

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "codec/files/temporary_folder.h"
+#include "proto/version.h"
 #include "server/program/command_line.h"
 #include "server/program/server.h"
 #include "server/store/bus_guard.h"
@@ -273,7 +274,7 @@ int run(int argc, char** argv) {
   switch (options->action) {
     case CommandLine::Action::kHelp: std::cout << usageText(false); return 0;
     case CommandLine::Action::kHelpAll: std::cout << usageText(true); return 0;
-    case CommandLine::Action::kVersion: std::cout << "qtet-server " QTET_VERSION "\n"; return 0;
+    case CommandLine::Action::kVersion: std::cout << "qtet-server " << version() << '\n'; return 0;
     case CommandLine::Action::kCheckConfig: return checkConfig(*options);
     case CommandLine::Action::kServe: break;
   }

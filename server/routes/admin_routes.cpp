@@ -2,6 +2,7 @@
 
 #include "proto/json_reader.h"
 #include "proto/messages.h"
+#include "proto/version.h"
 
 namespace qtet {
 std::optional<Reply> AdminRoutes::route(const RequestTarget& target) const {
@@ -20,8 +21,7 @@ std::optional<Reply> AdminRoutes::route(const RequestTarget& target) const {
   if (name == "version")
     return momentaryReply(
         200, "application/json",
-        dumpJson(
-            {{"version", QTET_VERSION}, {"logFormat", "2.0"}, {"protocol", kStreamSubprotocol}}));
+        dumpJson({{"version", version()}, {"logFormat", "2.0"}, {"protocol", kStreamSubprotocol}}));
   return std::nullopt;
 }
 

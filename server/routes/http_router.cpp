@@ -42,8 +42,6 @@ Reply optionsReply(std::string_view allow = kAllow) {
   return out;
 }
 
-Reply notFound(std::string_view detail) { return problem(404, "not-found", detail); }
-
 /// Methods of RFC 9110; anything else was never heard of.
 bool knownMethod(std::string_view method) {
   constexpr std::array<std::string_view, 8> kKnown = {"GET",    "HEAD",  "POST",  "PUT",
@@ -170,7 +168,7 @@ Answer Router::route(const RequestView& request) const {
 Reply routeAdmin(const AdminRoutes& admin, const RequestView& request) {
   const auto find = [&](const RequestTarget& target) {
     return admin.route(target).value_or(
-        notFound("this address has livez, readyz, metrics and version"));
+        missingReply("this address has livez, readyz, metrics and version"));
   };
   return answer(request, find).reply;
 }
@@ -194,7 +192,7 @@ Answer Router::api(const RequestView& request, const RequestTarget& target) cons
   }
   if (path.size() >= 2 && path[1] == "meshes") return meshes(request, target);
   if (path.size() < 4 || path[1] != "logs")
-    return notFound("there is nothing of that path; the list of meshes is at /v1/meshes");
+    return missingReply("there is nothing of that path; the list of meshes is at /v1/meshes");
   return logs(request, target);
 }
 
@@ -238,19 +236,19 @@ Reply Router::meshes(const RequestView& request, const RequestTarget& target) co
   const MeshPointer mesh = path.back().empty() ? nullptr : store_.find(path[2]);
   if (!mesh && !path.back().empty() && store_.mayHave(path[2]))
     return busyReply("this log cannot be opened now, or the folder is still being read; try again");
-  if (!mesh) return notFound("there is no mesh of that name; the list is at /v1/meshes");
+  if (!mesh) return missingReply("there is no mesh of that name; the list is at /v1/meshes");
   if (path.size() > 3) return toLog(target, *mesh);
   return documentReply(request, mesh->description(), mesh);
 }
 
 Reply Router::viewerReply(const RequestView& request, const RequestTarget& target) const {
   if (viewer_.empty())
-    return notFound(
+    return missingReply(
         "this server was started without the viewer's files (--viewer DIR); its meshes are at "
         "/v1/meshes");
   const std::optional<std::string> path = relativePath(target.segments);
   const ViewerFile* file = path ? viewer_.find(*path) : nullptr;
-  if (file == nullptr) return notFound("the viewer has no file of that name; its page is at /");
+  if (file == nullptr) return missingReply("the viewer has no file of that name; its page is at /");
   Resource resource{
       {file->etag, file->modified}, file->type, file->immutable ? kForEver : kRevalidate, {}};
   becomeEmbeddable(resource);

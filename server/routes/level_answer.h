@@ -18,10 +18,10 @@ template <class T>
 using OrRefusal = std::expected<T, Reply>;
 
 [[nodiscard]] inline std::unexpected<Reply> badRequest(std::string_view detail) {
-  return std::unexpected(problem(400, "bad-request", detail));
+  return std::unexpected(badRequestReply(detail));
 }
 [[nodiscard]] inline std::unexpected<Reply> notFound(std::string_view detail) {
-  return std::unexpected(problem(404, "not-found", detail));
+  return std::unexpected(missingReply(detail));
 }
 
 /// A whole text as a number; no sign for whole ones.

@@ -12,8 +12,6 @@ namespace {
 
 using Path = std::span<const std::string>;
 
-Reply notFound(std::string_view detail) { return problem(404, "not-found", detail); }
-
 /// "12"; no sign, no leading zero.
 std::optional<std::uint32_t> parseIndex(std::string_view text) {
   std::uint32_t out = 0;
@@ -45,8 +43,8 @@ Reply chunkReply(const RequestView& request, const MeshPointer& mesh, std::strin
   const std::span<const ChunkEntry> chunks = mesh->log.chunks();
   const std::optional<std::uint32_t> chunk = parseIndex(number);
   if (!chunk || *chunk >= chunks.size())
-    return notFound("there is no such chunk; this log has the chunks 0 to " +
-                    std::to_string(chunks.size() - 1));
+    return missingReply("there is no such chunk; this log has the chunks 0 to " +
+                        std::to_string(chunks.size() - 1));
   const std::vector<BlockEntry>& blocks = chunks[*chunk].blocks;
   const BlockEntry& first = blocks[field ? kFirstFieldPart + *field : kStructurePart];
   const BlockEntry& last = blocks[field ? kFirstFieldPart + *field : kPositionsPart];
@@ -56,10 +54,10 @@ Reply chunkReply(const RequestView& request, const MeshPointer& mesh, std::strin
 }
 
 Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path) {
-  if (path.size() != 3 || path[1] != "chunks") return notFound("a field has chunks/{n}");
+  if (path.size() != 3 || path[1] != "chunks") return missingReply("a field has chunks/{n}");
   const auto field = fieldOfKey(mesh->manifest, path[0]);
   return field ? chunkReply(request, mesh, path[2], *field)
-               : notFound("this mesh has no field '" + path[0] + "'");
+               : missingReply("this mesh has no field '" + path[0] + "'");
 }
 
 }  // namespace
@@ -81,7 +79,7 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
   if (path.size() == 2 && what == "levels") return routeLevel(request, target, log, path[1]);
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
-  return notFound(
+  return missingReply(
       "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "
       "other forms, series, preview.png, and poster.webp");
 }

@@ -50,8 +50,6 @@ std::optional<Reply> authorise(const RequestView& request, const std::string& me
   return refusalOf(access.tokens()->may(kScope, bearerDigest(request.authorization), mesh), kScope);
 }
 
-Reply badRequest(std::string_view detail) { return problem(400, "bad-request", detail); }
-
 Answer routePut(const RequestView& request, const RequestTarget& target, UploadRequest out) {
   if (!request.contentLength)
     return problem(411, "length-required", "a log is sent with its Content-Length");
@@ -63,16 +61,17 @@ Answer routePut(const RequestView& request, const RequestTarget& target, UploadR
   out.totalBytes = out.bodyBytes;
   out.digest = target.parameter("digest");
   if (out.digest && !isLogDigest(*out.digest))
-    return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
+    return badRequestReply("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
   out.from = target.parameter("from");
   if (out.from && !isLogDigest(*out.from))
-    return badRequest("from is the old log's SHA-256, 64 hexadecimal digits in lower case");
+    return badRequestReply("from is the old log's SHA-256, 64 hexadecimal digits in lower case");
   if ((request.contentRange || out.from) && !out.digest)
-    return badRequest("a part of a log is sent with ?digest= of the whole");
+    return badRequestReply("a part of a log is sent with ?digest= of the whole");
   if (out.from && !request.contentRange)
-    return badRequest("a delta comes with Content-Range: bytes FIRST-LAST/SIZE of the new log");
+    return badRequestReply(
+        "a delta comes with Content-Range: bytes FIRST-LAST/SIZE of the new log");
   if (request.contentRange && !readContentRange(*request.contentRange, out))
-    return badRequest(
+    return badRequestReply(
         "Content-Range is bytes FIRST-LAST/SIZE, and the body has as many bytes; or bytes */SIZE, "
         "and it has none");
   if (out.from && out.bodyBytes / kMaxDeltaBytesAByte > out.totalBytes - out.first)
@@ -113,7 +112,7 @@ Reply partialReply(const RequestView& request, const RequestTarget& target,
     return std::move(*refusal);
   const std::optional<std::string> digest = target.parameter("digest");
   if (!digest || !isLogDigest(*digest))
-    return badRequest("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
+    return badRequestReply("digest is the log's SHA-256, 64 hexadecimal digits in lower case");
   const std::string& id = target.segments[2];
   if (!pathOfMesh("", id)) return problem(404, "not-found", "this cannot be the name of a mesh");
   const std::optional<std::uint64_t> bytes = writing.uploads.partialBytes(id, *digest);

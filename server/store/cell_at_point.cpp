@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "server/store/vector.h"
+
 namespace qtet {
 namespace {
 
-using Vector = std::array<double, 3>;
 /// A cell's corners as seen from the point.
 using Corners = std::array<Vector, 4>;
 
@@ -27,9 +28,6 @@ bool isNearBox(const Corners& corners, double near) {
 }
 
 using Weights = std::array<double, 4>;
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 /// How far the place of these weights is from the point.
 double distanceOf(const Weights& weights, const Corners& corners) {

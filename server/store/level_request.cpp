@@ -5,6 +5,7 @@
 #include <bit>
 #include <utility>
 
+#include "proto/version.h"
 #include "server/wire/digest.h"
 
 namespace qtet {
@@ -27,9 +28,8 @@ constexpr std::array<std::pair<LevelForm, std::string_view>, 11> kForms = {{
 }  // namespace
 
 std::string LevelRequest::key() const {
-  std::string text = std::string(QTET_VERSION) + ' ' + mesh->log.digest() + ' ' +
-                     std::to_string(level) + ' ' + std::string(formName(form)) + ' ' +
-                     std::string(codingName(coding));
+  std::string text = version() + ' ' + mesh->log.digest() + ' ' + std::to_string(level) + ' ' +
+                     std::string(formName(form)) + ' ' + std::string(codingName(coding));
   for (const std::uint32_t field : fields) text += ' ' + std::to_string(field);
   for (const std::string& name : names) text += ' ' + std::to_string(name.size()) + ':' + name;
   if (point)

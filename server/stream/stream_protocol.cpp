@@ -11,20 +11,20 @@ namespace qtet {
 namespace {
 
 /// The `error` message that answers.
-struct Refusal {
+struct StreamRefusal {
   const char* code;
   std::string detail;
 };
 
-Refusal unknownField(const ServedMesh& mesh, const std::string& name) {
+StreamRefusal unknownField(const ServedMesh& mesh, const std::string& name) {
   return {kUnknownField, "'" + mesh.id + "' has no field '" + name + "'"};
 }
 
-std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, FieldTurns turns,
+std::expected<ClientBlocks, StreamRefusal> blocksOf(const Have& have, FieldTurns turns,
                                               const ServedMesh& mesh) {
   const std::size_t chunks = mesh.log.index().chunks.size();
   if (have.chunks > chunks)
-    return std::unexpected(Refusal{kLogChanged, "have names chunk " +
+    return std::unexpected(StreamRefusal{kLogChanged, "have names chunk " +
                                                     std::to_string(have.chunks - 1) +
                                                     " and this log has " + std::to_string(chunks)});
   ClientBlocks out(mesh.log.index(), std::move(turns));
@@ -40,7 +40,7 @@ std::expected<ClientBlocks, Refusal> blocksOf(const Have& have, FieldTurns turns
   return out;
 }
 
-std::expected<std::uint32_t, Refusal> lastChunkOf(const Target& target, const ServedMesh& mesh) {
+std::expected<std::uint32_t, StreamRefusal> lastChunkOf(const Target& target, const ServedMesh& mesh) {
   const Result<std::uint32_t> last = lastChunkFor(target, mesh.manifest, mesh.log.index());
   if (!last) return std::unexpected(unknownField(mesh, std::get<FieldErrorTarget>(target).field));
   return *last;
@@ -97,7 +97,7 @@ void StreamProtocol::handle(const OpenMessage& message) {
   auto turns =
       fieldTurns(message.fields, message.time, mesh->manifest, mesh->series, mesh->log.fields());
   if (!turns) {
-    Refusal unknown = unknownField(*mesh, turns.error());
+    StreamRefusal unknown = unknownField(*mesh, turns.error());
     return refuse(unknown.code, std::move(unknown.detail));
   }
   auto blocks = blocksOf(message.have, std::move(*turns), *mesh);

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 
+#include "proto/version.h"
 #include "server/stream/control_frames.h"
 #include "server/stream/frame_gather.h"
 #include "server/stream/line_room.h"
@@ -147,7 +148,7 @@ std::string handshakeAnswer(const std::string& key) {
   return "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
          "Upgrade\r\nSec-WebSocket-Accept: " +
          webSocketAccept(key) + "\r\nSec-WebSocket-Protocol: " + std::string(kStreamSubprotocol) +
-         "\r\nServer: qtet-server/" QTET_VERSION "\r\n\r\n";
+         "\r\nServer: qtet-server/" + version() + "\r\n\r\n";
 }
 
 void StreamSession::hear(std::string_view bytes) {

@@ -48,16 +48,6 @@ constexpr std::size_t kSignedText = kIssuerText + kEndText + kNonceText + kToken
 static_assert(kSignedText + kMacText == limits::kTicketCharacters);
 constexpr std::size_t kMinKeyBytes = 32;
 
-std::optional<SecretDigest> digestOfHex(std::string_view text) {
-  SecretDigest out{};
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::string_view two = text.substr(2 * i, 2);
-    const auto [end, ec] = std::from_chars(two.data(), two.data() + two.size(), out[i], 16);
-    if (ec != std::errc() || end != two.data() + two.size()) return std::nullopt;
-  }
-  return out;
-}
-
 std::string macOf(std::string_view text, std::string_view key) {
   std::array<std::uint8_t, EVP_MAX_MD_SIZE> out{};
   unsigned bytes = 0;

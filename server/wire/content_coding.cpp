@@ -9,6 +9,8 @@
 #include <memory>
 #include <optional>
 
+#include "server/wire/blanks.h"
+
 namespace qtet {
 namespace {
 
@@ -17,12 +19,6 @@ constexpr int kGzipLevel = 6;
 constexpr int kZstdLevel = 6;
 /// Above it windows grow beyond what browsers take.
 constexpr int kSmallestZstdLevel = 19;
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
 
 bool equalsIgnoringCase(std::string_view a, std::string_view b) {
   return std::ranges::equal(

@@ -33,4 +33,15 @@ std::string hexDigestOf(std::string_view text) { return toHex(digestOf(text)); }
 std::string tagOf(ByteView bytes) { return hexDigestOf(bytes).substr(0, kTagCharacters); }
 std::string tagOf(std::string_view text) { return hexDigestOf(text).substr(0, kTagCharacters); }
 
+std::optional<Digest> digestOfHex(std::string_view hex) {
+  Digest out{};
+  if (hex.size() != 2 * out.size() ||
+      hex.find_first_not_of("0123456789abcdef") != std::string_view::npos)
+    return std::nullopt;
+  const auto nibble = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<std::uint8_t>(nibble(hex[2 * i]) * 16 + nibble(hex[2 * i + 1]));
+  return out;
+}
+
 }  // namespace qtet

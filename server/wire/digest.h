@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,8 @@ using Digest = std::array<std::uint8_t, 32>;
 /// In lower-case hexadecimal.
 [[nodiscard]] std::string hexDigestOf(ByteView bytes);
 [[nodiscard]] std::string hexDigestOf(std::string_view text);
+/// nullopt: the text is not 64 lower-case hexadecimal digits.
+[[nodiscard]] std::optional<Digest> digestOfHex(std::string_view hex);
 
 /// The first half of it: 128 bits tell versions of a text apart, and go with every answer.
 [[nodiscard]] std::string tagOf(ByteView bytes);

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "proto/version.h"
+
 namespace qtet {
 namespace {
 
@@ -92,7 +94,7 @@ std::string Metrics::requestText() const {
 
 std::string Metrics::text(const std::vector<Figure>& figures) const {
   std::string out = head("build_info", "1; the label is the version of the server.", "gauge") +
-                    "qtet_build_info{version=\"" QTET_VERSION "\"} 1\n";
+                    "qtet_build_info{version=\"" + version() + "\"} 1\n";
   out += head("http_requests_total", "HTTP requests answered, by status.", "counter");
   for (std::size_t status = 0; status < kStatuses; ++status)
     if (const auto count = byStatus_[status].load(std::memory_order_relaxed); count > 0)

@@ -18,17 +18,6 @@ constexpr std::string_view kNameMark = "name=";
 constexpr std::size_t kShownDigest = 8;  ///< digits that tell the tokens of one file apart
 constexpr std::string_view kScheme = "bearer ";
 
-std::optional<SecretDigest> digestOfHex(std::string_view hex) {
-  SecretDigest out{};
-  if (hex.size() != 2 * out.size() ||
-      hex.find_first_not_of("0123456789abcdef") != std::string_view::npos)
-    return std::nullopt;
-  const auto nibble = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<std::uint8_t>(nibble(hex[2 * i]) * 16 + nibble(hex[2 * i + 1]));
-  return out;
-}
-
 bool equalInConstantTime(const SecretDigest& a, const SecretDigest& b) {
   unsigned difference = 0;
   for (std::size_t i = 0; i < a.size(); ++i) difference |= static_cast<unsigned>(a[i] ^ b[i]);

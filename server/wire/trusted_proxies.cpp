@@ -10,19 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "server/wire/blanks.h"
+
 namespace qtet {
 namespace {
 
 namespace ip = boost::asio::ip;
 using boost::system::error_code;
-
-constexpr std::string_view kBlanks = " \t";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 /// A port, or what stands for one in RFC 7239: "4711", "_hidden".
 bool isPort(std::string_view text) {

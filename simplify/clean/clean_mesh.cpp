@@ -22,9 +22,6 @@ struct Cleaning {
   StopFlag stopped{stop};
 };
 
-// Cells between two looks at whether to stop.
-constexpr std::size_t kLookEvery = 65536;
-
 std::vector<std::uint64_t> countedUp(std::size_t count) {
   std::vector<std::uint64_t> out(count);
   std::iota(out.begin(), out.end(), std::uint64_t{0});

@@ -20,10 +20,7 @@
 namespace qtet {
 namespace {
 
-// Cells between two looks at whether to stop.
-constexpr std::size_t kLookEvery = 65536;
-
-struct Box {
+struct Bounds {
   Position low{}, high{};
 
   [[nodiscard]] double extent() const {
@@ -31,9 +28,9 @@ struct Box {
   }
 };
 
-Box boxOf(const std::vector<Position>& points) {
+Bounds boundsOf(const std::vector<Position>& points) {
   if (points.empty()) return {};
-  Box box{points.front(), points.front()};
+  Bounds box{points.front(), points.front()};
   for (const Position& p : points) {
     for (std::size_t k = 0; k < 3; ++k) {
       box.low[k] = std::min(box.low[k], p[k]);
@@ -43,7 +40,7 @@ Box boxOf(const std::vector<Position>& points) {
   return box;
 }
 
-Lattice latticeOf(const Box& box, int bits) {
+Lattice latticeOf(const Bounds& box, int bits) {
   const double extent = box.extent();
   return {bits, extent > 0 ? extent / (std::ldexp(1.0, bits) - 1) : 1.0, box.low};
 }
@@ -104,7 +101,7 @@ Status checkOptions(const QuantiseOptions& options) {
   return {};
 }
 
-Status checkBox(const Box& box) {
+Status checkBox(const Bounds& box) {
   const double extent = box.extent();
   const double finestStep = extent / std::ldexp(1.0, kMaxPositionBits);
   if (!std::isfinite(extent) || (extent > 0 && finestStep < std::numeric_limits<double>::min())) {
@@ -117,7 +114,7 @@ Status checkBox(const Box& box) {
 }
 
 /// Finds the bits and places the points. REQUIRES: checked options and box.
-void placePoints(const TetMesh& mesh, const Box& box, const std::stop_token& stop,
+void placePoints(const TetMesh& mesh, const Bounds& box, const std::stop_token& stop,
                  QuantisedMesh& out) {
   const std::vector<signed char> before = signsOf(mesh, stop);
   QuantiseReport& report = out.report;
@@ -176,7 +173,7 @@ Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, Q
 Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
                             const std::stop_token& stop, std::vector<Triangle> boundary) {
   if (Status checked = checkOptions(options); !checked) return std::unexpected(checked.error());
-  const Box box = boxOf(mesh.points);
+  const Bounds box = boundsOf(mesh.points);
   if (Status checked = checkBox(box); !checked) return std::unexpected(checked.error());
 
   QuantisedMesh out;

@@ -16,8 +16,6 @@
 namespace qtet {
 namespace {
 
-constexpr int kMaxThreads = 256;
-
 /// The log's fields without those that `mesh` replaces. Errors: bad-value (a name that is there,
 /// without --replace).
 Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMesh& mesh,

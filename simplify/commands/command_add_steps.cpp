@@ -28,8 +28,6 @@
 namespace qtet {
 namespace {
 
-constexpr int kMaxThreads = 256;
-
 /// --times: one number a file. Throws UsageError.
 std::vector<double> timesOf(const ParsedWords& parsed, std::size_t files) {
   std::vector<double> out;

@@ -8,7 +8,6 @@
 namespace qtet {
 namespace {
 
-constexpr int kMaxThreads = 1024;
 // Weights beyond are words gone wrong: what counts a million times as much as the rest decides
 // alone.
 constexpr double kMaxWeight = 1e6;

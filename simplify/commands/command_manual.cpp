@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "codec/files/atomic_file.h"
+#include "proto/version.h"
 #include "simplify/commands/command_help.h"
 
 namespace qtet {
@@ -29,7 +30,7 @@ std::string head(const std::string& page, const std::string& summary) {
   std::ranges::transform(upper, upper.begin(), [](char c) {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   });
-  return ".TH " + upper + " 1 \"\" \"qtet " QTET_VERSION "\" \"User Commands\"\n.SH NAME\n" +
+  return ".TH " + upper + " 1 \"\" \"qtet " + version() + "\" \"User Commands\"\n.SH NAME\n" +
          roff(page + " - " + summary) + "\n";
 }
 

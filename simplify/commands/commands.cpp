@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "proto/version.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/standard_input.h"
 
@@ -165,7 +166,7 @@ std::span<const Command> commands() { return kCommands; }
 int runTool(const Words& words, Console& console) {
   const std::string first = words.empty() ? "" : words.front();
   if (first == "--version") {
-    console.out << "qtet " QTET_VERSION "\n";
+    console.out << "qtet " << version() << '\n';
     return kExitOk;
   }
   const Words rest = words.empty() ? Words() : Words(words.begin() + 1, words.end());

@@ -6,6 +6,8 @@
 #include <array>
 #include <memory>
 
+#include "proto/version.h"
+
 namespace qtet {
 namespace {
 
@@ -108,7 +110,7 @@ struct Options {
 void setRules(Options& options, const HttpUrl& server, const HttpRequest& request) {
   const bool secure = server.origin.starts_with("https:");
   options.set(CURLOPT_NOSIGNAL, 1L);
-  options.set(CURLOPT_USERAGENT, "qtet/" QTET_VERSION);
+  options.set(CURLOPT_USERAGENT, ("qtet/" + version()).c_str());
   options.set(CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_1_1));
   options.set(CURLOPT_PROTOCOLS_STR, "http,https");
   options.set(CURLOPT_REDIR_PROTOCOLS_STR, secure ? "https" : "http,https");

@@ -13,6 +13,9 @@ namespace qtet {
 inline constexpr int kExactBits = 16;
 inline constexpr double kRounding = 0x1p-47;
 
+/// Lattice steps that rounding may take from a distance: coordinates below 2^30 in doubles.
+inline constexpr double kDistanceRounding = 0x1p-18;
+
 /// A bound on the rounding errors of volumes with an apex at d over triangles of this reach, on a
 /// lattice of so many bits. Both relative to the same origin.
 [[nodiscard]] inline double roundingAt(const Vector3& d, double reach, int latticeBits) {

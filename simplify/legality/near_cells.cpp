@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "simplify/legality/lattice_rounding.h"
 #include "simplify/legality/touched_cells.h"
 
 namespace qtet {
@@ -17,8 +18,6 @@ constexpr double kLength = 0.4;
 /// Cubes along an axis, at most, if lengths are not rounded down. The directory has at most 256^3
 /// blocks of four bytes.
 constexpr std::int32_t kMaxAlong = 1024;
-/// Lattice steps that rounding may take from a distance: coordinates below 2^30 in doubles.
-constexpr double kRounding = 0x1p-18;
 /// A triangle whose box touches more blocks is looked for from the whole grid down.
 constexpr double kManyBlocks = 64;
 
@@ -48,7 +47,7 @@ NearCells::NearCells(const TriangleTree& tree, std::span<const float> tolerances
   blockCounts_.fill((cells >> kBlockBits) + 1);
   directory_.assign(placeOf({0, 0, blockCounts_[2]}), kUnknown);
   rootBits_ = std::bit_width(static_cast<std::uint32_t>(blockCounts_[0] * kBlockLength - 1));
-  const double half = kHalfDiagonal * length_ + kRounding;
+  const double half = kHalfDiagonal * length_ + kDistanceRounding;
   for (std::uint32_t t = 0; t < tolerances.size(); ++t) {
     Spread of{tree.corners(t), {}, {}, {}, tolerances[t] - half, half};
     of.middle = 1 / 3.0 * (of.triangle[0] + of.triangle[1] + of.triangle[2]);

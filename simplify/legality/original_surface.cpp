@@ -7,6 +7,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "simplify/legality/lattice_rounding.h"
+
 namespace qtet {
 namespace {
 
@@ -14,8 +16,6 @@ namespace {
 constexpr double kNear = 0.25;
 /// The cosine to a pseudonormal that is too small to tell a side, in doubles.
 constexpr double kNoSide = 1e-9;
-/// Lattice steps that rounding may take from a distance: coordinates below 2^30 in doubles.
-constexpr double kRounding = 0x1p-18;
 
 Vector3 unit(const Vector3& v) {
   const double length = std::sqrt(dot(v, v));
@@ -175,7 +175,7 @@ SignedDistance OriginalSurface::distanceOf(const LatticeCube& cube) const {
   tree_->nearest(p, nearest, near * near);
   const double distance = std::sqrt(nearest.point.squared);
   const bool isIn = distance > near && isInside(p, nearest);
-  const double outside = (isIn ? -distance : distance) + kRounding;
+  const double outside = (isIn ? -distance : distance) + kDistanceRounding;
   const auto rounded = static_cast<float>(outside);
   return {
       rounded < outside ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded,
@@ -206,9 +206,9 @@ bool OriginalSurface::holds(const Corners& tetrahedron, const Tolerances& tolera
     const SignedDistance from = known.at(cube, [&] { return distanceOf(cube); });
     const double reach = radiusOf(corners, cube.middle());
     const double tolerance = tolerances.own[from.nearest];
-    if (from.outside - reach > tolerance + kRounding) return false;
+    if (from.outside - reach > tolerance + kDistanceRounding) return false;
     if (from.outside + reach > (from.outside < 0 ? tolerances.least : tolerance) &&
-        !isNear(corners, tree_->corners(from.nearest), tolerance - kRounding)) {
+        !isNear(corners, tree_->corners(from.nearest), tolerance - kDistanceRounding)) {
       waiting.push_back({corners, from.outside});
       std::ranges::push_heap(waiting, {}, &Piece::outside);
     }

@@ -11,7 +11,7 @@ namespace {
 
 /// The lattice's span has so many bins.
 constexpr int kBinBits = std::numeric_limits<Focus::value_type>::digits;
-constexpr std::uint32_t kBins = 1U << kBinBits;
+constexpr std::uint32_t kFocusBins = 1U << kBinBits;
 /// The focus holds the cells between these quantiles, out of kQuantiles.
 constexpr std::uint64_t kQuantiles = 20, kFrom = 5, kTo = 15;
 /// There is one if the cells between these quantiles ...
@@ -30,13 +30,13 @@ class Histogram {
   [[nodiscard]] std::uint32_t quantile(std::uint64_t numerator) const {
     std::uint64_t passed = 0;
     std::uint32_t bin = 0;
-    for (; bin + 1 < kBins; ++bin)
+    for (; bin + 1 < kFocusBins; ++bin)
       if ((passed += counts_[bin]) * kQuantiles > numerator * cells_) break;
     return bin;
   }
 
  private:
-  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(kBins);
+  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(kFocusBins);
   std::uint64_t cells_ = 0;
 };
 
@@ -66,11 +66,11 @@ std::optional<Focus> focusOf(const LatticeMesh& mesh) {
     out[axis] = static_cast<std::uint16_t>(low);
     out[axis + 3] = static_cast<std::uint16_t>(high);
   }
-  if (extent == 0 || most * kDwarfed >= kBins) return std::nullopt;
+  if (extent == 0 || most * kDwarfed >= kFocusBins) return std::nullopt;
   const std::uint32_t room = extent / kRoom + 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out[axis] = static_cast<std::uint16_t>(out[axis] - std::min<std::uint32_t>(room, out[axis]));
-    out[axis + 3] = static_cast<std::uint16_t>(std::min(kBins - 1, out[axis + 3] + room));
+    out[axis + 3] = static_cast<std::uint16_t>(std::min(kFocusBins - 1, out[axis + 3] + room));
   }
   return out;
 }

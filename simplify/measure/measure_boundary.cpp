@@ -36,7 +36,7 @@ BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& op
   const auto onIt = [](const Vector3& at, std::uint32_t ghost) {
     return Followed{at, {ghost, {0, {}}}};
   };
-  for (const Sample& s : samplesOnSurface(history.points, history.cells, mesh.originalBoundary(),
+  for (const ErrorSample& s : samplesOnSurface(history.points, history.cells, mesh.originalBoundary(),
                                           options.samples, options.seed))
     samples_.push_back(onIt(s.at, s.cell));
   triangleBounds_.assign(mesh.originalBoundary().size(), 0);
@@ -200,7 +200,7 @@ double BoundaryMeter::boundToOriginal(double squared) {
 
 OneSidedDistance BoundaryMeter::toOriginal() {
   const FusionHistory& history = mesh_.history();
-  const std::vector<Sample> samples =
+  const std::vector<ErrorSample> samples =
       samplesOnSurface(history.points, history.cells, mesh_.boundary(), options_.levelSamples,
                        options_.seed + mesh_.level() + 1);
   std::vector<double> squared(samples.size());

@@ -43,7 +43,7 @@ FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options)
     : mesh_(mesh), options_(options) {
   assert(mesh.level() == mesh.history().levels);
   const FusionHistory& history = mesh.history();
-  for (const Sample& sample :
+  for (const ErrorSample& sample :
        samplesInVolume(history.points, history.cells, options.samples, options.seed))
     places_.push_back({sample, {}, sample.cell});
   uniform_ = places_.size();

@@ -52,7 +52,7 @@ class FieldMeter {
  private:
   struct Place {
     // its cell is a ghost cell where the place is not covered: the nearest one
-    Sample sample;
+    ErrorSample sample;
     NearestTriangle nearest;  // of a place that is not covered
     CellId tetrahedron = 0;   // the last that covered it
     bool isMeasured = true;

@@ -52,13 +52,13 @@ std::array<double, 4> tetrahedronWeights(SplitMix64& random) {
 /// One place in each of `count` equal parts of the total measure, cells lined up in the order of
 /// `ids`.
 template <std::size_t N, class MeasureOf, class Weights>
-std::vector<Sample> stratified(std::span<const LatticePoint> points, CellSpan cells,
+std::vector<ErrorSample> stratified(std::span<const LatticePoint> points, CellSpan cells,
                                std::span<const std::uint32_t> ids, std::size_t count,
                                std::uint64_t seed, const MeasureOf& measureOf,
                                const Weights& weights) {
   double total = 0;
   for (const std::uint32_t id : ids) total += measureOf(cornersOf<N>(points, cells[id]));
-  std::vector<Sample> out;
+  std::vector<ErrorSample> out;
   if (!(total > 0)) return out;
   out.reserve(count);
   SplitMix64 random(seed);
@@ -69,7 +69,7 @@ std::vector<Sample> stratified(std::span<const LatticePoint> points, CellSpan ce
   std::size_t lastWithMeasure = 0;
   const auto drawIn = [&](std::uint32_t id) {
     const auto corners = cornersOf<N>(points, cells[id]);
-    Sample sample{{}, id, weights(random)};
+    ErrorSample sample{{}, id, weights(random)};
     std::array<double, N> own;
     std::copy_n(sample.weights.begin(), N, own.begin());
     sample.at = blend(corners, own);
@@ -88,13 +88,13 @@ std::vector<Sample> stratified(std::span<const LatticePoint> points, CellSpan ce
 
 }  // namespace
 
-std::vector<Sample> samplesOnSurface(std::span<const LatticePoint> points, CellSpan cells,
+std::vector<ErrorSample> samplesOnSurface(std::span<const LatticePoint> points, CellSpan cells,
                                      std::span<const std::uint32_t> ids, std::size_t count,
                                      std::uint64_t seed) {
   return stratified<3>(points, cells, ids, count, seed, areaOf, triangleWeights);
 }
 
-std::vector<Sample> samplesInVolume(std::span<const LatticePoint> points, CellSpan cells,
+std::vector<ErrorSample> samplesInVolume(std::span<const LatticePoint> points, CellSpan cells,
                                     std::size_t count, std::uint64_t seed) {
   std::vector<std::uint32_t> ids;
   for (std::uint32_t i = 0; i < cells.size(); ++i)

@@ -108,7 +108,7 @@ Vector3 twiceTheArea(const std::array<Vector3, 3>& corners) {
   return cross(corners[1] - corners[0], corners[2] - corners[0]);
 }
 
-double areaOf(const std::array<Vector3, 3>& corners) {
+double twiceAreaOf(const std::array<Vector3, 3>& corners) {
   const Vector3 normal = twiceTheArea(corners);
   return std::sqrt(dot(normal, normal));
 }
@@ -213,7 +213,7 @@ class Scene {
       }
     for (std::size_t i = 2; i < count; ++i)
       addTriangle(palette, {known[0], known[i - 1], known[i]},
-                  areaOf({points[0], points[i - 1], points[i]}));
+                  twiceAreaOf({points[0], points[i - 1], points[i]}));
   }
 
   const LatticeMesh& mesh_;

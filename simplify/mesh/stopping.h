@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <stop_token>
 
 #include "proto/error.h"
@@ -10,6 +11,9 @@ namespace qtet {
 
 /// Thrown deep inside the work. It stays inside: orCancelled() stands at the border.
 struct Stopped {};
+
+/// Cells or points between two looks at whether to stop.
+inline constexpr std::size_t kLookEvery = 65536;
 
 inline void throwIfStopped(const std::stop_token& stop) {
   if (stop.stop_requested()) throw Stopped();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "codec/log/log_manifest.h"
+#include "proto/version.h"
 #include "simplify/cost/cost_parts.h"
 #include "simplify/measure/focus.h"
 #include "simplify/measure/opening.h"
@@ -172,7 +173,7 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& ru
   if (!spool) return std::unexpected(spool.error());
   LogWriterOptions options;
   options.source = run.options.source;
-  options.generator = "qtet " QTET_VERSION;
+  options.generator = "qtet " + version();
   options.progress = run.stages.progress();
   options.stop = run.options.stop;
   options.errors = std::move(errors);
@@ -201,7 +202,7 @@ void warn(Run& run) {
   if (const auto warning = run.flips.warning()) run.report.warnings.push_back(*warning);
 }
 
-Status bad(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }
+Status badValue(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }
 
 }  // namespace
 
@@ -227,12 +228,12 @@ Status checkOptions(const PipelineOptions& options) {
   const bool isPaper = options.algorithm == Algorithm::kPaper;
   if (isPaper && (options.regions || fusion.envelopeTolerance.value_or(0) > 0 ||
                   !options.fieldWeights.empty()))
-    return bad(
+    return badValue(
         "`algorithm` paper knows no `regions`, `envelopeTolerance` or `fieldWeights`; "
         "leave them out");
   for (const auto& [name, weight] : options.fieldWeights)
     if (!(weight >= 0) || std::isinf(weight))
-      return bad("`fieldWeights` of " + name + " is negative or not finite");
+      return badValue("`fieldWeights` of " + name + " is negative or not finite");
   return {};
 }
 

@@ -1,9 +1,11 @@
 #include "simplify/publish/hosting_notes.h"
 
+#include "proto/version.h"
+
 namespace qtet {
 
 std::string hostingNotes() {
-  return "Meshes for the browser, published by qtet " QTET_VERSION R"(
+  return "Meshes for the browser, published by qtet " + version() + R"(
 
 index.html shows the meshes of index.json. Each is one .qtet file. Copy this folder to any web
 server; no program runs there. Addresses:

@@ -6,6 +6,7 @@
 #include "codec/picture/poster.h"
 #include "codec/picture/poster_page.h"
 #include "proto/field_key.h"
+#include "proto/version.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/publish/compressed.h"
@@ -213,7 +214,7 @@ Result<Json> writeSegments(Site& site, const fs::path& path) {
 }
 
 Status writeList(Site& site, const Json& meshes) {
-  Json list = {{"generator", "qtet " QTET_VERSION}, {"meshes", meshes}};
+  Json list = {{"generator", "qtet " + version()}, {"meshes", meshes}};
   list["files"] = site.folder.files();
   for (const char* ending : {"", ".gz", ".br"})
     list["files"].push_back(std::string(kSiteList) + ending);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFirstScript = "single_page.js";
+constexpr const char* kPageScript = "single_page.js";
 /// Scripts, workers and WebAssembly from the page itself; no address outside of it.
 constexpr const char* kPolicy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; base-uri 'none'; "
@@ -110,7 +110,7 @@ bool isLeftOut(const std::string& name) {
     if (file.starts_with(of)) return true;
   const bool isKnown = ending == ".css" || ending == ".svg" || typeOf(ending) != nullptr;
   return !isKnown || ending == ".qtet" || name == kSiteList || name == "README.txt" ||
-         name == "viewer.json" || name == "first.js" || name == kFirstScript;
+         name == "viewer.json" || name == "first.js" || name == kPageScript;
 }
 
 /// A page in pieces: what stands in its head, and the packed files.
@@ -173,12 +173,12 @@ Result<std::uint32_t> cutLog(Bytes& content, const fs::path& path, std::uint64_t
 Result<SinglePage> singlePage(const fs::path& site, const SinglePageOptions& options) {
   Result<nlohmann::json> list = listOf(site);
   const Result<Bytes> viewer = readWhole(site / "index.html");
-  const Result<Bytes> first = readWhole(site / kFirstScript);
+  const Result<Bytes> first = readWhole(site / kPageScript);
   if (!list) return std::unexpected(list.error());
   if (!viewer) return std::unexpected(viewer.error());
   if (!first)
     return fail(ErrorCode::kBadInput,
-                std::string("the viewer has no ") + kFirstScript + "; give that of this version");
+                std::string("the viewer has no ") + kPageScript + "; give that of this version");
   std::string page = textOf(*viewer);
   const std::string entry =
       fs::path(attributeOf(takeOut(page, "<script", "</script>"), "src")).filename().string();

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "proto/number_text.h"
+#include "simplify/read/bad_file.h"
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/parts/file_series.h"
@@ -25,10 +26,6 @@ constexpr int kMaxDepth = 8;
 
 bool isSeries(MeshFormat format) {
   return format == MeshFormat::kPvd || format == MeshFormat::kSeries;
-}
-
-std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
-  return fail(ErrorCode::kBadInput, path.string() + ": " + what);
 }
 
 /// The step's partitions in one mesh.
@@ -119,8 +116,8 @@ Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
   for (const std::filesystem::path& part : parts) {
     const MeshFormat format = formatOf(part);
     if (isSeries(format) || format >= MeshFormat::kGmsh)
-      return bad(path, "it names " + part.string() +
-                           ", but may name VTK's files alone; convert that to .vtu first");
+      return badFile(path, "it names " + part.string() +
+                               ", but may name VTK's files alone; convert that to .vtu first");
     if (Status checked = checkMeshFile(part, format); !checked)
       return fail(checked.error().code, path.string() + " names it: " + checked.error().message);
     ReadReport ofOne;
@@ -140,8 +137,8 @@ Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, Mes
                                           const ReadOptions& options, ReadReport& report,
                                           int depth) {
   if (depth == kMaxDepth)
-    return bad(path, "files that name files go deeper than " + std::to_string(kMaxDepth) +
-                         "; does one name itself?");
+    return badFile(path, "files that name files go deeper than " + std::to_string(kMaxDepth) +
+                             "; does one name itself?");
   if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
     return std::unexpected(steps.error());
   const auto parts = namesPieces(format) ? piecesOf(path, format) : blocksOf(path, report.notes);

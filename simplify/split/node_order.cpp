@@ -41,18 +41,18 @@ int triangleNode(int degree, Barycentric<3> node) {
 /// Triangles' inner nodes row by row.
 int innerTriangleNode(int degree, int i, int j) { return i + degree * (j - 1) - j * (j + 1) / 2; }
 
-struct Edge {
+struct NodeEdge {
   int zeroA, zeroB;  ///< the distances that are 0 on it
   int counted;       ///< the distance that numbers its nodes
 };
-constexpr std::array<Edge, 6> kTetrahedronEdges{
+constexpr std::array<NodeEdge, 6> kNodeEdges{
     {{1, 2, 0}, {2, 3, 1}, {0, 2, 3}, {0, 1, 2}, {1, 3, 2}, {0, 3, 2}}};
 
-struct Face {
+struct NodeFace {
   int zero;
   std::array<int, 3> distances;  ///< of the triangle's sides
 };
-constexpr std::array<Face, 4> kTetrahedronFaces{
+constexpr std::array<NodeFace, 4> kNodeFaces{
     {{1, {0, 2, 3}}, {3, {2, 0, 1}}, {0, {2, 1, 3}}, {2, {1, 0, 3}}}};
 
 }  // namespace
@@ -68,12 +68,12 @@ int tetrahedronNode(int degree, int i, int j, int k) {
   for (int corner = 0; corner < 4; ++corner)
     if (node.b[(corner + 3) % 4] == degree) return before + corner;
   before += 4;
-  for (const Edge& edge : kTetrahedronEdges) {
+  for (const NodeEdge& edge : kNodeEdges) {
     if (node.b[edge.zeroA] == 0 && node.b[edge.zeroB] == 0)
       return before + node.b[edge.counted] - 1;
     before += degree - 1;
   }
-  for (const Face& face : kTetrahedronFaces) {
+  for (const NodeFace& face : kNodeFaces) {
     // a face's inner nodes follow in the triangle's own order, without its 3 degree outer ones
     if (node.b[face.zero] == 0)
       return before - 3 * degree +

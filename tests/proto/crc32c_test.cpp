@@ -12,7 +12,7 @@
 namespace qtet {
 namespace {
 
-ByteView view(std::string_view text) {
+ByteView bytesOf(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
@@ -51,8 +51,8 @@ class Crc32c : public ::testing::TestWithParam<Crc32cPath> {};
 TEST_P(Crc32c, knownVectors) {
   const auto crc = GetParam().run;
   EXPECT_EQ(crc({}), 0u);
-  EXPECT_EQ(crc(view("123456789")), 0xE3069283u);
-  EXPECT_EQ(crc(view("a")), 0xC1D04330u);
+  EXPECT_EQ(crc(bytesOf("123456789")), 0xE3069283u);
+  EXPECT_EQ(crc(bytesOf("a")), 0xC1D04330u);
   EXPECT_EQ(crc(Bytes(32, 0x00)), 0x8A9136AAu);
   EXPECT_EQ(crc(Bytes(32, 0xFF)), 0x62A8AB43u);
   EXPECT_EQ(crc(ascending()), 0x46DD794Eu);

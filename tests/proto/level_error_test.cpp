@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Manifest sample() {
+Manifest withErrors() {
   Manifest m;
   m.latticeBits = 16;
   m.fields.push_back({"density", 1, "float32", "point", 12, 0.00025, {0.1}, {0.1, 0.9}});
@@ -25,20 +25,20 @@ Manifest sample() {
   return m;
 }
 
-Json sampleJson() { return Json::parse(manifestToJson(sample())); }
+Json withErrorsJson() { return Json::parse(manifestToJson(withErrors())); }
 
 TEST(LevelError, theLargerOfBothWaysCounts) {
-  const LevelError base = *sample().levels[0].error;
+  const LevelError base = *withErrors().levels[0].error;
   EXPECT_EQ(base.boundaryDistance(), 0.03);
   EXPECT_EQ(base.boundaryMean(), 0.001234);
 }
 
 TEST(LevelError, isWrittenAsTheFormatSays) {
-  EXPECT_EQ(sampleJson()["levels"][0]["error"],
+  EXPECT_EQ(withErrorsJson()["levels"][0]["error"],
             Json::parse(R"({"boundary": {"toLevel": {"mean": 0.001234, "max": 0.02},
     "toOriginal": {"mean": 0.001, "max": 0.03}}, "volumeLost": 0.012346, "volumeGained": 0.004,
     "fields": [{"rms": 0.0125, "max": 0.3}, {"rms": 1e-7, "max": 2.5}]})"));
-  EXPECT_FALSE(sampleJson()["levels"][1].contains("error"));
+  EXPECT_FALSE(withErrorsJson()["levels"][1].contains("error"));
 }
 
 }  // namespace

@@ -9,12 +9,12 @@ TEST(Utf8, isToldFromWhatLooksLikeIt) {
   for (const std::string_view good :
        {"", "a", "\x7F", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
         "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
-    EXPECT_TRUE(isUtf8(good)) << testing::PrintToString(good);
+    EXPECT_TRUE(isUtf8(good)) << ::testing::PrintToString(good);
   for (const std::string_view bad :
        {"\x80", "\xC0\x80", "\xC1\xBF", "\xC2", "\xC2\x41", "\xE0\x9F\xBF", "\xE1\x80",
         "\xED\xA0\x80", "\xED\xBF\xBF", "\xF0\x8F\xBF\xBF", "\xF1\x80\x80", "\xF4\x90\x80\x80",
         "\xF5\x80\x80\x80", "\xFF"})
-    EXPECT_FALSE(isUtf8(bad)) << testing::PrintToString(bad);
+    EXPECT_FALSE(isUtf8(bad)) << ::testing::PrintToString(bad);
 }
 
 TEST(Utf8, whatIsNoneIsMarkedByteByByte) {

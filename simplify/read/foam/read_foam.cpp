@@ -1,5 +1,6 @@
 #include "simplify/read/foam/read_foam.h"
 
+#include "simplify/read/bad_file.h"
 #include "simplify/read/foam/foam_fields.h"
 #include "simplify/read/foam/poly_mesh.h"
 #include "simplify/read/parts/piece_files.h"
@@ -11,10 +12,6 @@
 
 namespace qtet {
 namespace {
-
-std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
-  return fail(ErrorCode::kBadInput, path.string() + ": " + what);
-}
 
 /// A case of OpenFOAM in one folder. `marker` is the file that VTK opens for it.
 Result<std::vector<TimedCells>> readFoamCase(const std::filesystem::path& folder,
@@ -28,9 +25,9 @@ Result<std::vector<TimedCells>> readFoamCase(const std::filesystem::path& folder
   if (!steps) return steps;
   for (const TimedCells& step : *steps)
     if (*cells && step.cells.cells() != **cells)
-      return bad(folder, "VTK found " + std::to_string(step.cells.cells()) + " of its " +
-                             std::to_string(**cells) +
-                             " cells; run checkMesh on the case, and write it again");
+      return badFile(folder, "VTK found " + std::to_string(step.cells.cells()) + " of its " +
+                                 std::to_string(**cells) +
+                                 " cells; run checkMesh on the case, and write it again");
   return steps;
 }
 

@@ -12,7 +12,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kLineBlanks = " \t\r";
 
 /// The first byte of a binary file.
 constexpr char kBinary = 7;
@@ -95,10 +95,10 @@ class AvsLines {
   void splitLine() {
     const std::string_view line = line_;
     words_.clear();
-    for (std::size_t at = line.find_first_not_of(kBlanks); at != line.npos;) {
-      const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+    for (std::size_t at = line.find_first_not_of(kLineBlanks); at != line.npos;) {
+      const std::size_t end = std::min(line.find_first_of(kLineBlanks, at), line.size());
       words_.push_back(line.substr(at, end - at));
-      at = line.find_first_not_of(kBlanks, end);
+      at = line.find_first_not_of(kLineBlanks, end);
     }
   }
 

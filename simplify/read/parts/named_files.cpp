@@ -4,14 +4,11 @@
 #include <array>
 #include <charconv>
 
+#include "simplify/read/bad_file.h"
 #include "simplify/read/parts/xml_tree.h"
 
 namespace qtet {
 namespace {
-
-std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
-  return fail(ErrorCode::kBadInput, path.string() + ": " + what);
-}
 
 /// The element of that name below the file's root. `tree` holds it.
 Result<const XmlElement*> listIn(const std::filesystem::path& path, const std::string& name,
@@ -20,7 +17,7 @@ Result<const XmlElement*> listIn(const std::filesystem::path& path, const std::s
   if (!read) return std::unexpected(read.error());
   tree = std::move(*read);
   const XmlElement* list = tree->child(name);
-  if (!list) return bad(path, "it holds no <" + name + ">; save it again");
+  if (!list) return badFile(path, "it holds no <" + name + ">; save it again");
   return list;
 }
 
@@ -52,13 +49,13 @@ Result<std::vector<SeriesEntry>> entriesOfPvd(const std::filesystem::path& path)
     const auto number = static_cast<int>(entries.size());
     const std::string_view file = element->attribute("file"), time = element->attribute("timestep");
     if (file.empty())
-      return bad(path, "its <DataSet> number " + std::to_string(number) +
-                           " names no file; save the series again");
+      return badFile(path, "its <DataSet> number " + std::to_string(number) +
+                               " names no file; save the series again");
     SeriesEntry entry{0, number, path.parent_path() / file};
     std::from_chars(time.data(), time.data() + time.size(), entry.time);
     entries.push_back(std::move(entry));
   }
-  if (entries.empty()) return bad(path, "its <Collection> is empty; save the series again");
+  if (entries.empty()) return badFile(path, "its <Collection> is empty; save the series again");
   sortByTime(entries);
   return entries;
 }
@@ -73,11 +70,11 @@ Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path&
     if (element->name != "Piece") continue;
     const std::string_view file = element->attribute("Source");
     if (file.empty())
-      return bad(path, "its <Piece> number " + std::to_string(out.size()) +
-                           " names no file; save it again");
+      return badFile(path, "its <Piece> number " + std::to_string(out.size()) +
+                               " names no file; save it again");
     out.push_back(path.parent_path() / file);
   }
-  if (out.empty()) return bad(path, "it names no <Piece>; save it again");
+  if (out.empty()) return badFile(path, "it names no <Piece>; save it again");
   return out;
 }
 

@@ -12,8 +12,6 @@
 namespace qtet {
 namespace {
 
-constexpr std::uint64_t kMinTextBytes = 2;  ///< of a number and the blank before it
-
 /// VTK writes vtkIdType with 32 bits, and keeps it with 64.
 constexpr std::array<LegacyType, 14> kTypes{{{"char", NumberType::kInt8, "int8"},
                                              {"signed_char", NumberType::kInt8, "int8"},

@@ -5,6 +5,7 @@
 #include <bit>
 #include <charconv>
 #include <concepts>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -14,6 +15,9 @@
 #include "proto/error.h"
 
 namespace qtet {
+
+/// Bytes that a number takes at least as text, with the blank beside it.
+inline constexpr std::uint64_t kMinTextBytes = 2;
 
 /// Keeps its first error; after it every read gives 0 or an empty word, and no place moves. Bytes
 /// are little-endian.

@@ -8,8 +8,6 @@
 namespace qtet {
 namespace {
 
-constexpr std::uint64_t kMinTextBytes = 2;  ///< of a number and the blank behind it
-
 class Su2 {
  public:
   Su2(std::string_view text, const std::filesystem::path& path) : in_(text, path, '%') {}

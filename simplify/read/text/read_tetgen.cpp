@@ -8,8 +8,6 @@
 namespace qtet {
 namespace {
 
-constexpr std::uint64_t kMinTextBytes = 2;  ///< of a number and the blank behind it
-
 std::vector<MeshField> attributesOf(std::uint64_t count, const char* association) {
   std::vector<MeshField> fields;
   for (std::uint64_t i = 0; i < count; ++i)

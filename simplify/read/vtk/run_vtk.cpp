@@ -15,6 +15,7 @@
 #include <exception>
 #include <new>
 
+#include "simplify/read/bad_file.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/step_reports.h"
 #include "simplify/read/vtk/vtk_cells.h"
@@ -79,10 +80,6 @@ class MessageCapture {
   vtkNew<MessageWindow> window_;
 };
 
-std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
-  return fail(ErrorCode::kBadInput, path.string() + ": " + what);
-}
-
 /// The volume blocks of what a reader gave, in one mesh.
 Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options,
                                const std::filesystem::path& path, ReadReport& report) {
@@ -98,7 +95,7 @@ Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options
   auto* composite = vtkCompositeDataSet::SafeDownCast(output);
   if (!composite) {
     if (!vtkDataSet::SafeDownCast(output))
-      return bad(path, "VTK found no mesh in it; export the mesh as .vtu");
+      return badFile(path, "VTK found no mesh in it; export the mesh as .vtu");
     if (Status done = add(output); !done) return std::unexpected(done.error());
     return blocks.empty() ? CellMesh{} : std::move(blocks.front());
   }
@@ -123,21 +120,21 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
   const auto reader = vtkReaderOf(path, format, options);
   reader->UpdateInformation();
   const std::vector<double> times = timesOf(*reader);
-  return readChosen(times, path, options, report,
-                    [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
-                      if (times.empty())
-                        reader->Update();
-                      else
-                        reader->UpdateTimeStep(times[step]);
-                      Result<CellMesh> cells =
-                          cellsOfOutput(reader->GetOutputDataObject(0), options, path, ofStep);
-                      const std::string lacking = cells ? missingVariable(*reader) : "";
-                      if (lacking.empty()) return cells;
-                      return bad(path, "its variable " + lacking +
-                                           " has no values: its file is cut off, or of another "
-                                           "mesh; export the case again, or take the variable out "
-                                           "of it");
-                    });
+  return readChosen(
+      times, path, options, report, [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
+        if (times.empty())
+          reader->Update();
+        else
+          reader->UpdateTimeStep(times[step]);
+        Result<CellMesh> cells =
+            cellsOfOutput(reader->GetOutputDataObject(0), options, path, ofStep);
+        const std::string lacking = cells ? missingVariable(*reader) : "";
+        if (lacking.empty()) return cells;
+        return badFile(path, "its variable " + lacking +
+                                 " has no values: its file is cut off, or of another "
+                                 "mesh; export the case again, or take the variable out "
+                                 "of it");
+      });
 }
 
 /// A Fluent mesh alone is no fault; VTK looks for a file of results beside it.
@@ -155,16 +152,17 @@ Result<std::vector<TimedCells>> runVtk(const std::filesystem::path& path, MeshFo
   try {
     steps = runReader(path, format, options, report);
   } catch (const std::bad_alloc&) {
-    return bad(path,
-               "an array's stated length does not fit in memory; the file is damaged, or the "
-               "machine too small for it");
+    return badFile(path,
+                   "an array's stated length does not fit in memory; the file is damaged, or the "
+                   "machine too small for it");
   } catch (const std::exception& error) {
-    return bad(path, std::string("VTK could not read it: ") + error.what());
+    return badFile(path, std::string("VTK could not read it: ") + error.what());
   }
   for (const std::string& error : capture.messages().errors) {
     if (!isOfMissingResults(format, error))
-      return bad(path, "VTK could not read it: " + error +
-                           "; export the mesh again or open it in ParaView to see what it holds");
+      return badFile(path,
+                     "VTK could not read it: " + error +
+                         "; export the mesh again or open it in ParaView to see what it holds");
   }
   for (const std::string& warning : capture.messages().warnings)
     if (!isOfMissingResults(format, warning)) report.notes.push_back("VTK: " + warning);

@@ -23,15 +23,12 @@
 #include <type_traits>
 
 #include "codec/coding/float_bits.h"
+#include "simplify/read/bad_file.h"
 #include "simplify/read/vtu/grid_parts.h"
 #include "simplify/split/higher_cells.h"
 
 namespace qtet {
 namespace {
-
-std::unexpected<Error> bad(const std::filesystem::path& path, const std::string& what) {
-  return fail(ErrorCode::kBadInput, path.string() + ": " + what);
-}
 
 template <class T>
 double asDouble(T value) {
@@ -124,8 +121,8 @@ class GridCells {
     vtkCellArray* cells = grid_.GetCells();
     if (count == 0 || !types || !cells) return {};
     if (types->GetNumberOfTuples() < count || cells->GetNumberOfOffsets() <= count)
-      return bad(path_,
-                 "fewer cell types or offsets than cells; the file is damaged, export it again");
+      return badFile(
+          path_, "fewer cell types or offsets than cells; the file is damaged, export it again");
     out.types.reserve(static_cast<std::size_t>(count));
     out.begins.reserve(static_cast<std::size_t>(count) + 1);
     out.vertices.reserve(static_cast<std::size_t>(cells->GetNumberOfConnectivityIds()));
@@ -151,7 +148,7 @@ class GridCells {
       }
       if (hidden_[i]) continue;
       if (begin[i] < 0 || begin[i + 1] < begin[i] || begin[i + 1] > idCount) {
-        return bad(path_, verticesOutside(static_cast<std::uint64_t>(i)));
+        return badFile(path_, verticesOutside(static_cast<std::uint64_t>(i)));
       }
       if (types[i] == VTK_POLYHEDRON) {
         if (Status added = addPolyhedron(i, out); !added) return added;
@@ -172,7 +169,7 @@ class GridCells {
       auto at = static_cast<std::size_t>(places->GetValue(i));
       if (appendFaces(facesOf(*faces), at, out)) return {};
     }
-    return bad(path_, withoutFaces(static_cast<std::uint64_t>(i)));
+    return badFile(path_, withoutFaces(static_cast<std::uint64_t>(i)));
   }
 
   static std::span<const std::int64_t> facesOf(vtkIdTypeArray& faces) {
@@ -236,9 +233,10 @@ class GridFields {
                          association, out);
       if (!name) continue;
       if (array->GetNumberOfTuples() != tuples) {
-        return bad(path_, association + " field " + *name + " has " +
-                              std::to_string(array->GetNumberOfTuples()) + " tuples for " +
-                              std::to_string(tuples) + " " + association + "s; export it again");
+        return badFile(path_, association + " field " + *name + " has " +
+                                  std::to_string(array->GetNumberOfTuples()) + " tuples for " +
+                                  std::to_string(tuples) + " " + association +
+                                  "s; export it again");
       }
       MeshField field{*name,
                       static_cast<std::uint32_t>(array->GetNumberOfComponents()),

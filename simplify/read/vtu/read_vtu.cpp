@@ -42,8 +42,8 @@ struct Association {
   VtuFields VtuPiece::* fields;
   std::uint64_t VtuPiece::* tuples;
 };
-constexpr Association kOfPoints{"point", "<PointData>", &VtuPiece::pointFields, &VtuPiece::points};
-constexpr Association kOfCells{"cell", "<CellData>", &VtuPiece::cellFields, &VtuPiece::cells};
+constexpr Association kPointData{"point", "<PointData>", &VtuPiece::pointFields, &VtuPiece::points};
+constexpr Association kCellData{"cell", "<CellData>", &VtuPiece::cellFields, &VtuPiece::cells};
 
 /// The array of one piece.
 struct Part {
@@ -115,7 +115,7 @@ class VtuReader {
     for (const char* name : kGlobalIdNames)
       if (!ids) ids = find(name);
     if (!ids || ids->components != 1 || (isFloat(*ids) && !ids->isIdType)) return {};
-    const auto parts = partsOf(*ids, kOfPoints);
+    const auto parts = partsOf(*ids, kPointData);
     if (!parts) return std::unexpected(parts.error());
     out_.pointIds.reserve(out_.points.size());
     for (const Part& part : *parts) {
@@ -141,7 +141,7 @@ class VtuReader {
   }
 
   Status readFields() {
-    for (const Association& of : {kOfPoints, kOfCells})
+    for (const Association& of : {kPointData, kCellData})
       if (Status done = readFieldsOf(of); !done) return done;
     return {};
   }

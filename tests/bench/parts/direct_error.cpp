@@ -28,8 +28,8 @@ class Surface {
   }
   [[nodiscard]] double meanDistanceTo(const Surface& other, std::size_t samples) const {
     double sum = 0;
-    const std::vector<Sample> places = samplesOnSurface(points_, cells_, ids_, samples, kSeed);
-    for (const Sample& place : places) sum += std::sqrt(other.nearest(place.at).point.squared);
+    const std::vector<ErrorSample> places = samplesOnSurface(points_, cells_, ids_, samples, kSeed);
+    for (const ErrorSample& place : places) sum += std::sqrt(other.nearest(place.at).point.squared);
     return sum / static_cast<double>(std::max<std::size_t>(places.size(), 1));
   }
   [[nodiscard]] const Tetrahedron& cell(std::uint32_t triangle) const { return cells_[triangle]; }
@@ -106,9 +106,9 @@ DirectError directError(const LatticeMesh& original, const LatticeMesh& level,
                  diagonal(original);
 
   double squares = 0;
-  const std::vector<Sample> places =
+  const std::vector<ErrorSample> places =
       samplesInVolume(original.points, original.tetrahedra, samples, kSeed);
-  for (const Sample& place : places) {
+  for (const ErrorSample& place : places) {
     std::optional<double> value = valueInside(level, place.at);
     if (!value) {
       const NearestTriangle nearest = levelBoundary.nearest(place.at);

@@ -42,7 +42,7 @@ const Bytes& newBytes() {
   return bytes;
 }
 
-Bytes contentOf(const fs::path& path) {
+Bytes bytesIn(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return Bytes(std::istreambuf_iterator<char>(file), {});
 }
@@ -129,7 +129,7 @@ int inChild(const std::function<int()>& work) {
 int callsOfOneWrite(const fs::path& path) {
   ChosenCall counting(-1, ChosenCall::Fate::kFail);
   EXPECT_TRUE(writeFileAtomically(path, newBytes(), counting));
-  EXPECT_EQ(contentOf(path), newBytes());
+  EXPECT_EQ(bytesIn(path), newBytes());
   return counting.made();
 }
 
@@ -165,7 +165,7 @@ TEST_F(AtomicFileCrash, aCallThatFailsLeavesTheOldFileAndNothingBeside) {
           << "call " << n << ", " << calls.failed();
       if (status) {  // only what is of no consequence may fail unnoticed
         EXPECT_TRUE(calls.failed() == "lock" || calls.failed() == "close") << calls.failed();
-        EXPECT_EQ(contentOf(path_), newBytes());
+        EXPECT_EQ(bytesIn(path_), newBytes());
         continue;
       }
       ++refused;
@@ -174,9 +174,9 @@ TEST_F(AtomicFileCrash, aCallThatFailsLeavesTheOldFileAndNothingBeside) {
       EXPECT_NE(message.find(std::strerror(number)), std::string::npos) << message;
       EXPECT_NE(message.find(folder_.string()), std::string::npos) << message;
       const bool written = message.find("is written") != std::string::npos;
-      EXPECT_EQ(contentOf(path_), written ? newBytes() : oldBytes()) << message;
+      EXPECT_EQ(bytesIn(path_), written ? newBytes() : oldBytes()) << message;
       EXPECT_EQ(written,
-                calls.failed() == "sync" && calls.made() > n + 1 && contentOf(path_) == newBytes())
+                calls.failed() == "sync" && calls.made() > n + 1 && bytesIn(path_) == newBytes())
           << message;
     }
   EXPECT_EQ(refused, 3 * 9);  // two opens, four writes, two flushes, the rename
@@ -189,7 +189,7 @@ TEST_F(AtomicFileCrash, anInterruptedWriteGoesOn) {
     const Status status = writeFileAtomically(path_, newBytes(), calls);
     if (calls.failed() != "write") continue;
     EXPECT_TRUE(status) << status.error().text();
-    EXPECT_EQ(contentOf(path_), newBytes());
+    EXPECT_EQ(bytesIn(path_), newBytes());
   }
 }
 
@@ -204,7 +204,7 @@ TEST_F(AtomicFileCrash, aWriterKilledAtAnyCallLeavesTheOldFileOrTheWholeNewOne) 
       });
       ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
           << "call " << n << ": " << status;
-      const Bytes content = contentOf(path_);
+      const Bytes content = bytesIn(path_);
       ASSERT_TRUE(content == oldBytes() || content == newBytes())
           << "call " << n << " left " << content.size() << " bytes";
       (content == oldBytes() ? oldKept : newThere) += 1;
@@ -213,7 +213,7 @@ TEST_F(AtomicFileCrash, aWriterKilledAtAnyCallLeavesTheOldFileOrTheWholeNewOne) 
       leftOvers += names.size() - 1;
 
       ASSERT_TRUE(writeFileAtomically(path_, newBytes()));
-      EXPECT_EQ(contentOf(path_), newBytes());
+      EXPECT_EQ(bytesIn(path_), newBytes());
       EXPECT_EQ(namesIn(folder_), std::vector<std::string>{"a.qtet"})
           << "the next writer cleans up after a death at call " << n;
     }
@@ -256,7 +256,7 @@ TEST_F(AtomicFileCrash, aNameThatIsTakenIsNotWrittenOver) {
   }
   ChosenCall calls(-1, ChosenCall::Fate::kFail);
   EXPECT_TRUE(writeFileAtomically(path_, oldBytes(), calls));
-  EXPECT_EQ(contentOf(path_), oldBytes());
+  EXPECT_EQ(bytesIn(path_), oldBytes());
   EXPECT_GT(calls.opened().size(), 100u);  // every one as a stale one, and then as its own
   for (const fs::path& name : taken) EXPECT_EQ(fs::file_size(name), 6u) << name;
   for (const int lock : locks) ::close(lock);
@@ -278,7 +278,7 @@ TEST_F(AtomicFileCrash, writersAtTheSameTimeLeaveOneWholeFile) {
     ::waitpid(child, &status, 0);
     EXPECT_EQ(status, 0);
   }
-  const Bytes content = contentOf(path_);
+  const Bytes content = bytesIn(path_);
   EXPECT_TRUE(content == noise(kNewBytes, 10) || content == noise(kNewBytes, 11) ||
               content == noise(kNewBytes, 12) || content == noise(kNewBytes, 13));
   EXPECT_EQ(namesIn(folder_), std::vector<std::string>{"a.qtet"});
@@ -293,7 +293,7 @@ int failsCleanly(const fs::path& path, int number) {
       status.error().message.find(std::strerror(number)) == std::string::npos)
     return 11;
   if (status.error().message.find(path.string()) == std::string::npos) return 12;
-  if (contentOf(path) != oldBytes()) return 13;
+  if (bytesIn(path) != oldBytes()) return 13;
   return namesIn(path.parent_path()) == std::vector<std::string>{path.filename().string()} ? 0 : 14;
 }
 

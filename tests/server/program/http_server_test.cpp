@@ -20,7 +20,7 @@ namespace {
 using test::HttpResponse;
 using test::RawClient;
 
-class HttpServerTest : public testing::Test {
+class HttpServerTest : public ::testing::Test {
  protected:
   test::ServedFolder folder_;
   test::RunningServer server_{folder_.store(), folder_.viewer(), {.threads = 2}};
@@ -290,7 +290,7 @@ struct SlowMaker {
   }
 };
 
-class LevelsTest : public testing::Test {
+class LevelsTest : public ::testing::Test {
  protected:
   ~LevelsTest() override { maker_.release(); }
   test::ServedFolder folder_;

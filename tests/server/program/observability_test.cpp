@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/wire/http_limits.h"
+#include "proto/version.h"
 #include "server/wire/request_trace.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
@@ -265,7 +266,7 @@ TEST(Operators, theirPathsAreAnsweredBesideEverythingElse) {
   test::RawClient client(server.port());
   EXPECT_EQ(client.get("/livez").body, "ok\n");
   EXPECT_EQ(client.get("/readyz").status, 200u);
-  EXPECT_EQ(Json::parse(client.get("/version").body)["version"], QTET_VERSION);
+  EXPECT_EQ(Json::parse(client.get("/version").body)["version"], version());
   const std::string metrics = client.get("/metrics").body;
   EXPECT_NE(metrics.find("qtet_http_requests_total{code=\"200\"} 3\n"), std::string::npos)
       << metrics;
@@ -274,7 +275,7 @@ TEST(Operators, theirPathsAreAnsweredBesideEverythingElse) {
   EXPECT_NE(metrics.find("qtet_http_request_duration_seconds_bucket{route=\"admin\",method=\"GET\","
                          "le=\"+Inf\"} 3\n"),
             std::string::npos);
-  EXPECT_NE(metrics.find("qtet_build_info{version=\"" QTET_VERSION "\"} 1\n"), std::string::npos);
+  EXPECT_NE(metrics.find("qtet_build_info{version=\"" + version() + "\"} 1\n"), std::string::npos);
   for (const char* name : {"cpu_seconds_total", "resident_memory_bytes", "virtual_memory_bytes",
                            "open_fds", "max_fds", "start_time_seconds"}) {
     const std::size_t at = metrics.find("\nprocess_" + std::string(name) + " ");

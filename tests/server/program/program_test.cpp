@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "proto/checksum.h"
+#include "proto/version.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/program.h"
 #include "tests/server/program/served_folder.h"
@@ -32,7 +33,7 @@ TEST(Program, helpAndVersionGoToStandardOutput) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_EQ(help.exitCode(), 0);
   Program version({"--version"});
-  EXPECT_EQ(version.output(), "qtet-server " QTET_VERSION "\n");
+  EXPECT_EQ(version.output(), "qtet-server " + version() + "\n");
   EXPECT_EQ(version.exitCode(), 0);
 }
 

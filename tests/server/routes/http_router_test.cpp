@@ -15,7 +15,7 @@ namespace {
 
 using test::Json;
 
-class RouterTest : public testing::Test {
+class RouterTest : public ::testing::Test {
  protected:
   Reply route(const RequestView& request) { return router_.route(request).reply; }
   Reply get(std::string_view target) { return route({.method = "GET", .target = target}); }
@@ -443,7 +443,7 @@ std::vector<std::string> namesOf(const Reply& reply) {
 }
 
 TEST_F(RouterTest, aHeadHasWhatItsClientCanUseAndNoMore) {
-  using testing::ElementsAre;
+  using ::testing::ElementsAre;
   EXPECT_THAT(namesOf(get("/v1/meshes")),
               ElementsAre("ETag", "Last-Modified", "Cache-Control", "Content-Type",
                           "X-Content-Type-Options", "Vary", "Access-Control-Allow-Origin",

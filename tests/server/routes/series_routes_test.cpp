@@ -9,7 +9,7 @@ namespace qtet {
 namespace {
 
 /// A log of noise with a series T and plain fields; its levels halve their errors.
-class SeriesRoutes : public testing::Test {
+class SeriesRoutes : public ::testing::Test {
  protected:
   explicit SeriesRoutes(bool errors = true) {
     folder_.write("run.qtet",

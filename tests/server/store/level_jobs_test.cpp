@@ -20,7 +20,7 @@
 namespace qtet {
 namespace {
 
-class LevelJobsTest : public testing::Test {
+class LevelJobsTest : public ::testing::Test {
  protected:
   ~LevelJobsTest() override { maker_.release(); }
   LevelRequest level(std::uint32_t k) { return {folder_.store().find("noise"), k}; }

@@ -10,7 +10,7 @@ namespace {
 constexpr char kText = '\x81', kClose = '\x88', kPing = '\x89';
 
 /// A session's input with everything behind it but the socket.
-class StreamInputTest : public testing::Test {
+class StreamInputTest : public ::testing::Test {
  protected:
   /// A frame masked with zeros.
   static std::string frame(char first, const std::string& payload) {

@@ -11,7 +11,7 @@
 namespace qtet {
 namespace {
 
-class StreamProtocolTest : public testing::Test {
+class StreamProtocolTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_.write("noise.qtet", test::makeLog({.chunks = 6}));

@@ -15,7 +15,7 @@ namespace {
 
 using test::StreamClient;
 
-class StreamServerTest : public testing::Test {
+class StreamServerTest : public ::testing::Test {
  protected:
   static std::string open(std::uint64_t credit, const std::string& more = "") {
     return R"({"type":"open","mesh":"noise","credit":)" + std::to_string(credit) + more + "}";

@@ -217,7 +217,7 @@ TEST(Tickets, ofOneTokenAreBoundedAndOfAnotherStillToBeHad) {
 }
 
 /// `noise` for one token, `a b` for everybody.
-class GuardedTest : public testing::Test {
+class GuardedTest : public ::testing::Test {
  protected:
   HttpResponse get(const std::string& target, const std::string& headers = "") {
     return RawClient(server_.port()).get(target, headers);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class HandshakesTest : public testing::Test {
+class HandshakesTest : public ::testing::Test {
  protected:
   struct Client {
     Client(HandshakesTest& test, Handshakes& handshakes, const void* address)

@@ -20,7 +20,7 @@ namespace {
 using test::TlsChoice;
 using test::TlsClient;
 
-class TlsTest : public testing::Test {
+class TlsTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!test::makeCertificate(folder_.path(), "a") || !test::makeCertificate(folder_.path(), "b"))

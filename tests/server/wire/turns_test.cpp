@@ -18,7 +18,7 @@ namespace {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-class TurnsTest : public testing::Test {
+class TurnsTest : public ::testing::Test {
  protected:
   /// Appends `name` at each of its turns.
   asio::awaitable<void> play(char name, int times, Turns::Clock::duration behind) {

@@ -7,6 +7,7 @@
 
 #include "codec/coding/float_bits.h"
 #include "codec/files/atomic_file.h"
+#include "proto/version.h"
 #include "simplify/commands/printable.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST_F(Tool, helpAndVersionSucceed) {
-  EXPECT_EQ(run("--version").out, "qtet " QTET_VERSION "\n");
+  EXPECT_EQ(run("--version").out, "qtet " + version() + "\n");
   const Ran help = run("--help");
   EXPECT_EQ(help.code, 0);
   for (const char* command :

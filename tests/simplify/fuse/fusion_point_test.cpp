@@ -15,7 +15,7 @@ namespace {
 
 using testing::gridMesh;
 
-FusionHistory simplified(PlacementRule rule) {
+FusionHistory historyBy(PlacementRule rule) {
   FusionOptions options;
   options.placement = rule;
   options.targetRatio = 0.02;
@@ -30,7 +30,7 @@ std::array<std::size_t, 4> placements(const FusionHistory& history) {
 }
 
 TEST(FusionPoint, theVertexRuleKeepsOriginalVerticesAlone) {
-  const FusionHistory history = simplified(PlacementRule::kVertex);
+  const FusionHistory history = historyBy(PlacementRule::kVertex);
   ASSERT_FALSE(history.fusions.empty());
   EXPECT_EQ(placements(history)[static_cast<std::size_t>(Placement::kAtPrey)],
             history.fusions.size());
@@ -39,8 +39,8 @@ TEST(FusionPoint, theVertexRuleKeepsOriginalVerticesAlone) {
 }
 
 TEST(FusionPoint, theAutomaticRuleMostlyFollowsFromThePreyTheOptimalOneSeldom) {
-  const auto automatic = placements(simplified(PlacementRule::kAuto)),
-             optimal = placements(simplified(PlacementRule::kOptimal));
+  const auto automatic = placements(historyBy(PlacementRule::kAuto)),
+             optimal = placements(historyBy(PlacementRule::kOptimal));
   const auto freeShare = [](const std::array<std::size_t, 4>& count) {
     return static_cast<double>(count[3]) /
            static_cast<double>(count[0] + count[1] + count[2] + count[3]);
@@ -52,7 +52,7 @@ TEST(FusionPoint, theAutomaticRuleMostlyFollowsFromThePreyTheOptimalOneSeldom) {
 
 TEST(FusionPoint, theHistorySaysWhereTheFusedVertexLies) {
   for (const PlacementRule rule : {PlacementRule::kAuto, PlacementRule::kOptimal}) {
-    const FusionHistory history = simplified(rule);
+    const FusionHistory history = historyBy(rule);
     for (const Fusion& f : history.fusions) {
       std::array<LatticePoint, 4> prey{};
       for (std::size_t i = 0; i < f.k; ++i) prey[i] = history.points[f.prey[i]];

@@ -41,7 +41,7 @@ LatticeMesh bentStrip(int instants) {
   return out->mesh;
 }
 
-FusionHistory simplified(const LatticeMesh& mesh, std::size_t checkedInstants, int threads = 1) {
+FusionHistory fusedHistory(const LatticeMesh& mesh, std::size_t checkedInstants, int threads = 1) {
   FusionOptions options;
   options.baseCells = 60;
   options.threads = threads;
@@ -93,23 +93,23 @@ TEST(MovingMesh, instantsAreSampledFromTheFirstThatMovesToTheLast) {
 
 TEST(MovingMesh, noCellFlipsAtAnInstantThatIsChecked) {
   const LatticeMesh mesh = bentStrip(5);
-  const MovedFlips without = movedFlips(simplified(mesh, 0));
+  const MovedFlips without = movedFlips(fusedHistory(mesh, 0));
   EXPECT_EQ(without.instants, 5u);
   EXPECT_GT(without.cells, 0u) << "else this tests nothing";
   ASSERT_TRUE(without.warning());
   EXPECT_NE(without.warning()->find("at " + without.worst), std::string::npos);
-  const FusionHistory checked = simplified(mesh, 8);
+  const FusionHistory checked = fusedHistory(mesh, 8);
   EXPECT_EQ(movedFlips(checked).flipped, 0u);
   EXPECT_FALSE(movedFlips(checked).warning());
-  EXPECT_LT(movedFlips(simplified(mesh, 1)).cells, without.cells) << "the last instant counts";
-  EXPECT_TRUE(areSame(checked, simplified(mesh, 8, 3))) << "threads change nothing";
+  EXPECT_LT(movedFlips(fusedHistory(mesh, 1)).cells, without.cells) << "the last instant counts";
+  EXPECT_TRUE(areSame(checked, fusedHistory(mesh, 8, 3))) << "threads change nothing";
 }
 
 TEST(MovingMesh, aFieldOfAnotherNameChangesNothing) {
   LatticeMesh mesh = bentStrip(2);
   for (FieldInfo& field : mesh.fields) field.name = "U" + field.name;
-  EXPECT_TRUE(areSame(simplified(mesh, 8), simplified(mesh, 0)));
-  EXPECT_EQ(movedFlips(simplified(mesh, 8)).instants, 0u);
+  EXPECT_TRUE(areSame(fusedHistory(mesh, 8), fusedHistory(mesh, 0)));
+  EXPECT_EQ(movedFlips(fusedHistory(mesh, 8)).instants, 0u);
 }
 
 }  // namespace

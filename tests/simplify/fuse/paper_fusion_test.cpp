@@ -64,13 +64,13 @@ std::vector<std::size_t> removedByInterior(const LatticeMesh& mesh, const Fusion
   return out;
 }
 
-struct Case {
+struct PaperCase {
   const char* name;
   LatticeMesh (*mesh)();
 };
-void PrintTo(const Case& shape, std::ostream* out) { *out << shape.name; }
+void PrintTo(const PaperCase& shape, std::ostream* out) { *out << shape.name; }
 
-class AsThePaper : public ::testing::TestWithParam<Case> {};
+class AsThePaper : public ::testing::TestWithParam<PaperCase> {};
 
 TEST_P(AsThePaper, fusesTetrahedraOnly) {
   const PaperFusion result = fused(GetParam().mesh());
@@ -157,17 +157,17 @@ TEST_P(AsThePaper, theSameMeshGivesTheSameLogWhichHoldsTheWholeMesh) {
 INSTANTIATE_TEST_SUITE_P(
     Meshes, AsThePaper,
     ::testing::Values(
-        Case{"box", boxMesh}, Case{"random7", [] { return gridMesh(8, 7); }},
-        Case{"random8", [] { return gridMesh(8, 8); }},
-        Case{"random9", [] { return gridMesh(9, 9); }},
-        Case{"tunnel",
+        PaperCase{"box", boxMesh}, PaperCase{"random7", [] { return gridMesh(8, 7); }},
+        PaperCase{"random8", [] { return gridMesh(8, 8); }},
+        PaperCase{"random9", [] { return gridMesh(9, 9); }},
+        PaperCase{"tunnel",
              [] { return gridMesh(6, 2, [](int i, int j, int) { return i != 1 || j != 2; }); }},
-        Case{"hollow",
+        PaperCase{"hollow",
              [] {
                return gridMesh(6, 1,
                                [](int i, int j, int k) { return i != 2 || j != 1 || k != 2; });
              }},
-        Case{"twoParts", [] { return gridMesh(9, 4, [](int i, int, int) { return i != 4; }); }}),
+        PaperCase{"twoParts", [] { return gridMesh(9, 4, [](int i, int, int) { return i != 4; }); }}),
     [](const auto& shape) { return std::string(shape.param.name); });
 
 /// A tetrahedron, a vertex put into it, and the next ones each into the cell of the last four. The

@@ -107,7 +107,7 @@ TEST(TriangleTree, aFanOfThinTrianglesIsSearchedInPart) {
   std::vector<std::uint8_t> live(soup.cells.size(), 1);
   TriangleTree tree(soup.points, soup.cells, soup.ids);
   for (int round = 0; round < 2; ++round) {
-    const std::vector<Sample> places = samplesOnSurface(soup.points, soup.cells, soup.ids, 200, 3);
+    const std::vector<ErrorSample> places = samplesOnSurface(soup.points, soup.cells, soup.ids, 200, 3);
     std::size_t looked = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Vector3 p = places[i].at + Vector3{0, 0, i % 2 == 0 ? 0.0 : 2000.0};
@@ -145,7 +145,7 @@ TEST(MeasureSamples, lieInTheirCellsAndFillTheVolume) {
   ASSERT_EQ(samples.size(), 20000u);
   Vector3 mean{};
   double squares = 0;
-  for (const Sample& s : samples) {
+  for (const ErrorSample& s : samples) {
     std::array<Vector3, 4> corners;
     for (std::size_t i = 0; i < 4; ++i)
       corners[i] = toVector(mesh.points[mesh.tetrahedra[s.cell][i]]);
@@ -163,13 +163,13 @@ TEST(MeasureSamples, areUniformInOneTetrahedronAndOneTriangle) {
   const std::vector<LatticePoint> points = {{0, 0, 0}, {100, 0, 0}, {0, 100, 0}, {0, 0, 100}};
   const std::vector<std::array<VertexId, 4>> cells = {{0, 1, 2, 3}};
   std::array<double, 4> squares{};
-  for (const Sample& s : samplesInVolume(points, cells, 40000, 9))
+  for (const ErrorSample& s : samplesInVolume(points, cells, 40000, 9))
     for (std::size_t i = 0; i < 4; ++i) squares[i] += s.weights[i] * s.weights[i] / 40000;
   // of the Dirichlet distribution: 2 / (4 * 5)
   for (const double s : squares) EXPECT_NEAR(s, 0.1, 0.002);
   squares = {};
   const std::vector<std::uint32_t> ids = {0};
-  for (const Sample& s : samplesOnSurface(points, cells, ids, 40000, 9))
+  for (const ErrorSample& s : samplesOnSurface(points, cells, ids, 40000, 9))
     for (std::size_t i = 0; i < 4; ++i) squares[i] += s.weights[i] * s.weights[i] / 40000;
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(squares[i], 1.0 / 6, 0.003);
   EXPECT_EQ(squares[3], 0);
@@ -179,7 +179,7 @@ TEST(MeasureSamples, cellsWithoutMeasureHaveNone) {
   const std::vector<LatticePoint> points = {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {9, 9, 0}, {0, 0, 9}};
   const std::vector<std::array<VertexId, 4>> cells = {
       {0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, kGhost}};
-  for (const Sample& s : samplesInVolume(points, cells, 100, 1)) EXPECT_EQ(s.cell, 1u);
+  for (const ErrorSample& s : samplesInVolume(points, cells, 100, 1)) EXPECT_EQ(s.cell, 1u);
   EXPECT_TRUE(samplesInVolume(points, std::span(cells).first(1), 100, 1).empty());
 }
 

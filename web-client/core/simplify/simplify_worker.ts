@@ -50,7 +50,10 @@ class LocalFile implements PageFile {
 async function compiled(url: string): Promise<WebAssembly.Module> {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
-  return WebAssembly.compile(await response.arrayBuffer());
+  const bytes = await response.arrayBuffer();
+  if (bytes.byteLength === 0)
+    throw new Error('this viewer was built without it; `make build` adds it');
+  return WebAssembly.compile(bytes);
 }
 
 const post = (message: SimplifyMessage, buffers: Transferable[] = []): void =>

@@ -1,0 +1,7 @@
+#include "proto/version.h"
+
+namespace qtet {
+
+std::string version() { return QTET_VERSION; }
+
+}  // namespace qtet

@@ -1,0 +1,18 @@
+// Vectors of three doubles, for pictures and for points in a mesh.
+#pragma once
+
+#include <array>
+
+namespace qtet {
+
+using Vector = std::array<double, 3>;
+
+[[nodiscard]] inline double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+[[nodiscard]] inline Vector minus(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+}  // namespace qtet
