@@ -25,6 +25,22 @@ template <class Names>
   return out;
 }
 
+/// A field's name in VTK's legacy format, which has no white space in names: VTK's own way round it
+/// is that of URLs.
+[[nodiscard]] inline std::string vtkName(std::string_view name) {
+  constexpr const char* kHex = "0123456789ABCDEF";
+  std::string out;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte > 0x20 && byte < 0x7F && c != '%' && c != '"') {
+      out += c;
+    } else {
+      out += {'%', kHex[byte >> 4], kHex[byte & 15]};
+    }
+  }
+  return out.empty() ? "%20" : out;
+}
+
 /// A text inside an attribute's double quotes, or between tags. XML 1.0 has no way to write other
 /// control characters, so these become '?'.
 [[nodiscard]] inline std::string xmlText(std::string_view text) {
