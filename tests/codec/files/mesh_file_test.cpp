@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <string>
 
+#include "codec/files/file_names.h"
 #include "proto/limits.h"
 
 namespace qtet {
@@ -78,6 +80,16 @@ TEST(MeshFile, moreComponentsThanGmshShowsAreRefused) {
   expectRefused(fileOfField("matrix", 10, ".msh"), "10 components");
   for (const char* ending : {".vtu", ".vtk", ".usda", ".obj"})
     EXPECT_TRUE(fileOfField("matrix", 16, ending)) << ending;
+}
+
+TEST(MeshFile, identifiersOfAlikeNamesDifferAndStayShort) {
+  std::set<std::string> taken;
+  EXPECT_EQ(newIdentifier("T@1", taken), "T_1");
+  EXPECT_EQ(newIdentifier("T#1", taken), "T_1_");
+  EXPECT_EQ(newIdentifier("T 1", taken), "T_1__");
+  for (std::uint32_t i = 3; i < kMaxFields; ++i)
+    EXPECT_LE(newIdentifier("T.1", taken).size(), std::string("T_1____8192").size());
+  EXPECT_EQ(taken.size(), kMaxFields);
 }
 
 /// Times that `text` stands in the file.
