@@ -14,6 +14,7 @@
 #include <span>
 #include <utility>
 
+#include "codec/files/field_limits.h"
 #include "codec/mesh/boundary.h"
 #include "proto/limits.h"
 
@@ -121,6 +122,10 @@ bool isQuantisable(const FieldInfo& field, std::span<const std::int32_t> integer
 Result<Bytes> boundaryDrc(const LatticeMesh& mesh, const DrcOptions& options) {
   if (mesh.boundary.empty())
     return fail(ErrorCode::kBadInput, "the mesh has no boundary triangle to encode");
+  // only a .glb has colours
+  if (Status checked = canHold(options.colours.empty() ? ".drc" : ".glb", outlinesOf(mesh));
+      !checked)
+    return std::unexpected(checked.error());
   Lattice lattice = mesh.lattice;
   for (std::size_t a = 0; a < 3; ++a) lattice.origin[a] -= options.from[a];
   if (!fitsFloats(mesh.lattice.origin, lattice.bits, lattice.step))
@@ -143,6 +148,7 @@ Result<Bytes> boundaryDrc(const LatticeMesh& mesh, const DrcOptions& options) {
   }
   if (!options.colours.empty()) addColours(target, options.colours, surface.vertices);
   addTriangles(target, surface.triangles);
+  assert(static_cast<std::size_t>(target.num_attributes()) <= 1 + kMaxDracoAttributes);
 
   draco::ExpertEncoder encoder(target);
   quantise(encoder, positions, lattice.bits, lattice.step, toFloats(lattice.origin));

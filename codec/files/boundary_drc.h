@@ -30,8 +30,9 @@ struct DrcOptions {
 /// minimum and step. A field of more bits, with missing values (NaN), or with integers beyond 2^20,
 /// is stored as raw floats.
 /// REQUIRES: indices within range, as many values as the fields' components say, lattice.bits and
-/// field bits within proto/limits.h. Errors: bad-input (no boundary; coordinates of 1e38 and more),
-/// bad-codec (Draco refused, with its message).
+/// field bits within proto/limits.h. Errors: bad-input (no boundary; coordinates of 1e38 and more;
+/// more than kMaxDracoAttributes point fields, and colours), bad-codec (Draco refused, with its
+/// message).
 [[nodiscard]] Result<Bytes> boundaryDrc(const LatticeMesh& mesh, const DrcOptions& options = {});
 
 /// Whether float32 distinguishes each lattice point from its neighbours, with the room that

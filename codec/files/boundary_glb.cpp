@@ -49,6 +49,14 @@ Json positionAccessor(const draco::PointAttribute& attribute, std::uint32_t poin
           {"max", most}};
 }
 
+/// Whether a .glb counts the bytes of its buffer.
+Status fitsGlb(std::uint64_t bytes) {
+  if (bytes < kMaxGlbBytes - kMaxFrameBytes) return {};
+  return fail(ErrorCode::kBadInput,
+              "the boundary has more bytes than a .glb can count; choose a "
+              "coarser level or fewer fields");
+}
+
 /// By the first point field; none without one.
 std::vector<std::array<std::uint8_t, 3>> coloursOf(const LatticeMesh& mesh) {
   const auto field =
@@ -223,10 +231,7 @@ Result<Bytes> plainBoundaryGlb(const LatticeMesh& mesh) {
   std::uint64_t bytes = 12 * surface.triangles.size() + 16 * points.size();
   for (const FieldInfo& field : mesh.fields)
     if (isNamed(field)) bytes += 4 * field.components * points.size();
-  if (bytes >= kMaxGlbBytes - kMaxFrameBytes)
-    return fail(ErrorCode::kBadInput,
-                "the boundary has more bytes than a .glb can count; choose a "
-                "coarser level or fewer fields");
+  if (Status checked = fitsGlb(bytes); !checked) return std::unexpected(checked.error());
 
   const std::array<double, 3> place = placeOf(mesh.lattice);
   for (auto& point : points)
@@ -246,6 +251,7 @@ Result<Bytes> boundaryGlb(const LatticeMesh& mesh) {
   const std::array<double, 3> place = placeOf(mesh.lattice);
   const Result<Bytes> drc = boundaryDrc(mesh, {.colours = colours, .from = place});
   if (!drc) return drc;
+  if (Status checked = fitsGlb(drc->size()); !checked) return std::unexpected(checked.error());
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(drc->data()), drc->size());
   draco::Decoder decoder;

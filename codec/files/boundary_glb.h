@@ -14,14 +14,14 @@ namespace qtet {
 /// too: COLOR_0, viridis over the field's range, grey where it has missing values. Axes and units
 /// are the mesh's own. Where float32 is too coarse for the mesh's places, positions are relative to
 /// the lattice's origin, and the node's translation is that origin. REQUIRES and errors: those of
-/// boundaryDrc.
+/// boundaryDrc; also bad-input for 4 GiB or more in all: .glb counts with 32 bits.
 [[nodiscard]] Result<Bytes> boundaryGlb(const LatticeMesh& mesh);
 
 /// The same without Draco, for readers that do not know the extension (VTK). Points, triangles,
 /// colours and the named fields are plain accessors. Positions (with the node's translation as
 /// above) and fields are float32. Points have
 /// the order of the mesh. REQUIRES: as boundaryDrc. Errors: bad-input (no boundary; coordinates of
-/// 1e38 and more; 4 GiB or more in all: .glb counts with 32 bits).
+/// 1e38 and more; 4 GiB or more in all).
 [[nodiscard]] Result<Bytes> plainBoundaryGlb(const LatticeMesh& mesh);
 
 }  // namespace qtet

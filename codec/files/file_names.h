@@ -16,13 +16,39 @@ namespace qtet {
   return out.empty() || (out[0] >= '0' && out[0] <= '9') ? "_" + out : out;
 }
 
-/// The same for the next of several names: one that `taken` holds gets underscores behind it until
-/// it is new.
+/// Underscores that tell identifiers apart; behind them stands a number. With underscores alone
+/// 8,192 names of punctuation took 52 s and 34 MB.
+inline constexpr int kMaxUnderscores = 4;
+
+/// The same for the next of several names. One that `taken` holds gets underscores behind it until
+/// it is new. After kMaxUnderscores of them comes a number.
 template <class Names>
 [[nodiscard]] std::string newIdentifier(std::string_view name, Names& taken) {
   std::string out = identifier(name);
-  while (!taken.insert(out).second) out += "_";
-  return out;
+  for (int i = 0; i < kMaxUnderscores; ++i) {
+    if (taken.insert(out).second) return out;
+    out += "_";
+  }
+  // as many as are taken: larger for each name, so that hardly one is tried twice
+  for (std::size_t number = taken.size();; ++number)
+    if (std::string numbered = out + std::to_string(number); taken.insert(numbered).second)
+      return numbered;
+}
+
+/// A field's name in VTK's legacy format, which has no white space in names: VTK's own way round it
+/// is that of URLs.
+[[nodiscard]] inline std::string vtkName(std::string_view name) {
+  constexpr const char* kHex = "0123456789ABCDEF";
+  std::string out;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte > 0x20 && byte < 0x7F && c != '%' && c != '"') {
+      out += c;
+    } else {
+      out += {'%', kHex[byte >> 4], kHex[byte & 15]};
+    }
+  }
+  return out.empty() ? "%20" : out;
 }
 
 /// A text inside an attribute's double quotes, or between tags. XML 1.0 has no way to write other

@@ -1,6 +1,7 @@
 #include <string>
 
 #include "codec/coding/number_type.h"
+#include "codec/files/field_limits.h"
 #include "codec/files/mesh_file.h"
 
 namespace qtet {
@@ -8,11 +9,9 @@ namespace {
 
 constexpr std::int32_t kGmshTetrahedron = 4;
 constexpr std::size_t kMaxEntities = 0x7FFFFFFF;  ///< ids are signed 32-bit integers
-constexpr std::uint32_t kMaxComponents = 9;
 
-/// Gmsh shows scalars, vectors of 3 and tensors of 9 components.
 std::uint32_t gmshComponents(std::uint32_t components) {
-  return components == 1 ? 1 : components <= 3 ? 3 : kMaxComponents;
+  return components == 1 ? 1 : components <= 3 ? 3 : kMaxGmshComponents;
 }
 
 /// A name between double quotes, for which the format has no escape.
@@ -43,13 +42,8 @@ Result<Bytes> gmshBytes(const FileMesh& mesh) {
   if (mesh.points.size() > kMaxEntities || mesh.tetrahedra.size() > kMaxEntities)
     return fail(ErrorCode::kBadInput,
                 "the mesh has more points or cells than a .msh file can number; write .vtu");
-  for (const auto* fields : {&mesh.pointFields, &mesh.cellFields})
-    for (const FileField& field : *fields)
-      if (field.components > kMaxComponents)
-        return fail(ErrorCode::kBadInput,
-                    "field '" + field.name + "' has " + std::to_string(field.components) +
-                        " components, a .msh file at most " + std::to_string(kMaxComponents) +
-                        "; leave it out with `fields`, or write .vtu");
+  if (Status checked = canHold(".msh", outlinesOf(mesh)); !checked)
+    return std::unexpected(checked.error());
   Bytes out;
   appendText(out, "$MeshFormat\n2.2 1 8\n");
   appendNumber(out, std::int32_t{1});  // tells the order of bytes

@@ -1,28 +1,16 @@
 #include <string>
 
 #include "codec/coding/number_type.h"
+#include "codec/files/field_limits.h"
+#include "codec/files/file_names.h"
 #include "codec/files/mesh_file.h"
 
 namespace qtet {
 namespace {
 
 constexpr std::uint8_t kVtkTetra = 10;
+constexpr std::size_t kMaxIds = 0x7FFFFFFF;  ///< ids are signed 32-bit integers
 constexpr auto kBig = std::endian::big;
-
-/// Names hold no white space in this format: VTK's own way round it is that of URLs.
-std::string encoded(const std::string& name) {
-  constexpr const char* kHex = "0123456789ABCDEF";
-  std::string out;
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte > 0x20 && byte < 0x7F && c != '%' && c != '"') {
-      out += c;
-    } else {
-      out += {'%', kHex[byte >> 4], kHex[byte & 15]};
-    }
-  }
-  return out.empty() ? "%20" : out;
-}
 
 void appendFields(Bytes& out, const char* kind, std::size_t tuples,
                   const std::vector<FileField>& fields) {
@@ -31,7 +19,7 @@ void appendFields(Bytes& out, const char* kind, std::size_t tuples,
                       std::to_string(fields.size()) + "\n");
   for (const FileField& field : fields) {
     const NumberType& type = numberType(field.type);
-    appendText(out, encoded(field.name) + " " + std::to_string(field.components) + " " +
+    appendText(out, vtkName(field.name) + " " + std::to_string(field.components) + " " +
                         std::to_string(tuples) + " " + std::string(type.legacyName) + "\n");
     type.appendBigEndian(out, field.values);
     out.push_back('\n');
@@ -40,7 +28,12 @@ void appendFields(Bytes& out, const char* kind, std::size_t tuples,
 
 }  // namespace
 
-Bytes legacyVtkBytes(const FileMesh& mesh) {
+Result<Bytes> legacyVtkBytes(const FileMesh& mesh) {
+  if (mesh.points.size() > kMaxIds)
+    return fail(ErrorCode::kBadInput,
+                "the mesh has more points than a .vtk file can number; write .vtu");
+  if (Status checked = canHold(".vtk", outlinesOf(mesh)); !checked)
+    return std::unexpected(checked.error());
   Bytes out;
   const std::size_t cells = mesh.tetrahedra.size();
   appendText(

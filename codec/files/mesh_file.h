@@ -32,13 +32,14 @@ struct MeshFileOptions {
                                           const MeshFileOptions& options = {});
 
 /// VTK's legacy format 3.0, binary: an unstructured grid with every field, as VTK, ParaView, meshio
-/// and VisIt read it.
-[[nodiscard]] Bytes legacyVtkBytes(const FileMesh& mesh);
+/// and VisIt read it. Errors: bad-input (a name that VTK does not read whole; more than 2^31 - 1
+/// points).
+[[nodiscard]] Result<Bytes> legacyVtkBytes(const FileMesh& mesh);
 
 /// Gmsh's MSH 2.2, binary: nodes and tetrahedra numbered from 1 in their order, fields as $NodeData
 /// and $ElementData. Gmsh knows 1, 3 and 9 components: others are filled up with zeros to the next
-/// of them. Errors: bad-input (a field of more than 9 components; more than 2^31 - 1 nodes or
-/// cells).
+/// of them. Errors: bad-input (a field of more than 9 components; a name that Gmsh does not read
+/// whole; more than 2^31 - 1 nodes or cells).
 [[nodiscard]] Result<Bytes> gmshBytes(const FileMesh& mesh);
 
 /// The boundary's triangles as text, without fields.

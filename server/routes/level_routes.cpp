@@ -4,9 +4,11 @@
 #include <numeric>
 #include <set>
 
+#include "codec/files/field_limits.h"
 #include "codec/log/target_choice.h"
 #include "codec/picture/poster.h"
 #include "proto/field_key.h"
+#include "server/http/unwritable_level.h"
 #include "server/routes/level_answer.h"
 #include "server/routes/level_time.h"
 #include "server/store/preview.h"
@@ -102,6 +104,17 @@ OrRefusal<std::vector<std::uint32_t>> wantedFields(const RequestTarget& target,
   return out;
 }
 
+/// The fields that the file would hold.
+std::vector<FieldOutline> outlinesOf(const LevelRequest& level) {
+  std::vector<FieldOutline> out;
+  for (std::size_t i = 0; i < level.fields.size(); ++i) {
+    const ManifestField& field = level.mesh->manifest.fields[level.fields[i]];
+    out.push_back({level.names.empty() ? field.name : level.names[i], field.components,
+                   field.association == "cell"});
+  }
+  return out;
+}
+
 std::string canonicalPath(const LevelRequest& level) {
   return "/v1/logs/" + level.mesh->log.digest() + "/levels/" + std::to_string(level.level) + "." +
          std::string(formName(level.form));
@@ -128,6 +141,10 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
     if (!instant) return instant.error();
     wanted = std::move(*instant);
   }
+  // Before a job decodes the level for nothing, and before a kept file of an older version is sent.
+  if (const Status checked = canHold("." + std::string(formName(*form)), outlinesOf(wanted));
+      !checked)
+    return unwritableLevel(checked.error());
 
   Resource resource = resourceOf(wanted, log.name + "-level-" + std::to_string(*level));
   if (name.starts_with("fit.")) resource.headers.add("Content-Location", canonicalPath(wanted));

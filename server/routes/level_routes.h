@@ -14,7 +14,8 @@ struct NamedLog {
   std::string name;
 };
 
-/// The answer to `/v1/logs/{sha256}/levels/{level}`: a level to be made, or 304, 400, 404 or 412.
+/// The answer to `/v1/logs/{sha256}/levels/{level}`: a level to be made, or 304, 400, 404,
+/// 412 or 422.
 [[nodiscard]] Answer routeLevel(const RequestView& request, const RequestTarget& target,
                                 const NamedLog& log, std::string_view level);
 

@@ -14,6 +14,7 @@
 #include "server/http/client_watch.h"
 #include "server/http/http_resource.h"
 #include "server/http/level_wait.h"
+#include "server/http/unwritable_level.h"
 #include "server/session/http_output.h"
 #include "server/wire/connection_limits.h"
 #include "server/wire/http_limits.h"
@@ -43,6 +44,7 @@ Reply refusedLevel(LevelRefusal refusal) {
 
 Reply failedLevel(const Error& error) {
   if (error.code == ErrorCode::kNotFound) return problem(404, "not-found", error.message);
+  if (error.code == ErrorCode::kBadInput) return unwritableLevel(error);
   const std::string why = error.code == ErrorCode::kIo
                               ? "the level cannot be made: "
                               : "this log cannot be decoded, though its checksums hold; qtet "
@@ -61,7 +63,7 @@ asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const Re
                                                 : refusedLevel(*refusal);
     Result<LevelFile>& made = std::get<Result<LevelFile>>(answered);
     if (!made) {
-      if (made.error().code != ErrorCode::kNotFound)
+      if (made.error().code != ErrorCode::kNotFound && made.error().code != ErrorCode::kBadInput)
         spdlog::error("{}: level {} cannot be made: {}", level.mesh->id, level.level,
                       made.error().text());
       co_return failedLevel(made.error());

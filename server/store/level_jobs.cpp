@@ -110,8 +110,9 @@ void LevelJobs::State::finish(const JobPointer& job, Result<Bytes> bytes) {
     const std::scoped_lock lock(mutex);
     std::erase(running, job);
     if (const auto it = jobs.find(job->key); it != jobs.end() && it->second == job) jobs.erase(it);
-    // a point outside the mesh is the client's mistake, and no failure
-    const bool isAnswer = file || file.error().code == ErrorCode::kNotFound;
+    // a point outside the mesh, or numbers that a kind of file does not know, are no failures
+    const bool isAnswer = file || file.error().code == ErrorCode::kNotFound ||
+                          file.error().code == ErrorCode::kBadInput;
     if (!job->stop.stop_requested()) ++(isAnswer ? counts.made : counts.failed);
     if (!ending) subscribers = std::exchange(job->subscribers, {});
   }

@@ -14,6 +14,7 @@
 #include <set>
 
 #include "codec/files/boundary_glb.h"
+#include "proto/limits.h"
 
 namespace qtet {
 namespace {
@@ -255,6 +256,77 @@ TEST(BoundaryDrc, coordinatesBeyondFloatsAreRefused) {
   EXPECT_TRUE(boundaryDrc(wavySquare(8, 12, 1e33, {0, 5e37, 0})));
 }
 
+/// A square of 18 triangles with `points` scalar point fields, f0, f1 and so on. Each has values
+/// of its own.
+LatticeMesh meshOfFields(std::uint32_t points) {
+  LatticeMesh mesh = wavySquare(4, 12, 1, {0, 0, 0});
+  mesh.fields.clear();
+  mesh.values.clear();
+  for (std::uint32_t f = 0; f < points; ++f) {
+    mesh.fields.push_back(
+        {.name = "f" + std::to_string(f), .components = 1, .bits = 16, .step = 1, .minimum = {0}});
+    mesh.values.emplace_back();
+    for (std::uint32_t i = 0; i < mesh.points.size(); ++i)
+      mesh.values.back().push_back(static_cast<std::int32_t>(7 * f + i));
+  }
+  return mesh;
+}
+
+constexpr std::array<std::uint32_t, 11> kFieldCounts = {1,   126, 127, 128, 129, 254,
+                                                        255, 256, 257, 258, 8192};
+
+void expectTooManyFields(const Result<Bytes>& bytes, std::uint32_t count, std::uint32_t most) {
+  ASSERT_FALSE(bytes) << count;
+  EXPECT_EQ(bytes.error().code, ErrorCode::kBadInput);
+  for (const std::string& said :
+       {std::to_string(count) + " point fields", "at most " + std::to_string(most),
+        std::string("`fields`"), std::string("`time`")})
+    EXPECT_NE(bytes.error().message.find(said), std::string::npos) << bytes.error().message;
+}
+
+TEST(BoundaryDrc, everyOneOf128FieldsComesBackAndMoreAreRefused) {
+  for (const std::uint32_t count : kFieldCounts) {
+    const LatticeMesh mesh = meshOfFields(count);
+    const auto bytes = boundaryDrc(mesh);
+    if (count > 128) {
+      expectTooManyFields(bytes, count, 128);
+      continue;
+    }
+    ASSERT_TRUE(bytes) << bytes.error().text();
+    const auto decoded = decode(*bytes);
+    ASSERT_TRUE(decoded) << count;
+    EXPECT_EQ(decoded->num_attributes(), static_cast<int>(count) + 1);
+    EXPECT_EQ(trianglesOf(*decoded, mesh), trianglesOf(mesh)) << count;
+  }
+}
+
+TEST(BoundaryDrc, fieldsOfCellsDoNotCountAmongThe128) {
+  LatticeMesh mesh = meshOfFields(129);
+  for (FieldInfo& field : mesh.fields) field.association = "cell";
+  for (auto& values : mesh.values) values.clear();
+  const auto bytes = boundaryDrc(mesh);
+  ASSERT_TRUE(bytes) << bytes.error().text();
+  ASSERT_TRUE(decode(*bytes));
+  EXPECT_EQ(decode(*bytes)->num_attributes(), 1);
+}
+
+TEST(BoundaryDrc, fieldsOfTheMostComponentsAndTheLongestNamesComeBack) {
+  LatticeMesh mesh = wavySquare(4, 12, 1, {0, 0, 0});
+  mesh.fields = {{.name = std::string(kMaxNameBytes, 'n'),
+                  .components = kMaxFieldComponents,
+                  .bits = 12,
+                  .step = 0.25,
+                  .minimum = std::vector<double>(kMaxFieldComponents, -7.0)}};
+  mesh.values.assign(1, {});
+  for (std::uint32_t i = 0; i < mesh.points.size() * kMaxFieldComponents; ++i)
+    mesh.values[0].push_back(static_cast<std::int32_t>(i * 37 % 4096));
+  const auto bytes = boundaryDrc(mesh);
+  ASSERT_TRUE(bytes) << bytes.error().text();
+  const auto decoded = decode(*bytes);
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(trianglesOf(*decoded, mesh), trianglesOf(mesh));
+}
+
 TEST(BoundaryGlb, namesFieldsWithoutGapsAlone) {
   LatticeMesh mesh = wavySquare(8, 12, 1, {0, 0, 0});
   const auto json = [&] {
@@ -342,6 +414,45 @@ struct ReadGlb {
   nlohmann::json json, primitive;
   Bytes buffer;
 };
+
+TEST(BoundaryGlb, everyOneOf127FieldsComesBackBesideTheColoursAndMoreAreRefused) {
+  for (const std::uint32_t count : kFieldCounts) {
+    const LatticeMesh mesh = meshOfFields(count);
+    const auto glb = boundaryGlb(mesh);
+    if (count > 127) {
+      expectTooManyFields(glb, count, 127);
+      continue;
+    }
+    ASSERT_TRUE(glb) << glb.error().text();
+    const auto decoded = decodeGlb(*glb);
+    ASSERT_TRUE(decoded) << count;
+    EXPECT_EQ(decoded->num_attributes(), static_cast<int>(count) + 2);
+    EXPECT_EQ(trianglesOf(*decoded, mesh), trianglesOf(mesh)) << count;
+    const ReadGlb read(*glb);
+    const nlohmann::json& ids =
+        read.primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"];
+    ASSERT_EQ(ids.size(), count + 2) << ids;
+    for (const FieldInfo& field : mesh.fields)
+      EXPECT_EQ(ids["_" + field.name], decoded->GetMetadata()
+                                           ->GetAttributeMetadataByStringEntry("name", field.name)
+                                           ->att_unique_id());
+  }
+}
+
+TEST(BoundaryGlb, withoutDracoMoreFieldsThanItTakesStandThere) {
+  for (const std::uint32_t count : {127u, 128u, 255u, 256u, 257u, 1000u}) {
+    const LatticeMesh mesh = meshOfFields(count);
+    const auto glb = plainBoundaryGlb(mesh);
+    ASSERT_TRUE(glb) << glb.error().text();
+    const ReadGlb read(*glb);
+    for (const std::uint32_t f : {0u, 126u, count - 1}) {
+      const auto values = read.attribute<float>(("_f" + std::to_string(f)).c_str());
+      ASSERT_EQ(values.size(), mesh.points.size() - 1);  // no triangle uses the last one
+      for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_EQ(values[i], static_cast<float>(mesh.values[f][i])) << count << " " << f;
+    }
+  }
+}
 
 TEST(BoundaryGlb, withoutDracoTheNumbersStandThere) {
   LatticeMesh mesh = wavySquare(8, 12, 0.5, {10, -3, 0});
