@@ -149,13 +149,13 @@ describe('ranges', () => {
   });
 
   test('theFirstRequestTakesWhatAListSaysWithinBounds', async () => {
-    const kMost = 1 << 20;
+    const kMax = 1 << 20;
     for (const [firstBytes, asked] of [
       [63, 64],
       [64, 64],
       [65, 65],
-      [kMost, kMost],
-      [kMost + 1, kMost],
+      [kMax, kMax],
+      [kMax + 1, kMax],
     ] as const) {
       expectLog(kLog);
       const it = host(() => file(kLog));

@@ -158,7 +158,7 @@ TEST(SettledValues, onlyFusedOnesOfFloatFieldsMoveAndByALittle) {
   for (std::size_t f = 0; f < before.fields.size(); ++f) {
     const auto [fixed, fused] = movedBy(before, after, f);
     EXPECT_EQ(fixed, 0) << before.fields[f].name;
-    EXPECT_LE(fused, isCellField(before.fields[f]) ? 0 : kMostSettled) << before.fields[f].name;
+    EXPECT_LE(fused, isCellField(before.fields[f]) ? 0 : kMaxSettled) << before.fields[f].name;
     most = std::max(most, fused);
   }
   EXPECT_GT(most, 0) << "nothing settles";
