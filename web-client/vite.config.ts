@@ -10,6 +10,8 @@ import {viewerFiles} from './viewer_files';
 import {wasmModules} from './wasm_modules';
 
 const wasm = process.env.QTET_WASM ?? 'qtet-codec.wasm';
+/** A test that takes longer hangs: far beyond what any takes, also on a machine that is busy. */
+const kHangMs = 120_000;
 
 export default defineConfig({
   plugins: [smallShaders(), plainDynamicImports(), notices(), preloads(), viewerFiles()],
@@ -28,5 +30,10 @@ export default defineConfig({
     modulePreload: {polyfill: false},
     reportCompressedSize: false,
   },
-  test: {environment: 'node', include: ['tests/**/*.test.ts']},
+  test: {
+    environment: 'node',
+    include: ['tests/**/*.test.ts'],
+    testTimeout: kHangMs,
+    hookTimeout: kHangMs,
+  },
 });

@@ -187,14 +187,14 @@ void addPositions(PlainArrays& arrays, std::span<const std::array<double, 3>> po
 void addField(PlainArrays& arrays, const LatticeMesh& mesh, std::size_t number,
               std::span<const VertexId> vertices) {
   const FieldInfo& field = mesh.fields[number];
-  constexpr double kMost = std::numeric_limits<float>::max();
+  constexpr double kMax = std::numeric_limits<float>::max();
   std::vector<float> values;
   values.reserve(vertices.size() * field.components);
   for (const VertexId v : vertices)
     for (std::uint32_t c = 0; c < field.components; ++c) {
       const double value =
           field.value(c, mesh.values[number][std::size_t{v} * field.components + c]);
-      values.push_back(static_cast<float>(std::clamp(value, -kMost, kMost)));
+      values.push_back(static_cast<float>(std::clamp(value, -kMax, kMax)));
     }
   arrays.addAttribute("_" + field.name, values,
                       {{"componentType", kGlbFloat}, {"type", glbType(field.components)}});

@@ -18,13 +18,13 @@ struct Piece {
 };
 
 /// Smaller pieces cost more as an instruction than they save.
-constexpr std::uint32_t kLeastPiece = 64;
+constexpr std::uint32_t kMinPieceBytes = 64;
 
-/// The blocks of at least kLeastPiece bytes, in file order.
+/// The blocks of at least kMinPieceBytes, in file order.
 std::vector<BlockEntry> blocksOf(const LogIndex& index) {
   std::vector<BlockEntry> out;
   const auto add = [&out](const BlockEntry& block) {
-    if (block.size >= kLeastPiece) out.push_back(block);
+    if (block.size >= kMinPieceBytes) out.push_back(block);
   };
   for (const ChunkEntry& chunk : index.chunks) std::ranges::for_each(chunk.blocks, add);
   for (const ClosingBlock& closing : index.closing) add(closing.block);

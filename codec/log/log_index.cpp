@@ -158,7 +158,7 @@ Status readShape(ByteReader& r, bool mayBePredicted, std::uint32_t field, FieldS
   out.hasMissing = (association & kMissingFlag) != 0;
   if (!isPredicted) return {};
   const auto parents = r.read<std::uint8_t>();
-  if (parents == 0 || parents > TimePrediction::kMostParents)
+  if (parents == 0 || parents > TimePrediction::kMaxParents)
     return bad(1, " is predicted from other than 1 to 4 fields; fetch or build the log again");
   for (; out.prediction.count < parents; ++out.prediction.count) {
     const std::uint32_t parent = r.readVarint();

@@ -17,11 +17,11 @@ struct TimePrediction {
     std::int8_t weight = 0;
     bool operator==(const Parent&) const = default;
   };
-  static constexpr std::size_t kMostParents = 4;
+  static constexpr std::size_t kMaxParents = 4;
   static constexpr int kWeightBits = 4;
   static constexpr int kOne = 1 << kWeightBits;
 
-  std::array<Parent, kMostParents> parents{};
+  std::array<Parent, kMaxParents> parents{};
   std::uint8_t count = 0;  ///< 0: the field is coded as it is
 
   [[nodiscard]] bool isNone() const { return count == 0; }

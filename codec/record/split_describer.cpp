@@ -47,7 +47,7 @@ void SplitDescriber::lookAhead(VertexId v) {
   const std::uint32_t level = mirror_.mesh().level();
   if (seenLevel_ != level) seenLevel_ = level, seen_ = v + 1, ahead_ = {};
   while (ahead_.size() > 0 && ahead_[0] <= v) ahead_.pop();
-  for (; seen_ < mirror_.mesh().levelVertices() && ahead_.size() < Ahead::kMost; ++seen_)
+  for (; seen_ < mirror_.mesh().levelVertices() && ahead_.size() < Ahead::kMax; ++seen_)
     if (next_[seen_].level == level) {
       ahead_.push(seen_);
       prefetch(&history_.fusions[next_[seen_].fusion]);

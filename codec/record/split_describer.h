@@ -43,14 +43,14 @@ class SplitDescriber {
   /// The splits that come next.
   class Ahead {
    public:
-    static constexpr std::size_t kMost = 8;
+    static constexpr std::size_t kMax = 8;
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] VertexId operator[](std::size_t i) const { return slots_[(first_ + i) % kMost]; }
-    void push(VertexId slot) { slots_[(first_ + size_++) % kMost] = slot; }
-    void pop() { first_ = (first_ + 1) % kMost, --size_; }
+    [[nodiscard]] VertexId operator[](std::size_t i) const { return slots_[(first_ + i) % kMax]; }
+    void push(VertexId slot) { slots_[(first_ + size_++) % kMax] = slot; }
+    void pop() { first_ = (first_ + 1) % kMax, --size_; }
 
    private:
-    std::array<VertexId, kMost> slots_{};
+    std::array<VertexId, kMax> slots_{};
     std::size_t first_ = 0, size_ = 0;
   };
 

@@ -125,8 +125,8 @@ double nearStepsOf(std::span<const LatticePoint> points, const std::optional<Lev
   for (std::size_t a = 0; a < 3; ++a) box[a] = static_cast<double>(high[a]) - low[a];
   // The error is a share of the original's diagonal D. Each side of its box is longer than the
   // level's by at most 2 e D. So D is at most the level's diagonal over 1 - 2 sqrt(3) e.
-  constexpr double kMostError = 0.2;
-  const double e = std::min(error->toLevel.max, kMostError);
+  constexpr double kMaxError = 0.2;
+  const double e = std::min(error->toLevel.max, kMaxError);
   return kNearSteps + e * std::sqrt(dot(box, box)) / (1 - 2 * std::sqrt(3.0) * e);
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view kBetween = ": ", kEnd = "\r\n";
 constexpr std::string_view kType = "Content-Type", kNoSniff = "X-Content-Type-Options";
 /// Bytes of most heads, so that they are allocated once.
-constexpr std::size_t kMostHeads = 512;
+constexpr std::size_t kUsualHeadBytes = 512;
 
 [[maybe_unused]] bool isClean(std::string_view text) {
   return std::ranges::none_of(text, [](char c) { return c == '\r' || c == '\n' || c == '\0'; });
@@ -18,7 +18,7 @@ constexpr std::size_t kMostHeads = 512;
 }  // namespace
 
 HeaderLines::HeaderLines(std::initializer_list<Line> lines) {
-  text_.reserve(kMostHeads);
+  text_.reserve(kUsualHeadBytes);
   for (const auto& [name, value] : lines) add(name, value);
 }
 

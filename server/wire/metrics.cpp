@@ -12,9 +12,9 @@ namespace {
 /// The shortest decimal that is read as the same number, written as Prometheus' clients do: "0.005"
 /// and not "0.0050000000000000001".
 std::string number(double value) {
-  constexpr double kLeastFixed = 1e-4, kMostFixed = 1e21;
+  constexpr double kMinFixed = 1e-4, kMaxFixed = 1e21;
   const double size = std::abs(value);
-  const bool fixed = size == 0 || (size >= kLeastFixed && size < kMostFixed);
+  const bool fixed = size == 0 || (size >= kMinFixed && size < kMaxFixed);
   std::array<char, 64> out{};
   const auto end = std::to_chars(out.data(), out.data() + out.size(), value,
                                  fixed ? std::chars_format::fixed : std::chars_format::scientific);

@@ -21,9 +21,9 @@ using boost::system::error_code;
 /// A port, or what stands for one in RFC 7239: "4711", "_hidden".
 bool isPort(std::string_view text) {
   constexpr std::string_view kDigits = "0123456789";
-  constexpr std::size_t kMostDigits = 5;  // 65535
+  constexpr std::size_t kMaxDigits = 5;  // 65535
   if (text.starts_with('_')) return text.size() > 1;
-  return !text.empty() && text.size() <= kMostDigits &&
+  return !text.empty() && text.size() <= kMaxDigits &&
          text.find_first_not_of(kDigits) == std::string_view::npos;
 }
 

@@ -41,8 +41,8 @@ void Turns::runFirst(const asio::any_io_executor& executor) {
   first.mapped()();
 }
 
-bool owesTurn(AddressLimits::Client* client) {
-  return client != nullptr && client->debt() > limits::kMaxFreeTime;
+bool owesTurn(AddressLimits::Client* client, AddressLimits::Clock::time_point now) {
+  return client != nullptr && client->debt(now) > limits::kMaxFreeTime;
 }
 
 asio::awaitable<void> takeTurn(asio::any_io_executor executor, AddressLimits::Client* client) {

@@ -43,7 +43,8 @@ class Turns : public boost::asio::execution_context::service {
 
 /// Whether a client's address has taken so much processor time that it waits for a turn. nullptr:
 /// it has no bounds.
-[[nodiscard]] bool owesTurn(AddressLimits::Client* client);
+[[nodiscard]] bool owesTurn(AddressLimits::Client* client,
+                            AddressLimits::Clock::time_point now = AddressLimits::Clock::now());
 /// Waits for a turn, behind those that owe less.
 [[nodiscard]] boost::asio::awaitable<void> takeTurn(boost::asio::any_io_executor executor,
                                                     AddressLimits::Client* client);

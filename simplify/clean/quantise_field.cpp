@@ -153,7 +153,7 @@ std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField
     const auto isBeyond = [&] {
       return extents.maximum[c] - scale.minimum[c] > scale.step * (std::ldexp(1.0, bits) - 0.5);
     };
-    while (isBeyond() && bits < kMostScaleBits) ++bits;
+    while (isBeyond() && bits < kMaxScaleBits) ++bits;
     if (isBeyond() || extents.minimum[c] < scale.minimum[c] - 0.5 * scale.step) return std::nullopt;
   }
   QuantisedField out;

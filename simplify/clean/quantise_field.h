@@ -13,7 +13,7 @@
 namespace qtet {
 
 /// Fields of more bits are not predicted in time (time_differences.cpp).
-inline constexpr int kMostScaleBits = 24;
+inline constexpr int kMaxScaleBits = 24;
 
 struct QuantisedField {
   FieldInfo info;
@@ -52,7 +52,7 @@ struct FieldExtents {
 [[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field,
                                                    const FieldExtents& extents, int bits);
 /// With step and minimum of `scale`, and its bits or as many more as values above it need. Nullopt
-/// where a value lies below it or needs more than kMostScaleBits, or where the fields differ in
+/// where a value lies below it or needs more than kMaxScaleBits, or where the fields differ in
 /// components or type.
 [[nodiscard]] std::optional<QuantisedField> quantiseAs(const FieldInfo& scale,
                                                        const MeshField& field);

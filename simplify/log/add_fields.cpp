@@ -114,7 +114,7 @@ Status FieldAdder::matchTo(const TetMesh& mesh) {
 void FieldAdder::keepScale(const SeriesKey& key, FieldInfo info) {
   // the step of a constant field means nothing
   if (!options_.scalesOfOthers || !isFloatType(info.type) || info.step == 1 ||
-      info.bits >= kMostScaleBits)
+      info.bits >= kMaxScaleBits)
     return;
   for (double& minimum : info.minimum) minimum -= info.step * std::ldexp(1.0, info.bits);
   ++info.bits;

@@ -15,7 +15,7 @@ constexpr std::uint32_t kFocusBins = 1U << kBinBits;
 /// The focus holds the cells between these quantiles, out of kQuantiles.
 constexpr std::uint64_t kQuantiles = 20, kFrom = 5, kTo = 15;
 /// There is one if the cells between these quantiles ...
-constexpr std::uint64_t kMostFrom = 2, kMostTo = 18;
+constexpr std::uint64_t kBulkFrom = 2, kBulkTo = 18;
 /// ... take less than 1 / kDwarfed of the mesh's largest extent, which the lattice spans.
 constexpr std::uint32_t kDwarfed = 4;
 /// The room on each side is 1 / kRoom of the largest extent between the quantiles.
@@ -60,7 +60,7 @@ std::optional<Focus> focusOf(const LatticeMesh& mesh) {
   std::uint32_t most = 0, extent = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Histogram& cells = histograms[axis];
-    most = std::max(most, cells.quantile(kMostTo) - cells.quantile(kMostFrom));
+    most = std::max(most, cells.quantile(kBulkTo) - cells.quantile(kBulkFrom));
     const std::uint32_t low = cells.quantile(kFrom), high = cells.quantile(kTo);
     extent = std::max(extent, high - low);
     out[axis] = static_cast<std::uint16_t>(low);

@@ -13,13 +13,13 @@ namespace large_pages {
 
 inline constexpr std::uintptr_t kPage = 4096;
 // Less is not worth a call.
-inline constexpr std::uintptr_t kLeast = std::uintptr_t{2} << 20;
+inline constexpr std::uintptr_t kMinAdvisedBytes = std::uintptr_t{2} << 20;
 
 /// Tells the system something about the whole pages among these bytes.
 inline void advise(const void* begin, const void* end, int advice) {
   const auto from = (reinterpret_cast<std::uintptr_t>(begin) + kPage - 1) / kPage * kPage,
              to = reinterpret_cast<std::uintptr_t>(end) / kPage * kPage;
-  if (to >= from + kLeast) ::madvise(reinterpret_cast<void*>(from), to - from, advice);
+  if (to >= from + kMinAdvisedBytes) ::madvise(reinterpret_cast<void*>(from), to - from, advice);
 }
 
 }  // namespace large_pages

@@ -29,7 +29,7 @@ std::int32_t differenceOf(const FusionHistory& history, std::size_t f,
 
 // A choice looks at so many fusions or cells, evenly spread. So its time does not grow with the
 // mesh.
-constexpr std::size_t kMostLookedAt = 1 << 14;
+constexpr std::size_t kMaxLookedAt = 1 << 14;
 
 /// Calls visit(i, j) for places in the field's values: about what is coded is the value at i less
 /// that at j. They are a prey vertex and its fused vertex, or a cell and the one before.
@@ -38,7 +38,7 @@ void eachPair(const FusionHistory& history, std::size_t f, const Visit& visit) {
   const std::size_t n = history.fields[f].components;
   const bool ofCells = isCellField(history.fields[f]);
   const std::size_t count = ofCells ? history.values[f].size() / n : history.fusions.size();
-  const std::size_t step = count / kMostLookedAt + 1;
+  const std::size_t step = count / kMaxLookedAt + 1;
   for (std::size_t at = ofCells ? 1 : 0; at < count; at += step) {
     if (ofCells) {
       for (std::size_t c = 0; c < n; ++c) visit(at * n + c, (at - 1) * n + c);
@@ -77,7 +77,7 @@ class Chooser {
       return;
     }
     // with more a difference could leave what a value block holds
-    if (history_.fields[f_].bits > kMostScaleBits) return;
+    if (history_.fields[f_].bits > kMaxScaleBits) return;
     best_ = {};
     least_ = bitsOf(best_, 0);
     if (step.isAnchor)
@@ -137,7 +137,7 @@ class Chooser {
 
   [[nodiscard]] std::vector<double> fitted(std::span<const std::uint16_t> parents,
                                            WeightFit fit) const {
-    std::array<double, TimePrediction::kMostParents> row{};
+    std::array<double, TimePrediction::kMaxParents> row{};
     eachPair(history_, f_, [&](std::size_t i, std::size_t j) {
       bool isMissing = false;
       const auto change = [&](std::size_t field) {
@@ -172,7 +172,7 @@ class Chooser {
 
   [[nodiscard]] std::int32_t bestTolerance() {
     std::int32_t out = 0;
-    for (std::int32_t tolerance = 1; tolerance <= kMostSettled; ++tolerance)
+    for (std::int32_t tolerance = 1; tolerance <= kMaxSettled; ++tolerance)
       if (const std::uint64_t bits = bitsOf(best_, tolerance); bits < least_)
         least_ = bits, out = tolerance;
     return out;

@@ -15,12 +15,12 @@ namespace qtet {
 
 /// A fused vertex's value of an instant may be moved by so many steps, to the value that other
 /// instants predict. It is an estimate, and at the default 12 bits this is 1 / 2,048 of the range.
-inline constexpr std::int32_t kMostSettled = 2;
+inline constexpr std::int32_t kMaxSettled = 2;
 
 /// Chooses how each instant of each series is predicted, so that least is left (SERIES.md,
 /// "Predictions in time"). The field's FieldInfo says it. Only instants of one step and
 /// minimum predict each other. Where it saves bits, fused vertices' values settle: those predicted
-/// within kMostSettled become the prediction. Values of integer types, displacements and fields
+/// within kMaxSettled become the prediction. Values of integer types, displacements and fields
 /// with missing values stay. `progress` gets fractions of the work. Returns how many instants are
 /// predicted. Errors: cancelled; the history is then of no use. REQUIRES: series in the order of
 /// decoding (orderSeries). The first rows.size() fields stay as they are: instants that a log has

@@ -12,7 +12,7 @@ namespace {
 // share of the rows.
 constexpr double kPull = 1e-9;
 // Keeps the diagonal above 0 where all values are equal.
-constexpr double kLeast = 1e-3;
+constexpr double kMinPull = 1e-3;
 
 // Where the sum of the weights is so near to 1, a constant should predict itself.
 constexpr double kNearlyOne = 1.0 / 32;
@@ -46,7 +46,7 @@ void WeightFit::add(std::span<const double> parents, double target) {
 std::vector<double> WeightFit::solve() const {
   auto sums = sums_;
   const std::size_t n = weights_.size();
-  for (std::size_t i = 0; i < n; ++i) sums[i][i] += kPull * sums[i][i] + kLeast;
+  for (std::size_t i = 0; i < n; ++i) sums[i][i] += kPull * sums[i][i] + kMinPull;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t row = 0; row < n; ++row) {
       if (row == i) continue;

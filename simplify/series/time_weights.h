@@ -18,7 +18,7 @@ namespace qtet {
 /// Fits weights by least squares.
 class WeightFit {
  public:
-  /// All rows count the same. REQUIRES: 1 to TimePrediction::kMostParents.
+  /// All rows count the same. REQUIRES: 1 to TimePrediction::kMaxParents.
   explicit WeightFit(std::size_t parents) : weights_(parents, 0.0) {}
   /// A row counts the less the further the weights of a fit before miss it. So a few large misses
   /// do not outweigh many small ones, as they do not in bits.
@@ -30,11 +30,11 @@ class WeightFit {
   [[nodiscard]] std::vector<double> solve() const;
 
  private:
-  static constexpr std::size_t kMost = TimePrediction::kMostParents;
+  static constexpr std::size_t kMax = TimePrediction::kMaxParents;
 
   std::vector<double> weights_;
   bool isEven_ = true;
-  std::array<std::array<double, kMost + 1>, kMost> sums_{};  // normal equations
+  std::array<std::array<double, kMax + 1>, kMax> sums_{};  // normal equations
 };
 
 /// The weights in 1 / TimePrediction::kOne. Where they add up to nearly 1, the integers do exactly:

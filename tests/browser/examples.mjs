@@ -11,7 +11,7 @@ import {coloredShare} from './png.mjs';
 const client = fileURLToPath(new URL('../../web-client/', import.meta.url));
 const kExamples = ['three_level', 'three_stream', 'vtk_level', 'vtk_stream'];
 /** The least coloured share of the picture's middle: each example shows its mesh in viridis. */
-const kLeastColored = 0.05;
+const kMinColored = 0.05;
 
 /**
  * Pages of the project for each example, as examples/README.md says; vite.config.js builds them
@@ -50,13 +50,13 @@ export async function waitForColor(browser, page, name, problems = []) {
   let share = 0;
   for (
     const end = Date.now() + kTimeoutMs;
-    share < kLeastColored && Date.now() < end && problems.length === 0;
+    share < kMinColored && Date.now() < end && problems.length === 0;
   ) {
     await page.waitForTimeout(300);
     share = coloredShare(await browser.picture(page, name));
   }
   assert.deepEqual(problems, [], name);
-  assert.ok(share >= kLeastColored, `${name}: ${share} of the picture is coloured`);
+  assert.ok(share >= kMinColored, `${name}: ${share} of the picture is coloured`);
   return share;
 }
 

@@ -61,7 +61,7 @@ function boundsOf(picture, {left = 0, top = 0, right = 0, bottom = 0}) {
  * CSS pixels by which the poster may miss the first real picture. A phone's narrow angle of view
  * has a weaker perspective than the poster's.
  */
-const kMostMiss = {desktop: 5, phone: 12};
+const kMaxMiss = {desktop: 5, phone: 12};
 
 async function thePosterStandsWhereTheMeshWillStand({server, browser, out}) {
   const said = [];
@@ -95,7 +95,7 @@ async function thePosterStandsWhereTheMeshWillStand({server, browser, out}) {
     const misses = before.map((at, i) => Math.abs(at - after[i]) / scale);
     said.push(`${name} ${misses.map((miss) => miss.toFixed(1)).join(' ')}`);
     assert.ok(
-      Math.max(...misses) <= kMostMiss[name],
+      Math.max(...misses) <= kMaxMiss[name],
       `${name}: the poster's bounds are ${before}, the picture's ${after} (see ${out})`,
     );
   }

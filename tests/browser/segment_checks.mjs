@@ -14,11 +14,11 @@ const kSegments = [
 
 const kCamera = [1, -2.5, 1, 0, 0, 0];
 /** By so much the two meshes may differ in size. */
-const kMostMoved = 0.003;
+const kMaxMoved = 0.003;
 /** Longer than a segment of one instant is played. */
 const kSlowFrameMs = 700;
 /** A picture of the segment before, and one of the next. */
-const kMostWaiting = 2;
+const kMaxWaiting = 2;
 
 /** By segment: its log, which is made once. */
 const made = new Map();
@@ -101,7 +101,7 @@ async function stepsOverTheBorder(viewer, logs) {
   assert.deepEqual(words, ['y:0.4', 'Density', '2']);
   // In the same place. Its state is relative to the mesh, and finer cells fill the shape more.
   kCamera.forEach((place, i) => {
-    assert.ok(Math.abs(camera[i] - place) < kMostMoved, `the camera is at ${camera}`);
+    assert.ok(Math.abs(camera[i] - place) < kMaxMoved, `the camera is at ${camera}`);
   });
   await page.keyboard.press(',');
   await waitForDigest(viewer, logs[0]);
@@ -213,7 +213,7 @@ async function playingShowsEachSegmentOnSlowGraphics(context) {
     assert.match(others, /^0 (?:1 )?2 load 0 load (?:1 )?2 load 0 load (?:1 )?2$/);
     assert.ok(seen.includes(1.5), String(seen));
     const most = await viewer.inView(() => globalThis.mostWaiting);
-    assert.ok(most <= kMostWaiting, `${most} pictures waited for a frame`);
+    assert.ok(most <= kMaxWaiting, `${most} pictures waited for a frame`);
   } finally {
     host.close();
   }

@@ -4,7 +4,7 @@ import {createServer, connect} from 'node:net';
 
 const kTickMs = 5;
 /** An idle line saves up no more than it brings in this time. */
-const kMostMs = 100;
+const kMaxMs = 100;
 
 export class SlowLine {
   #relay;
@@ -50,7 +50,7 @@ export class SlowLine {
     line.#timer = setInterval(() => {
       // a busy machine calls late
       const now = performance.now();
-      const most = (bytesPerSecond * kMostMs) / 1000;
+      const most = (bytesPerSecond * kMaxMs) / 1000;
       line.#room = Math.min(line.#room + (bytesPerSecond * (now - before)) / 1000, most);
       before = now;
       line.#share(oneWayMs);
@@ -72,7 +72,7 @@ export class SlowLine {
         if (part.length < first.length) queue[0] = first.subarray(kPacket);
         else queue.shift();
         if (queue.length === 0) server.resume();
-        if (queue.length === 0 && ended) setTimeout(() => browser.end(), oneWayMs + kMostMs);
+        if (queue.length === 0 && ended) setTimeout(() => browser.end(), oneWayMs + kMaxMs);
         this.#room -= part.length;
         this.bytes += part.length;
         setTimeout(() => browser.writable && browser.write(part), oneWayMs);

@@ -10,6 +10,15 @@ import type {Socket} from '../core/transport/reconnecting_socket';
 import type {Transport} from '../core/transport/transport';
 import type {FromWorker} from '../core/session/worker_messages';
 
+const kRealSetTimeout = globalThis.setTimeout;
+/**
+ * Waits until it holds, also under fake timers, for as long as a test may take: so no machine is
+ * too slow.
+ */
+export async function until(holds: () => boolean): Promise<void> {
+  while (!holds()) await new Promise<void>((resolve) => void kRealSetTimeout(resolve));
+}
+
 /** The states that a session has reported. */
 export const statesOf = (received: FromWorker[]): string[] =>
   received.flatMap((message) => (message.type === 'state' ? [message.state] : []));
@@ -85,9 +94,11 @@ export interface FakeLog {
   /** They come after the point fields. */
   cellFields?: string[];
   chunks: number;
+  /** Of every block; without it, kFakeBlockBytes. A long log of few chunks needs little time. */
+  blockBytes?: number;
 }
 
-/** Every block of a fake log is 10 bytes. */
+/** Every block of a fake log has so many bytes, unless the log says otherwise. */
 export const kFakeBlockBytes = 10;
 
 const doubles = (...values: number[]): Uint8Array =>
@@ -150,9 +161,11 @@ export class FakeCodec implements Codec {
   corruptField = Infinity;
   private fieldChunks: number[] = [];
   private readonly headBytes: number;
+  private readonly blockBytes: number;
 
   constructor(private readonly log: FakeLog) {
     this.headBytes = fakeHead(log).length;
+    this.blockBytes = log.blockBytes ?? kFakeBlockBytes;
   }
 
   /** How many chunks fit into memory. */
@@ -185,10 +198,10 @@ export class FakeCodec implements Codec {
   }
   blockOffset(chunk: number, part: number): number {
     const parts = 2 + this.log.fields.length + (this.log.cellFields?.length ?? 0);
-    return this.headBytes + kFakeBlockBytes * (chunk * parts + part);
+    return this.headBytes + this.blockBytes * (chunk * parts + part);
   }
   blockSize(): number {
-    return kFakeBlockBytes;
+    return this.blockBytes;
   }
   blockValues(): number {
     return 1;

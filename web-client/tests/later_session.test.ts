@@ -13,7 +13,7 @@ import {Publisher} from '../core/session/publisher';
 import {Session} from '../core/session/session';
 import type {FromWorker, Source} from '../core/session/worker_messages';
 import {headBytesOf} from '../core/transport/block_source';
-import {errorsOf, statesOf} from './fakes';
+import {errorsOf, statesOf, until} from './fakes';
 import {kTestWasm} from './whole_log';
 
 const kSeries = new URL('../../tests/golden/valid/series.qtet', import.meta.url);
@@ -65,8 +65,6 @@ describe.skipIf(kTestWasm === '')('later instants', () => {
       firstBytes: headBytesOf(log),
       ...source,
     });
-  const until = (holds: () => boolean): Promise<void> =>
-    vi.waitFor(() => expect(holds()).toBe(true), {timeout: 5000});
 
   test('comeOnceTheFirstFieldIsHere', async () => {
     start();

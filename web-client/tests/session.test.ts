@@ -20,6 +20,7 @@ import {
   kFakeValues,
   meshFrame,
   statesOf,
+  until,
   type FakeLog,
 } from './fakes';
 
@@ -152,7 +153,7 @@ describe('decoding', () => {
     sendAll(socket, 1, 0);
     expect(codec.chunksApplied).toBe(1);
     vi.useRealTimers();
-    while (states().at(-1) !== 'complete') await new Promise((resolve) => void setTimeout(resolve));
+    await until(() => states().at(-1) === 'complete');
     expect(codec.chunksApplied).toBe(kLog.chunks);
     vi.restoreAllMocks();
   });

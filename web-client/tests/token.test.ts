@@ -3,7 +3,7 @@ import {reconnectDelayMs} from '../core/transport/backoff';
 import {SocketTransport} from '../core/transport/socket_transport';
 import {fetchWith, ticketUrl} from '../core/transport/token';
 import type {Fetch} from '../core/transport/ranged_file';
-import {FakeSocket} from './fakes';
+import {FakeSocket, until} from './fakes';
 
 const kStream = 'wss://x/v1/stream';
 let asked: {url: string; method: string; authorization: string | null; range: string | null}[];
@@ -96,7 +96,7 @@ test('everyConnectionHasATicketOfItsOwn', async () => {
     fake(ticket('t1'), new Error('offline'), ticket('t2')),
   );
   transport.connect();
-  await vi.waitFor(() => expect(urls).toHaveLength(1));
+  await until(() => urls.length === 1);
   sockets[0]!.accept();
   sockets[0]!.lose(1006);
   await vi.advanceTimersByTimeAsync(reconnectDelayMs(0, 0.5));
@@ -108,10 +108,13 @@ test('everyConnectionHasATicketOfItsOwn', async () => {
 test('aTicketThatIsRefusedEndsItAndOneThatComesTooLateIsNotUsed', async () => {
   const refused = transportOver(fake(new Response('', {status: 401})));
   refused.transport.connect();
-  await vi.waitFor(() => expect(refused.received).toEqual(['failed http']));
+  await until(() => refused.received.length > 0);
+  expect(refused.received).toEqual(['failed http']);
   const late = transportOver(fake(ticket('t1')));
   late.transport.connect();
   late.transport.disconnect();
-  await new Promise((resolve) => setTimeout(resolve, 5));
+  const used = transportOver(fake(ticket('t2')));
+  used.transport.connect(); // its ticket comes behind the other one's
+  await until(() => used.urls.length > 0);
   expect(late.urls).toEqual([]);
 });

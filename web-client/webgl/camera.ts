@@ -23,7 +23,7 @@ export const kMinNear = 0.01;
 /** The least of OrbitCamera.depth, in radii. */
 const kDepth = 2.5;
 /** So near to straight above or below an eye may get, in radians: it must know where up is. */
-const kLeastTilt = 1e-6;
+const kMinTilt = 1e-6;
 
 /** A view as six numbers: the eye (at the distance of a perspective view) and the target. */
 export type CameraState = [number, number, number, number, number, number];
@@ -104,7 +104,7 @@ export class OrbitCamera {
     const radius = Math.hypot(x, y, z);
     const angle = Math.atan2(y, x) + horizontal;
     const fromUp = Math.acos(Math.max(-1, Math.min(1, z / radius))) + vertical;
-    const tilt = Math.max(kLeastTilt, Math.min(Math.PI - kLeastTilt, fromUp));
+    const tilt = Math.max(kMinTilt, Math.min(Math.PI - kMinTilt, fromUp));
     const across = radius * Math.sin(tilt);
     this.moveTo([across * Math.cos(angle), across * Math.sin(angle), radius * Math.cos(tilt)]);
   }

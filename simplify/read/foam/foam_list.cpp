@@ -191,8 +191,8 @@ Result<std::vector<FoamList::Label>> FoamList::binaryLabels(std::uint64_t count)
 
 Status FoamList::faces(const std::function<Status(std::span<const Label>)>& give) {
   if (isBinary_ && isCompact_) return compactFaces(give);
-  constexpr std::uint64_t kLeastBytes = 4;  // of a face: "0()" and a blank
-  const Result<std::uint64_t> told = count(kLeastBytes);
+  constexpr std::uint64_t kMinFaceBytes = 4;  // of a face: "0()" and a blank
+  const Result<std::uint64_t> told = count(kMinFaceBytes);
   if (!told) return std::unexpected(told.error());
   if (!take('(')) return badHere("a list does not begin with (");
   for (std::uint64_t i = 0; i < *told; ++i) {

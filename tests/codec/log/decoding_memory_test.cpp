@@ -67,10 +67,10 @@ std::uint64_t bytesOfBase(std::uint32_t structureBytes, std::uint32_t elements,
 }
 
 TEST(DecodingBytes, countAMeshThriceWhereItsBytesAreTooFewToMakeRoomForIt) {
-  constexpr std::uint32_t kBytes = 1000, kMost = kMaxElementsPerByte * kBytes;
-  for (const std::uint32_t elements : {kMost - 1, kMost, kMost + 1}) {
+  constexpr std::uint32_t kBytes = 1000, kMax = kMaxElementsPerByte * kBytes;
+  for (const std::uint32_t elements : {kMax - 1, kMax, kMax + 1}) {
     const std::uint64_t roomy = bytesOfBase(2 * kBytes, elements);
-    const std::uint64_t grown = elements > kMost ? 2 : 0;
+    const std::uint64_t grown = elements > kMax ? 2 : 0;
     EXPECT_EQ(bytesOfBase(kBytes, elements),
               roomy + grown * GrowingMesh::roomFor({elements, elements, elements}))
         << elements;

@@ -139,16 +139,15 @@ TEST(AdaptiveBlock, aPromiseBeyondItsBytesAllocatesNothing) {
 
 TEST(AdaptiveBlock, mayPromiseAsManyValuesAsItsBytesHoldDecisionsAndNoMore) {
   constexpr std::size_t kBytes = 6;
-  constexpr std::uint32_t kMost = kMaxDecisionsPerByte * (kBytes + 4);
+  constexpr std::uint32_t kMax = kMaxDecisionsPerByte * (kBytes + 4);
   for (const std::uint32_t components : {1u, 16u})
-    for (const std::uint32_t tuples : {kMost / components - 1, kMost / components}) {
+    for (const std::uint32_t tuples : {kMax / components - 1, kMax / components}) {
       const auto decoded = decodeAdaptiveBlock(Bytes(kBytes, 0), components, tuples);
       EXPECT_TRUE(decoded || decoded.error().code != ErrorCode::kLimitExceeded) << tuples;
     }
   for (const std::uint32_t components : {1u, 16u})
-    EXPECT_EQ(
-        decodeAdaptiveBlock(Bytes(kBytes, 0), components, kMost / components + 1).error().code,
-        ErrorCode::kLimitExceeded);
+    EXPECT_EQ(decodeAdaptiveBlock(Bytes(kBytes, 0), components, kMax / components + 1).error().code,
+              ErrorCode::kLimitExceeded);
 }
 
 TEST(AdaptiveBlock, isSmallerThanDracosOnWhatAMeshHas) {

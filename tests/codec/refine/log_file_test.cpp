@@ -30,7 +30,7 @@ std::uint64_t residentBytes(const std::filesystem::path& path) {
 
 /// Logs larger than memory can be checked and decoded: what was read need not stay.
 TEST(LogFile, littleOfItIsInMemory) {
-  constexpr std::uint64_t kBytes = 32 << 20, kMost = kBytes / 4;
+  constexpr std::uint64_t kBytes = 32 << 20, kMax = kBytes / 4;
   const std::string golden = std::string(testing::kGoldenFolder) + "/valid/solid.qtet";
   testing::TakenApart parts = testing::takeApart(LogFile::open(golden).value().bytes());
   parts.index.closing.push_back({static_cast<ClosingKind>(1000), 0, {}});
@@ -43,13 +43,13 @@ TEST(LogFile, littleOfItIsInMemory) {
   const Result<LogFile> log = LogFile::open(path);
   ASSERT_TRUE(log) << log.error().text();
   EXPECT_EQ(log->digest(), sha256Hex(bytes));
-  EXPECT_LT(residentBytes(path), kMost) << "after its digest";
+  EXPECT_LT(residentBytes(path), kMax) << "after its digest";
   ASSERT_TRUE(log->verifyChecksums());
-  EXPECT_LT(residentBytes(path), kMost) << "after its checksums";
+  EXPECT_LT(residentBytes(path), kMax) << "after its checksums";
   const auto closing = log->closing(static_cast<ClosingKind>(1000));
   ASSERT_TRUE(closing);
   log->release(0, bytes.size());
-  EXPECT_LT(residentBytes(path), kMost) << "after it was let go";
+  EXPECT_LT(residentBytes(path), kMax) << "after it was let go";
   EXPECT_EQ(closing->back(), 0x5A) << "it can be read again";
   EXPECT_TRUE(meshAtLevel(*log, 1));
 }

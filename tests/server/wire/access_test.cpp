@@ -160,9 +160,9 @@ std::string ticketUntil(std::int64_t end, const std::string& key) {
 
 TEST(Tickets, ofAnotherServerEndWithinThirtySeconds) {
   const std::string key(32, 'k');
-  constexpr std::int64_t kMost = limits::kTicketTime.count();
-  for (const std::int64_t left : {std::int64_t{-1}, std::int64_t{0}, std::int64_t{1}, kMost - 1,
-                                  kMost, kMost + 1, std::int64_t{1} << 40}) {
+  constexpr std::int64_t kMax = limits::kTicketTime.count();
+  for (const std::int64_t left : {std::int64_t{-1}, std::int64_t{0}, std::int64_t{1}, kMax - 1,
+                                  kMax, kMax + 1, std::int64_t{1} << 40}) {
     std::optional<SecretDigest> taken;
     std::int64_t now = 0;
     do {  // again where a second has passed meanwhile
@@ -170,7 +170,7 @@ TEST(Tickets, ofAnotherServerEndWithinThirtySeconds) {
       now = systemSeconds();
       taken = access.takeTicket(ticketUntil(now + left, key));
     } while (systemSeconds() != now);
-    EXPECT_EQ(taken, 0 < left && left <= kMost ? digestOf(kReader) : std::nullopt) << left;
+    EXPECT_EQ(taken, 0 < left && left <= kMax ? digestOf(kReader) : std::nullopt) << left;
   }
 }
 

@@ -62,10 +62,10 @@ TEST(AddressLimits, requestsAreForgivenSecondBySecondAndNotByConnectingAnew) {
 }
 
 TEST(AddressLimits, processorTimeIsBoundedAndForgivenSecondBySecond) {
-  constexpr std::chrono::nanoseconds kMost = limits::kMaxOwedTime;
+  constexpr std::chrono::nanoseconds kMax = limits::kMaxOwedTime;
   const auto start = AddressLimits::Clock::now();
   for (const auto& [owed, may] :
-       {std::pair(kMost - 1ns, true), {kMost, false}, {kMost + 1ns, false}}) {
+       {std::pair(kMax - 1ns, true), {kMax, false}, {kMax + 1ns, false}}) {
     AddressLimits limits({0, 1000});
     auto client = limits.enter(at("192.0.2.1"));
     client->charge(owed / 2, start);

@@ -7,10 +7,14 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/local/connect_pair.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/post.hpp>
+#include <memory>
 #include <string>
+
+#include "server/wire/connection_limits.h"
 
 namespace qtet {
 namespace {
@@ -59,6 +63,67 @@ TEST_F(TurnsTest, whatArrivesIsSeenBetweenTwoTurns) {
   asio::post(context_, [&] { other.write_some(asio::buffer("x", 1)); });
   context_.run();
   EXPECT_LE(order_.find('!'), 1u) << order_;
+}
+
+/// Clients of addresses of their own.
+class Clients {
+ public:
+  std::unique_ptr<AddressLimits::Client> owing(std::chrono::nanoseconds time) {
+    auto client = limits_.enter(boost::asio::ip::address_v4(++last_));
+    client->charge(time, start_);
+    return client;
+  }
+  [[nodiscard]] AddressLimits::Clock::time_point start() const { return start_; }
+
+ private:
+  AddressLimits limits_{{0, 1000}};
+  AddressLimits::Clock::time_point start_ = AddressLimits::Clock::now();
+  std::uint32_t last_ = 0;
+};
+
+TEST(OwesTurn, isWhoHasTakenMoreThanTheFreeTime) {
+  Clients clients;
+  for (const std::chrono::nanoseconds more : {-1ns, 0ns, 1ns}) {
+    const auto client = clients.owing(limits::kMaxFreeTime + more);
+    EXPECT_EQ(owesTurn(client.get(), clients.start()), more > 0ns) << more.count();
+    EXPECT_FALSE(owesTurn(client.get(), clients.start() + 1s)) << "it is forgiven by then";
+  }
+  EXPECT_FALSE(owesTurn(nullptr));
+}
+
+/// Debts of hours: so much is not forgiven while the test runs.
+class TakeTurnTest : public TurnsTest {
+ protected:
+  void comes(char name, AddressLimits::Client* client) {
+    asio::co_spawn(
+        context_,
+        [this, name, client]() -> asio::awaitable<void> {
+          co_await takeTurn(context_.get_executor(), client);
+          order_ += name;
+        },
+        asio::detached);
+  }
+
+  Clients clients_;
+};
+
+TEST_F(TakeTurnTest, whoOwesLessGoesFirstAndWhoHasNoBoundsOwesNothing) {
+  const auto much = clients_.owing(3h), little = clients_.owing(2h), nothing = clients_.owing(0h);
+  comes('m', much.get());
+  comes('l', little.get());
+  comes('n', nothing.get());
+  comes('0', nullptr);
+  context_.run();
+  EXPECT_EQ(order_, "n0lm");
+}
+
+TEST_F(TakeTurnTest, whatIsOwedCountsAsTimeSoManyTimesOver) {
+  const auto client = clients_.owing(1h);
+  begin('>', 1, limits::kTurnsBehind * 1h + 1min);
+  comes('=', client.get());
+  begin('<', 1, limits::kTurnsBehind * 1h - 1min);
+  context_.run();
+  EXPECT_EQ(order_, "<=>");
 }
 
 TEST_F(TurnsTest, aContextMayGoWhileSomebodyWaits) {

@@ -83,20 +83,20 @@ TEST(OldLog, whatCannotBeIsRefused) {
 }
 
 TEST(OldLog, aFrontOf32MiBIsFetchedAndALongerOneIsNot) {
-  constexpr std::uint32_t kMost = 32u << 20;
+  constexpr std::uint32_t kMax = 32u << 20;
   const auto claim = [](Liar& liar, std::uint32_t bytesBehindTheHeader) {
     constexpr std::size_t kFileBytesAt = 16, kManifestBytesAt = 24, kTableBytesAt = 28;
     std::uint32_t manifest = 0;
     std::memcpy(&manifest, liar.log.data() + kManifestBytesAt, 4);
     const std::uint32_t table = bytesBehindTheHeader - manifest;
     std::memcpy(liar.log.data() + kTableBytesAt, &table, 4);
-    liar.bytes = kMost + 4096;
+    liar.bytes = kMax + 4096;
     std::memcpy(liar.log.data() + kFileBytesAt, &liar.bytes, 8);
     testing::mendChecksums(liar.log);
   };
-  for (const std::uint32_t bytes : {kMost - 1, kMost})
+  for (const std::uint32_t bytes : {kMax - 1, kMax})
     expectRefused([&](Liar& liar) { claim(liar, bytes); }, ErrorCode::kBadChecksum);
-  expectRefused([&](Liar& liar) { claim(liar, kMost + 1); }, ErrorCode::kLimitExceeded);
+  expectRefused([&](Liar& liar) { claim(liar, kMax + 1); }, ErrorCode::kLimitExceeded);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 using testing::gridMesh;
 
 constexpr int kBits = 12;
-constexpr double kMost = 4095;
+constexpr double kMax = 4095;
 
 /// A cube with `count` scalar fields of floats, `valueOf(p, f)` from 0 to 1 at p in [0, 1]^3.
 template <class ValueOf>
@@ -27,11 +27,11 @@ LatticeMesh cubeWith(int n, std::size_t count, const ValueOf& valueOf) {
   mesh.fields.clear(), mesh.values.clear();
   for (std::size_t f = 0; f < count; ++f) {
     mesh.fields.push_back(
-        {"s" + std::to_string(f), 1, "float32", "point", kBits, 1, {0}, {0, kMost}});
+        {"s" + std::to_string(f), 1, "float32", "point", kBits, 1, {0}, {0, kMax}});
     std::vector<std::int32_t>& values = mesh.values.emplace_back();
     for (const LatticePoint& p : mesh.points) {
       const Vector3 at = (1.0 / side) * toVector(p);
-      values.push_back(static_cast<std::int32_t>(std::lround(kMost * valueOf(at, f))));
+      values.push_back(static_cast<std::int32_t>(std::lround(kMax * valueOf(at, f))));
     }
   }
   return mesh;
@@ -77,7 +77,7 @@ TEST(CostBasis, manyMixturesOfThreePatternsAreThreeComponentsThatGiveThemAllBack
     basis.add(f, parts[f].scale * (mesh.values[f][last] - mesh.values[f][0]), own);
   for (std::size_t f = 0; f < kFields; ++f)
     EXPECT_NEAR(basis.changeOf(f, own) / parts[f].scale, mesh.values[f][last] - mesh.values[f][0],
-                0.1 * kMost)
+                0.1 * kMax)
         << f;
 }
 

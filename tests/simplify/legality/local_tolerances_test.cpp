@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace qtet {
 namespace {
 
@@ -48,9 +50,26 @@ TEST(LocalTolerances, aLargeTriangleKnowsOfASmallOneInFrontOfIt) {
   EXPECT_FLOAT_EQ(found[1], 10);
 }
 
+/// A small sheet in front of the first corner of level(0, 49 ... 90, 100). Its middle lies beside
+/// the larger triangle, so it does not see that one.
+constexpr std::array<LatticePoint, 3> kSheetAtTheCorner{
+    LatticePoint{-10, -36, 140}, LatticePoint{30, -36, 140}, LatticePoint{4, 10, 140}};
+
 TEST(LocalTolerances, aLargeTriangleLooksFromItsCornersToo) {
-  const auto found = tolerancesOf({level(0, 800, 100), level(0, 300, 140)}, 50);
-  EXPECT_FLOAT_EQ(found[0], 10) << "its middle has nothing in front of it";
+  auto large = level(0, 90, 100);
+  for (std::size_t first = 0; first < 3; ++first) {
+    const auto found = tolerancesOf({large, kSheetAtTheCorner}, 50);
+    EXPECT_FLOAT_EQ(found[0], 10) << first;
+    EXPECT_FLOAT_EQ(found[1], 10) << first;
+    std::ranges::rotate(large, large.begin() + 1);
+  }
+}
+
+TEST(LocalTolerances, aTriangleIsLargeIfItIsLongerThanTheGivenTolerance) {
+  for (const std::int32_t size : {49, 50, 51}) {
+    const auto found = tolerancesOf({level(0, size, 100), kSheetAtTheCorner}, 50);
+    EXPECT_FLOAT_EQ(found[0], size > 50 ? 10 : 50) << size;
+  }
 }
 
 TEST(LocalTolerances, aWallThatStandsBesideATriangleIsNoSheet) {

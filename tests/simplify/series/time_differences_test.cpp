@@ -158,7 +158,7 @@ TEST(SettledValues, onlyFusedOnesOfFloatFieldsMoveAndByALittle) {
   for (std::size_t f = 0; f < before.fields.size(); ++f) {
     const auto [fixed, fused] = movedBy(before, after, f);
     EXPECT_EQ(fixed, 0) << before.fields[f].name;
-    EXPECT_LE(fused, isCellField(before.fields[f]) ? 0 : kMostSettled) << before.fields[f].name;
+    EXPECT_LE(fused, isCellField(before.fields[f]) ? 0 : kMaxSettled) << before.fields[f].name;
     most = std::max(most, fused);
   }
   EXPECT_GT(most, 0) << "nothing settles";
@@ -186,6 +186,32 @@ TEST_F(TimeDifferences, instantsOfAnotherScaleDoNotPredict) {
   for (const FieldInfo& field : history_.fields)
     for (const TimePrediction::Parent& parent : field.prediction.all())
       EXPECT_NE(parent.field, 0) << field.name;
+}
+
+/// The anchors that an anchor is decoded from, itself among them, at most: in a series of equal
+/// instants, where each may be predicted from the one before.
+std::size_t longestRowOfAnchors(std::size_t anchors) {
+  FusionHistory history;
+  const std::vector<InstantStep> order = decodingOrder((anchors - 1) * kWindow + 1);
+  for (const InstantStep& step : order) {
+    const std::string name = "C@" + std::to_string(step.instant);
+    history.fields.push_back({name, 1, "float32", "cell", 12, 0.5, {0}, {0, 900}});
+    history.values.push_back({7, 1900, 30, 444});
+  }
+  EXPECT_TRUE(predictInTime(history));
+  std::vector<std::size_t> rows(history.fields.size(), 1);
+  std::size_t longest = 0;
+  for (std::size_t f = 0; f < order.size(); ++f) {
+    for (const TimePrediction::Parent& parent : history.fields[f].prediction.all())
+      rows[f] = std::max(rows[f], rows[parent.field] + 1);
+    if (order[f].isAnchor) longest = std::max(longest, rows[f]);
+  }
+  return longest;
+}
+
+TEST(Anchors, soManyStandInARowAndNoMore) {
+  for (const std::size_t anchors : {kAnchorsInARow - 1, kAnchorsInARow, kAnchorsInARow + 1})
+    EXPECT_EQ(longestRowOfAnchors(anchors), std::min(anchors, kAnchorsInARow)) << anchors;
 }
 
 TEST_F(TimeDifferences, workIsToldAndStopped) {

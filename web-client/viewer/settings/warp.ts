@@ -18,9 +18,9 @@ const kFirstShare = 0.1;
 const kLongestShare = 1;
 
 /** The largest displacement at the slider's end, as a share of the diagonal. */
-const kMostShare = 0.4;
+const kMaxShare = 0.4;
 /** The slider's end, in automatic scales, is at least this. */
-const kLeastEnd = 4;
+const kMinEnd = 4;
 
 /** The mesh, as far as a warp needs it. */
 export interface Warpable {
@@ -61,8 +61,8 @@ export function automaticScale(field: number, {manifest, bounds}: Warpable): num
 /** The scale at the slider's end. */
 export function largestScale(field: number, mesh: Warpable): number {
   const share = largestShare(field, mesh);
-  const least = kLeastEnd * automaticScale(field, mesh);
-  return share > 0 ? Math.max(least, roundBelow(kMostShare / share)) : least;
+  const least = kMinEnd * automaticScale(field, mesh);
+  return share > 0 ? Math.max(least, roundBelow(kMaxShare / share)) : least;
 }
 
 /** The longest vector as a share of the diagonal; 0 if that is not known. */
