@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A command of the repository, continuous integration unless given, in a separate bare Debian, from a
-# clean clone of the last commit. Only the packages of .ci/packages.txt are installed there. Needs
+# A command of the repository, continuous integration unless given, in a separate bare Debian, from
+# a clean clone of the last commit. Only the packages of .ci/packages.txt are installed there. Needs
 # root, and mmdebstrap or debootstrap.
 #   fresh.sh [SUITE [COMMAND...]]     SUITE: bookworm (Debian 12, the default) or trixie (13);
 #                                     the log is build/fresh/SUITE.log
@@ -28,7 +28,8 @@ inside() {
 # A user needs git to clone and make to build.
 inside sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git make' \
   >"$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" >&2; exit 1; }
-echo "fresh: $suite, ${command[*]}: $(git -C "$source" log -1 --format='%h %s')" | tee "$work/$suite.log"
+echo "fresh: $suite, ${command[*]}: $(git -C "$source" log -1 --format='%h %s')" |
+  tee "$work/$suite.log"
 inside sh -c 'cd /qtet && exec "$@"' sh "${command[@]}" 2>&1 | while IFS= read -r line; do
   printf '%(%T)T %s\n' -1 "$line"
 done | tee -a "$work/$suite.log"

@@ -63,7 +63,7 @@ def main():
     entries = json.loads((pathlib.Path(build) / "compile_commands.json").read_text())
     wanted = changed(since)
     entries = {entry["file"]: entry for entry in entries if pathlib.Path(entry["file"]) in wanted}
-    print(f"tidy: {len(entries)} sources changed" + (f" since {since}" if since else ""), flush=True)
+    print(f"tidy: {len(entries)} sources changed {since and 'since ' + since}", flush=True)
     wrong = 0
     with concurrent.futures.ThreadPoolExecutor(int(jobs)) as pool:
         for text in pool.map(lambda entry: look(build, entry), entries.values()):

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/mesh/time_prediction.h"
+#include "codec/mesh/time_parents.h"
 
 namespace qtet {
 

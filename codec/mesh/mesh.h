@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/mesh/time_prediction.h"
+#include "codec/mesh/time_parents.h"
 
 namespace qtet {
 

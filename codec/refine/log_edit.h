@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "codec/mesh/time_prediction.h"
+#include "codec/mesh/time_parents.h"
 #include "proto/byte_sink.h"
 #include "proto/manifest.h"
 

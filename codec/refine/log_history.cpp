@@ -8,6 +8,7 @@
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/value_block.h"
+#include "codec/mesh/time_prediction.h"
 #include "codec/refine/log_file.h"
 #include "codec/refine/patch_block.h"
 #include "codec/refine/refiner.h"
@@ -196,8 +197,8 @@ Result<std::vector<std::int32_t>> historyValues(const LogFile& log, const LogHis
     const TimePrediction& prediction = log.fields()[f].prediction;
     for (std::size_t i = 0; !prediction.isNone() && i < values->size(); ++i)
       if (std::int32_t& value = (*values)[i]; value != kMissing)
-        value = prediction.restore(
-            value, [&](std::uint16_t parent) { return known.at(parent)[i]; }, kMissing);
+        value = restoreInTime(
+            prediction, value, [&](std::uint16_t parent) { return known.at(parent)[i]; }, kMissing);
     known[f] = std::move(*values);
   }
   return std::move(known.at(field));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "codec/mesh/time_prediction.h"
 #include "codec/refine/chunk_plan.h"
 
 namespace qtet {
@@ -103,9 +104,9 @@ void RefinerFields::restore(Field& f, const FieldShape& shape, std::size_t eleme
       f.values[i] = kMissing;
       continue;
     }
-    f.values[i] = shape.prediction.restore(
-        f.differences[i], [&](std::uint16_t parent) { return fields_[parent].values[i]; },
-        kMissing);
+    f.values[i] = restoreInTime(
+        shape.prediction, f.differences[i],
+        [&](std::uint16_t parent) { return fields_[parent].values[i]; }, kMissing);
   }
 }
 

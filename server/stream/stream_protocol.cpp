@@ -21,12 +21,12 @@ StreamRefusal unknownField(const ServedMesh& mesh, const std::string& name) {
 }
 
 std::expected<ClientBlocks, StreamRefusal> blocksOf(const Have& have, FieldTurns turns,
-                                              const ServedMesh& mesh) {
+                                                    const ServedMesh& mesh) {
   const std::size_t chunks = mesh.log.index().chunks.size();
   if (have.chunks > chunks)
-    return std::unexpected(StreamRefusal{kLogChanged, "have names chunk " +
-                                                    std::to_string(have.chunks - 1) +
-                                                    " and this log has " + std::to_string(chunks)});
+    return std::unexpected(
+        StreamRefusal{kLogChanged, "have names chunk " + std::to_string(have.chunks - 1) +
+                                       " and this log has " + std::to_string(chunks)});
   ClientBlocks out(mesh.log.index(), std::move(turns));
   out.addLeading(have.chunks, kStructurePart);
   out.addLeading(have.chunks, kPositionsPart);
@@ -40,7 +40,8 @@ std::expected<ClientBlocks, StreamRefusal> blocksOf(const Have& have, FieldTurns
   return out;
 }
 
-std::expected<std::uint32_t, StreamRefusal> lastChunkOf(const Target& target, const ServedMesh& mesh) {
+std::expected<std::uint32_t, StreamRefusal> lastChunkOf(const Target& target,
+                                                        const ServedMesh& mesh) {
   const Result<std::uint32_t> last = lastChunkFor(target, mesh.manifest, mesh.log.index());
   if (!last) return std::unexpected(unknownField(mesh, std::get<FieldErrorTarget>(target).field));
   return *last;

@@ -8,6 +8,7 @@
 #include "codec/log/exact_values.h"
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/original_cells.h"
+#include "codec/mesh/time_prediction.h"
 #include "codec/refine/log_file.h"
 #include "simplify/split/split_cells.h"
 
@@ -65,8 +66,9 @@ class FinestValues {
         gathered(history_.values[f], info.components, historyElements(info));
     for (std::size_t i = 0; !info.prediction.isNone() && i < values.size(); ++i)
       if (values[i] != kMissing)
-        values[i] = info.prediction.restore(
-            values[i], [&](std::uint16_t parent) { return values_[parent][i]; }, kMissing);
+        values[i] = restoreInTime(
+            info.prediction, values[i], [&](std::uint16_t parent) { return values_[parent][i]; },
+            kMissing);
     return values_.emplace_back(std::move(values));
   }
   [[nodiscard]] std::span<const std::uint32_t> historyElements(const FieldInfo& info) const {

@@ -36,8 +36,8 @@ BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& op
   const auto onIt = [](const Vector3& at, std::uint32_t ghost) {
     return Followed{at, {ghost, {0, {}}}};
   };
-  for (const ErrorSample& s : samplesOnSurface(history.points, history.cells, mesh.originalBoundary(),
-                                          options.samples, options.seed))
+  for (const ErrorSample& s : samplesOnSurface(
+           history.points, history.cells, mesh.originalBoundary(), options.samples, options.seed))
     samples_.push_back(onIt(s.at, s.cell));
   triangleBounds_.assign(mesh.originalBoundary().size(), 0);
   for (const std::uint32_t ghost : mesh.originalBoundary())

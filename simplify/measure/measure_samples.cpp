@@ -53,9 +53,9 @@ std::array<double, 4> tetrahedronWeights(SplitMix64& random) {
 /// `ids`.
 template <std::size_t N, class MeasureOf, class Weights>
 std::vector<ErrorSample> stratified(std::span<const LatticePoint> points, CellSpan cells,
-                               std::span<const std::uint32_t> ids, std::size_t count,
-                               std::uint64_t seed, const MeasureOf& measureOf,
-                               const Weights& weights) {
+                                    std::span<const std::uint32_t> ids, std::size_t count,
+                                    std::uint64_t seed, const MeasureOf& measureOf,
+                                    const Weights& weights) {
   double total = 0;
   for (const std::uint32_t id : ids) total += measureOf(cornersOf<N>(points, cells[id]));
   std::vector<ErrorSample> out;
@@ -89,13 +89,13 @@ std::vector<ErrorSample> stratified(std::span<const LatticePoint> points, CellSp
 }  // namespace
 
 std::vector<ErrorSample> samplesOnSurface(std::span<const LatticePoint> points, CellSpan cells,
-                                     std::span<const std::uint32_t> ids, std::size_t count,
-                                     std::uint64_t seed) {
+                                          std::span<const std::uint32_t> ids, std::size_t count,
+                                          std::uint64_t seed) {
   return stratified<3>(points, cells, ids, count, seed, areaOf, triangleWeights);
 }
 
 std::vector<ErrorSample> samplesInVolume(std::span<const LatticePoint> points, CellSpan cells,
-                                    std::size_t count, std::uint64_t seed) {
+                                         std::size_t count, std::uint64_t seed) {
   std::vector<std::uint32_t> ids;
   for (std::uint32_t i = 0; i < cells.size(); ++i)
     if (cells[i][3] != kGhost) ids.push_back(i);

@@ -25,13 +25,13 @@ using CellSpan = std::span<const std::array<VertexId, 4>>;
 /// `count` places uniform by area on the triangles `ids` (the first three vertices of these cells),
 /// by strata along their order. Empty where all triangles are degenerate.
 [[nodiscard]] std::vector<ErrorSample> samplesOnSurface(std::span<const LatticePoint> points,
-                                                   CellSpan cells,
-                                                   std::span<const std::uint32_t> ids,
-                                                   std::size_t count, std::uint64_t seed);
+                                                        CellSpan cells,
+                                                        std::span<const std::uint32_t> ids,
+                                                        std::size_t count, std::uint64_t seed);
 /// The same by volume in the cells that have no ghost vertex; an inverted cell counts with its
 /// volume's magnitude.
 [[nodiscard]] std::vector<ErrorSample> samplesInVolume(std::span<const LatticePoint> points,
-                                                  CellSpan cells, std::size_t count,
-                                                  std::uint64_t seed);
+                                                       CellSpan cells, std::size_t count,
+                                                       std::uint64_t seed);
 
 }  // namespace qtet

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/mesh/time_prediction.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/mesh/moved_place.h"
 #include "simplify/mesh/tet_mesh.h"
@@ -23,8 +24,9 @@ std::int32_t differenceOf(const FusionHistory& history, std::size_t f,
   const std::int32_t value = history.values[f][i];
   if (value == kMissing || prediction.isNone()) return value;
   return static_cast<std::int32_t>(
-      value - prediction.predict([&](std::uint16_t parent) { return history.values[parent][i]; },
-                                 kMissing));
+      value -
+      predictInTime(
+          prediction, [&](std::uint16_t parent) { return history.values[parent][i]; }, kMissing));
 }
 
 // A choice looks at so many fusions or cells, evenly spread. So its time does not grow with the

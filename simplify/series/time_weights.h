@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "codec/mesh/time_prediction.h"
+#include "codec/mesh/time_parents.h"
 
 namespace qtet {
 

@@ -16,8 +16,8 @@ TEST(TimePrediction, valuesEndAtTwoToTheThirtiethOnBothSides) {
   for (const std::int32_t beyond : {-1, 0, 1}) {
     const auto at = [](std::int32_t value) { return [=](std::uint16_t) { return value; }; };
     const std::int32_t end = kLargest + std::min(beyond, 0);
-    EXPECT_EQ(same.restore(beyond, at(kLargest), kNone), end) << beyond;
-    EXPECT_EQ(same.restore(-beyond, at(-kLargest), kNone), -end) << beyond;
+    EXPECT_EQ(restoreInTime(same, beyond, at(kLargest), kNone), end) << beyond;
+    EXPECT_EQ(restoreInTime(same, -beyond, at(-kLargest), kNone), -end) << beyond;
   }
 }
 
@@ -26,7 +26,7 @@ TEST(TimePrediction, theLargestSumOfParentsEndsThereToo) {
     const TimePrediction::Parent parent{0, weight};
     const TimePrediction four{{parent, parent, parent, parent}, 4};
     const auto largest = [](std::uint16_t) { return kLargest; };
-    EXPECT_EQ(four.restore(0, largest, kNone), weight > 0 ? kLargest : -kLargest);
+    EXPECT_EQ(restoreInTime(four, 0, largest, kNone), weight > 0 ? kLargest : -kLargest);
   }
 }
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/wire/http_limits.h"
 #include "proto/version.h"
+#include "server/wire/http_limits.h"
 #include "server/wire/request_trace.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"

@@ -160,14 +160,16 @@ INSTANTIATE_TEST_SUITE_P(
         PaperCase{"box", boxMesh}, PaperCase{"random7", [] { return gridMesh(8, 7); }},
         PaperCase{"random8", [] { return gridMesh(8, 8); }},
         PaperCase{"random9", [] { return gridMesh(9, 9); }},
-        PaperCase{"tunnel",
-             [] { return gridMesh(6, 2, [](int i, int j, int) { return i != 1 || j != 2; }); }},
+        PaperCase{
+            "tunnel",
+            [] { return gridMesh(6, 2, [](int i, int j, int) { return i != 1 || j != 2; }); }},
         PaperCase{"hollow",
-             [] {
-               return gridMesh(6, 1,
-                               [](int i, int j, int k) { return i != 2 || j != 1 || k != 2; });
-             }},
-        PaperCase{"twoParts", [] { return gridMesh(9, 4, [](int i, int, int) { return i != 4; }); }}),
+                  [] {
+                    return gridMesh(6, 1,
+                                    [](int i, int j, int k) { return i != 2 || j != 1 || k != 2; });
+                  }},
+        PaperCase{"twoParts",
+                  [] { return gridMesh(9, 4, [](int i, int, int) { return i != 4; }); }}),
     [](const auto& shape) { return std::string(shape.param.name); });
 
 /// A tetrahedron, a vertex put into it, and the next ones each into the cell of the last four. The

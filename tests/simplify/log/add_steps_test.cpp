@@ -10,6 +10,7 @@
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
+#include "codec/mesh/time_prediction.h"
 #include "codec/refine/log_edit.h"
 #include "codec/refine/log_file.h"
 #include "codec/refine/log_history.h"
@@ -118,7 +119,7 @@ TEST_F(AddSteps, theHistorysValuesAreThoseOfTheWriter) {
     std::vector<std::int32_t> coded = values.back();
     for (std::size_t i = 0; !prediction.isNone() && i < coded.size(); ++i)
       coded[i] -= static_cast<std::int32_t>(
-          prediction.predict([&](std::uint16_t p) { return values[p][i]; }, kMissing));
+          predictInTime(prediction, [&](std::uint16_t p) { return values[p][i]; }, kMissing));
     FieldInfo info;
     info.components = manifest.fields[f].components;
     info.association = manifest.fields[f].association;

@@ -107,7 +107,8 @@ TEST(TriangleTree, aFanOfThinTrianglesIsSearchedInPart) {
   std::vector<std::uint8_t> live(soup.cells.size(), 1);
   TriangleTree tree(soup.points, soup.cells, soup.ids);
   for (int round = 0; round < 2; ++round) {
-    const std::vector<ErrorSample> places = samplesOnSurface(soup.points, soup.cells, soup.ids, 200, 3);
+    const std::vector<ErrorSample> places =
+        samplesOnSurface(soup.points, soup.cells, soup.ids, 200, 3);
     std::size_t looked = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Vector3 p = places[i].at + Vector3{0, 0, i % 2 == 0 ? 0.0 : 2000.0};
