@@ -233,8 +233,11 @@ demo: demo-log
 test: setup build build-checked test-units test-system
 	@echo "test: all passed"
 
+# The tests of a suite run in another order each time. SEED=N repeats an order.
+SEED := $(or $(SEED),$(shell awk "BEGIN {srand(); print int(rand() * 99999) + 1}"))
 test-units:
-	@ctest --preset checked --parallel $(JOBS)
+	@echo "test: unit tests are shuffled, SEED=$(SEED)"
+	GTEST_SHUFFLE=1 GTEST_RANDOM_SEED=$(SEED) ctest --preset checked --parallel $(JOBS)
 	echo "skipped:"
 	sed -n 's/^\[  SKIPPED \] \([^ ]*\) (.*/  \1/p' $(CHECKED)/Testing/Temporary/LastTest.log
 

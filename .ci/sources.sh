@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 folder=build/sources
-# All are those of Debian 12, as the packages that the programs are linked with.
+# All are those of this Debian, as the packages that the programs are linked with.
 wanted=(draco expat libdeflate lz4 xz-utils)
 missing=()
 for name in "${wanted[@]}"; do
@@ -18,7 +18,7 @@ done
 without() {
   if [[ ${CI:-} == true ]]; then
     echo "setup: $1. Without the sources of ${missing[*]} the tests of the browser's simplifier" \
-      "would skip. Install dpkg-dev, let apt reach a mirror of Debian 12, and run .ci/sources.sh" \
+      "would skip. Install dpkg-dev, let apt reach a mirror of Debian, and run .ci/sources.sh" \
       "again. Or build without CI=true." >&2
     exit 1
   fi
@@ -31,9 +31,10 @@ rm -rf $folder/apt
 mkdir -p $folder/apt/lists/partial
 trap 'rm -rf $folder/apt' EXIT
 # From the mirror that this machine's packages come from.
+suite=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
 mirror=$(apt-get indextargets --format '$(SITE) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
-  awk '$2 ~ /^(bookworm|stable|oldstable)$/ && $3 == "main" && !found++')
-[[ -n $mirror ]] || without "apt knows no Debian 12"
+  awk -v suite="$suite" '($2 == suite || $2 ~ /^(stable|oldstable)$/) && $3 == "main" && !found++')
+[[ -n $mirror ]] || without "apt knows no mirror of Debian ($suite)"
 echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror" \
   >$folder/apt/sources.list
 of=(-o "Dir::Etc::SourceList=$PWD/$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null

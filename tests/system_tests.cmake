@@ -140,8 +140,13 @@ if(QTET_WEB)
   # after the other.
   foreach(list IN ITEMS
       baseline checks edge element legend monkey publish recovery transport volume)
+    # Pictures and random actions are looked at where something that they show has changed.
+    set(when "")
+    if(list MATCHES "^(baseline|monkey)$")
+      set(when ${here}/when_changed.sh proto codec server web-client tests/browser --)
+    endif()
     qtet_system_test(browser.${list} ROOM browser CHANCE SECONDS 1200
-      COMMAND ${QTET_NODE} ${here}/browser/run.mjs --list ${list} --bin ${bin}
+      COMMAND ${when} ${QTET_NODE} ${here}/browser/run.mjs --list ${list} --bin ${bin}
       --viewer ${QTET_VIEWER_DIR} --out ${CMAKE_BINARY_DIR}/browser-${list})
   endforeach()
   # Graphics in software cast its rays with every processor. Beside another browser one picture has

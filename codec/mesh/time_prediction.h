@@ -8,6 +8,9 @@
 
 namespace qtet {
 
+/// What is restored stays within this on both sides of 0, as far as Draco codes integers.
+inline constexpr std::int64_t kMaxRestored = std::int64_t{1} << 30;
+
 /// The weighted sum of the parents' values, which `at(field)` gives. Where one is missing, it is
 /// the first that is not, or 0.
 template <class At>
@@ -32,9 +35,8 @@ template <class At>
 template <class At>
 [[nodiscard]] std::int32_t restoreInTime(const TimePrediction& prediction, std::int32_t difference,
                                          const At& at, std::int32_t missing) {
-  constexpr std::int64_t kLargest = std::int64_t{1} << 30;
   return static_cast<std::int32_t>(
-      std::clamp(difference + predictInTime(prediction, at, missing), -kLargest, kLargest));
+      std::clamp(difference + predictInTime(prediction, at, missing), -kMaxRestored, kMaxRestored));
 }
 
 }  // namespace qtet

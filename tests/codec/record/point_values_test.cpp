@@ -15,14 +15,15 @@ namespace {
 
 using testing::StarMesh;
 
-constexpr LatticePoint kMiddle{30000, 30000, 30000};
+constexpr LatticePoint kStarCentre{30000, 30000, 30000};
 
 LatticePoint away(std::int32_t x, std::int32_t y, std::int32_t z) {
-  return {kMiddle[0] + x, kMiddle[1] + y, kMiddle[2] + z};
+  return {kStarCentre[0] + x, kStarCentre[1] + y, kStarCentre[2] + z};
 }
 
 std::int32_t linear(const LatticePoint& p) {
-  return 3 * (p[0] - kMiddle[0]) - 2 * (p[1] - kMiddle[1]) + 5 * (p[2] - kMiddle[2]) + 1000;
+  return 3 * (p[0] - kStarCentre[0]) - 2 * (p[1] - kStarCentre[1]) + 5 * (p[2] - kStarCentre[2]) +
+         1000;
 }
 
 Split splitInto(std::initializer_list<LatticePoint> points) {
@@ -66,10 +67,10 @@ void expectNothingTold(const StarMesh& star, const Split& split, std::int32_t ro
 }
 
 TEST(PointAncestry, aLinearFieldIsPredictedUpToRounding) {
-  const StarMesh star = testing::starMesh(kMiddle, {512, 256, 128}, 16);
+  const StarMesh star = testing::starMesh(kStarCentre, {512, 256, 128}, 16);
   // Weights have 12 bits, the place along an edge 8: differences of up to 4,096 are right within 2
   // or 10.
-  expectNothingTold(star, splitInto({kMiddle, away(300, 17, -40)}), 2);
+  expectNothingTold(star, splitInto({kStarCentre, away(300, 17, -40)}), 2);
   expectNothingTold(star, splitInto({away(-100, 100, 50), away(100, -100, -50)}), 10);
   expectNothingTold(star, splitInto({away(100, 0, 0), away(-300, 0, 0)}), 10);
   expectNothingTold(star, splitInto({away(211, -3, 99), away(-300, 50, 1), away(10, 20, -90)}), 2);
@@ -79,30 +80,31 @@ TEST(PointAncestry, aLinearFieldIsPredictedUpToRounding) {
 }
 
 TEST(PointAncestry, onTheBoundaryTheInnerSideTellsTheSlope) {
-  const StarMesh star = testing::starMesh(kMiddle, {512, 256, 128}, 16, true);
-  expectNothingTold(star, splitInto({kMiddle, away(0, 0, 90)}), 2);
-  expectNothingTold(star, splitInto({kMiddle, away(120, 50, 60)}), 2);
+  const StarMesh star = testing::starMesh(kStarCentre, {512, 256, 128}, 16, true);
+  expectNothingTold(star, splitInto({kStarCentre, away(0, 0, 90)}), 2);
+  expectNothingTold(star, splitInto({kStarCentre, away(120, 50, 60)}), 2);
   expectNothingTold(star, splitInto({away(120, 50, 60), away(20, -5, 30), away(0, 99, 1)}), 2);
 }
 
 TEST(PointAncestry, aStarThatEndsAtOnceTellsNothing) {
   // The prey lies twenty times as far as the star reaches.
-  const StarMesh star = testing::starMesh(kMiddle, {8, 8, 8}, 16);
-  const Split split = splitInto({kMiddle, away(640, 0, 0)});
+  const StarMesh star = testing::starMesh(kStarCentre, {8, 8, 8}, 16);
+  const Split split = splitInto({kStarCentre, away(640, 0, 0)});
   const std::vector<std::int32_t> told = residuals(star, split);
   EXPECT_EQ(told[0], 0);
   EXPECT_EQ(told[1], 3 * 640);
 }
 
 TEST(PointAncestry, preyInOnePlaceHaveTheFusedVertexsValue) {
-  const StarMesh star = testing::starMesh(kMiddle, {512, 256, 128}, 16);
-  EXPECT_EQ(residuals(star, splitInto({kMiddle, kMiddle})), (std::vector<std::int32_t>{0, 0}));
+  const StarMesh star = testing::starMesh(kStarCentre, {512, 256, 128}, 16);
+  EXPECT_EQ(residuals(star, splitInto({kStarCentre, kStarCentre})),
+            (std::vector<std::int32_t>{0, 0}));
 }
 
 TEST(PointAncestry, aDecoderGetsWhatTheEncoderTold) {
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
-    const StarMesh star = testing::starMesh(kMiddle, {512, 256, 128}, 16, round % 2 == 0);
+    const StarMesh star = testing::starMesh(kStarCentre, {512, 256, 128}, 16, round % 2 == 0);
     const std::uint32_t components = 1 + random() % kMaxFieldComponents;
     Split split;
     split.k = 2 + static_cast<int>(random() % 3);
@@ -142,12 +144,12 @@ TEST(PointAncestry, aDecoderGetsWhatTheEncoderTold) {
 // difference that a value block can carry.
 TEST(PointAncestry, theLargestValuesOverTheLongestStepComeBack) {
   constexpr std::int32_t kLargest = (1 << kMaxFieldBits) - 1;
-  const StarMesh star = testing::starMesh(kMiddle, {128, 128, 128}, 16);
+  const StarMesh star = testing::starMesh(kStarCentre, {128, 128, 128}, 16);
   const Split split = splitInto({away(4000, 0, 0), away(5000, 0, 0)});  // four steps away
   for (const bool rising : {true, false}) {
     Field field;
     for (const LatticePoint& p : star.mesh.points)
-      field.values.push_back((p[0] > kMiddle[0]) == rising ? kLargest : 0);
+      field.values.push_back((p[0] > kStarCentre[0]) == rising ? kLargest : 0);
     field.values.resize(field.values.size() + 3);
     field.values[0] = kLargest / 2;
     PointAncestry ancestry(true);
@@ -174,12 +176,12 @@ TEST(PointAncestry, theLargestValuesOverTheLongestStepComeBack) {
 // looks).
 TEST(PointAncestry, valuesAtTheDecodersBoundOverflowNothing) {
   constexpr std::int32_t kBound = 1 << 30;
-  const StarMesh star = testing::starMesh(kMiddle, {128, 128, 128}, 16);
+  const StarMesh star = testing::starMesh(kStarCentre, {128, 128, 128}, 16);
   PointAncestry ancestry(true);
   ancestry.add(0, star.mesh, star.link, splitInto({away(-4000, 0, 0), away(-5000, 0, 0)}));
   Field field;
   for (const LatticePoint& p : star.mesh.points)
-    field.values.push_back(p[0] > kMiddle[0] ? kBound : -kBound);
+    field.values.push_back(p[0] > kStarCentre[0] ? kBound : -kBound);
   field.values.resize(field.values.size() + 3);
   const std::vector<std::int32_t> wild{std::numeric_limits<std::int32_t>::min(),
                                        std::numeric_limits<std::int32_t>::max()};

@@ -32,9 +32,9 @@ TEST(Program, helpAndVersionGoToStandardOutput) {
   std::istringstream lines(help.output() + all.output());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_EQ(help.exitCode(), 0);
-  Program version({"--version"});
-  EXPECT_EQ(version.output(), "qtet-server " + version() + "\n");
-  EXPECT_EQ(version.exitCode(), 0);
+  Program shown({"--version"});
+  EXPECT_EQ(shown.output(), "qtet-server " + version() + "\n");
+  EXPECT_EQ(shown.exitCode(), 0);
 }
 
 TEST(Program, wrongUsageIsExitCode2) {

@@ -30,7 +30,7 @@ const std::string kReader = "readerSecretOfManyChars", kWriter = "writerSecretOf
                   kOther = "otherSecretOfManyChars";
 
 std::string bearer(const std::string& token) { return "Authorization: Bearer " + token + "\r\n"; }
-std::optional<SecretDigest> digestOf(const std::string& token) {
+std::optional<SecretDigest> bearerOf(const std::string& token) {
   return bearerDigest("Bearer " + token);
 }
 
@@ -39,9 +39,9 @@ TEST(Tokens, theFirstNameOfATokenIsItsName) {
       Tokens::parse("write a " + kWriter + "\nwrite b " + kWriter + " name=lab-1.x_y@z\nwrite c " +
                     kWriter + " name=other\nread * " + kReader);
   ASSERT_TRUE(tokens) << tokens.error().message;
-  EXPECT_EQ(tokens->nameOf(digestOf(kWriter)), "lab-1.x_y@z");
-  EXPECT_EQ(tokens->nameOf(digestOf(kReader)), "sha256:" + hexDigestOf(kReader).substr(0, 8));
-  EXPECT_EQ(tokens->nameOf(digestOf(kWriter + "x")), "");
+  EXPECT_EQ(tokens->nameOf(bearerOf(kWriter)), "lab-1.x_y@z");
+  EXPECT_EQ(tokens->nameOf(bearerOf(kReader)), "sha256:" + hexDigestOf(kReader).substr(0, 8));
+  EXPECT_EQ(tokens->nameOf(bearerOf(kWriter + "x")), "");
   EXPECT_EQ(tokens->nameOf(std::nullopt), "");
   const auto named = [](const std::string& name) {
     return Tokens::parse("read * " + kReader + " name=" + name).has_value();
@@ -57,11 +57,11 @@ TEST(Tokens, linesAreReadAndWrongOnesNamed) {
   const auto tokens = Tokens::parse("# who\n\nwrite lab-* " + kWriter +
                                     "\nwrite x sha256:" + sha256Hex(ByteView()) + "\n");
   ASSERT_TRUE(tokens) << tokens.error().message;
-  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kWriter), "lab-1"), Verdict::kAllowed);
-  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kWriter), "other"), Verdict::kForbidden);
-  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kWriter + "x"), "lab-1"), Verdict::kUnknown);
+  EXPECT_EQ(tokens->may(Scope::kWrite, bearerOf(kWriter), "lab-1"), Verdict::kAllowed);
+  EXPECT_EQ(tokens->may(Scope::kWrite, bearerOf(kWriter), "other"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kWrite, bearerOf(kWriter + "x"), "lab-1"), Verdict::kUnknown);
   EXPECT_EQ(tokens->may(Scope::kWrite, std::nullopt, "lab-1"), Verdict::kUnknown);
-  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(""), "x"), Verdict::kUnknown)
+  EXPECT_EQ(tokens->may(Scope::kWrite, bearerOf(""), "x"), Verdict::kUnknown)
       << "the empty token is none, even if its digest stands there";
   EXPECT_FALSE(tokens->guardReading());
   EXPECT_EQ(tokens->may(Scope::kRead, std::nullopt, "any"), Verdict::kAllowed)
@@ -82,28 +82,28 @@ TEST(Tokens, aLineOfReadingGuardsAllMeshesAndWritingIncludesReading) {
       Tokens::parse("read lab-* " + kReader + "\nwrite lab-1 " + kWriter + "\nread demo anyone\n");
   ASSERT_TRUE(tokens) << tokens.error().message;
   EXPECT_TRUE(tokens->guardReading());
-  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kReader), "lab-1"), Verdict::kAllowed);
-  EXPECT_EQ(tokens->may(Scope::kWrite, digestOf(kReader), "lab-1"), Verdict::kForbidden);
-  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kReader), "x"), Verdict::kForbidden);
-  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kWriter), "lab-1"), Verdict::kAllowed);
-  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kWriter), "lab-2"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kRead, bearerOf(kReader), "lab-1"), Verdict::kAllowed);
+  EXPECT_EQ(tokens->may(Scope::kWrite, bearerOf(kReader), "lab-1"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kRead, bearerOf(kReader), "x"), Verdict::kForbidden);
+  EXPECT_EQ(tokens->may(Scope::kRead, bearerOf(kWriter), "lab-1"), Verdict::kAllowed);
+  EXPECT_EQ(tokens->may(Scope::kRead, bearerOf(kWriter), "lab-2"), Verdict::kForbidden);
   EXPECT_EQ(tokens->may(Scope::kRead, std::nullopt, "lab-1"), Verdict::kUnknown);
   EXPECT_EQ(tokens->may(Scope::kRead, std::nullopt, "demo"), Verdict::kAllowed);
-  EXPECT_EQ(tokens->may(Scope::kRead, digestOf(kOther), "demo"), Verdict::kAllowed);
-  EXPECT_TRUE(tokens->knows(digestOf(kReader)));
-  EXPECT_FALSE(tokens->knows(digestOf(kOther)));
+  EXPECT_EQ(tokens->may(Scope::kRead, bearerOf(kOther), "demo"), Verdict::kAllowed);
+  EXPECT_TRUE(tokens->knows(bearerOf(kReader)));
+  EXPECT_FALSE(tokens->knows(bearerOf(kOther)));
   EXPECT_FALSE(tokens->knows(std::nullopt));
 }
 
 TEST(Tickets, areForOnceForThirtySecondsAndForTheirTokenAlone) {
   Access access(*Tokens::parse("read * " + kReader));
   const auto now = Access::Clock::time_point() + std::chrono::hours(1);
-  const auto first = access.giveTicket(*digestOf(kReader), now),
-             second = access.giveTicket(*digestOf(kReader), now);
+  const auto first = access.giveTicket(*bearerOf(kReader), now),
+             second = access.giveTicket(*bearerOf(kReader), now);
   ASSERT_TRUE(first && second);
   EXPECT_NE(*first, *second);
   EXPECT_EQ(access.takeTicket(*first, now + limits::kTicketTime - std::chrono::milliseconds(1)),
-            digestOf(kReader));
+            bearerOf(kReader));
   EXPECT_EQ(access.takeTicket(*first, now), std::nullopt) << "used";
   EXPECT_EQ(access.takeTicket(*second, now + limits::kTicketTime), std::nullopt) << "too old";
   EXPECT_EQ(access.takeTicket("nonsense", now), std::nullopt);
@@ -116,7 +116,7 @@ TEST(Tickets, ofOneServerAreTakenOnceByEveryOtherThatHasItsKey) {
       two(*Tokens::parse("read * " + kReader), key),
       stranger(*Tokens::parse("read * " + kReader), std::string(32, 'x'));
   const auto now = Access::Clock::now();
-  const std::string ticket = *one.giveTicket(*digestOf(kReader), now);
+  const std::string ticket = *one.giveTicket(*bearerOf(kReader), now);
   EXPECT_EQ(stranger.takeTicket(ticket, now), std::nullopt);
   for (std::size_t at = 0; at < ticket.size(); at += 7) {
     std::string forged = ticket;
@@ -124,9 +124,9 @@ TEST(Tickets, ofOneServerAreTakenOnceByEveryOtherThatHasItsKey) {
     EXPECT_EQ(two.takeTicket(forged, now), std::nullopt) << at;
   }
   EXPECT_EQ(two.takeTicket(ticket.substr(0, ticket.size() - 1), now), std::nullopt);
-  EXPECT_EQ(two.takeTicket(ticket, now), digestOf(kReader));
+  EXPECT_EQ(two.takeTicket(ticket, now), bearerOf(kReader));
   EXPECT_EQ(two.takeTicket(ticket, now), std::nullopt) << "used";
-  EXPECT_EQ(one.takeTicket(ticket, now), digestOf(kReader));
+  EXPECT_EQ(one.takeTicket(ticket, now), bearerOf(kReader));
   EXPECT_EQ(one.takeTicket(ticket, now), std::nullopt) << "used, and its own is no foreign one";
 }
 
@@ -147,7 +147,7 @@ std::string ticketUntil(std::int64_t end, const std::string& key) {
       out += hex.data();
     }
   };
-  addHex(*digestOf(kReader));
+  addHex(*bearerOf(kReader));
   SecretDigest mac{};
   unsigned bytes = 0;
   EXPECT_NE(
@@ -170,7 +170,7 @@ TEST(Tickets, ofAnotherServerEndWithinThirtySeconds) {
       now = systemSeconds();
       taken = access.takeTicket(ticketUntil(now + left, key));
     } while (systemSeconds() != now);
-    EXPECT_EQ(taken, 0 < left && left <= kMax ? digestOf(kReader) : std::nullopt) << left;
+    EXPECT_EQ(taken, 0 < left && left <= kMax ? bearerOf(kReader) : std::nullopt) << left;
   }
 }
 
@@ -181,10 +181,10 @@ TEST(Tickets, ofAnotherServerAreRememberedAsUsedAsLongAsOneMayLast) {
   Access access(*Tokens::parse("read * " + kReader), key);
   const std::string ticket = ticketUntil(systemSeconds() + limits::kTicketTime.count(), key);
   const auto now = Access::Clock::now();
-  EXPECT_EQ(access.takeTicket(ticket, now), digestOf(kReader));
+  EXPECT_EQ(access.takeTicket(ticket, now), bearerOf(kReader));
   EXPECT_EQ(access.takeTicket(ticket, now + limits::kTicketTime - std::chrono::nanoseconds(1)),
             std::nullopt);
-  EXPECT_EQ(access.takeTicket(ticket, now + limits::kTicketTime), digestOf(kReader));
+  EXPECT_EQ(access.takeTicket(ticket, now + limits::kTicketTime), bearerOf(kReader));
 }
 
 TEST(Tickets, theKeyOfAFolderIsMadeOnceAndForItsOwnerAlone) {
@@ -206,13 +206,13 @@ TEST(Tickets, ofOneTokenAreBoundedAndOfAnotherStillToBeHad) {
   const auto now = Access::Clock::now();
   std::set<std::string> given;
   for (std::size_t i = 0; i < limits::kMaxTickets; ++i)
-    given.insert(access.giveTicket(*digestOf(kReader), now).value_or(""));
+    given.insert(access.giveTicket(*bearerOf(kReader), now).value_or(""));
   EXPECT_EQ(given.size(), limits::kMaxTickets);
-  EXPECT_EQ(access.giveTicket(*digestOf(kReader), now), std::nullopt);
-  EXPECT_TRUE(access.giveTicket(*digestOf(kOther), now));
+  EXPECT_EQ(access.giveTicket(*bearerOf(kReader), now), std::nullopt);
+  EXPECT_TRUE(access.giveTicket(*bearerOf(kOther), now));
   EXPECT_TRUE(access.takeTicket(*given.begin(), now));
-  EXPECT_TRUE(access.giveTicket(*digestOf(kReader), now)) << "a used one leaves its place";
-  EXPECT_TRUE(access.giveTicket(*digestOf(kReader), now + limits::kTicketTime))
+  EXPECT_TRUE(access.giveTicket(*bearerOf(kReader), now)) << "a used one leaves its place";
+  EXPECT_TRUE(access.giveTicket(*bearerOf(kReader), now + limits::kTicketTime))
       << "and so do those that are too old";
 }
 

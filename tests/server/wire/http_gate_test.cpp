@@ -9,27 +9,27 @@
 namespace qtet {
 namespace {
 
-using Verdict = HttpGate::Verdict;
+using GateVerdict = HttpGate::Verdict;
 
-Verdict lookAtOnce(const std::string& bytes) { return HttpGate().look(bytes); }
+GateVerdict lookAtOnce(const std::string& bytes) { return HttpGate().look(bytes); }
 
-Verdict lookByteByByte(const std::string& bytes) {
+GateVerdict lookByteByByte(const std::string& bytes) {
   HttpGate gate;
   for (std::size_t n = 1; n <= bytes.size(); ++n)
-    if (const Verdict verdict = gate.look(std::string_view(bytes).substr(0, n));
-        verdict != Verdict::kMore)
+    if (const GateVerdict verdict = gate.look(std::string_view(bytes).substr(0, n));
+        verdict != GateVerdict::kMore)
       return verdict;
-  return Verdict::kMore;
+  return GateVerdict::kMore;
 }
 
 TEST(HttpGate, aSoundHeadEndsAtItsEmptyLine) {
   const std::string head = "GET / HTTP/1.1\r\nHost: a\r\nX: \xc3\xa4\tb\r\n\r\n";
   HttpGate gate;
-  EXPECT_EQ(gate.look(head + "GET /next"), Verdict::kComplete);
+  EXPECT_EQ(gate.look(head + "GET /next"), GateVerdict::kComplete);
   EXPECT_EQ(gate.headBytes(), head.size());
-  EXPECT_EQ(lookByteByByte(head), Verdict::kComplete);
+  EXPECT_EQ(lookByteByByte(head), GateVerdict::kComplete);
   for (std::size_t n = 0; n < head.size(); ++n)
-    EXPECT_EQ(lookAtOnce(head.substr(0, n)), Verdict::kMore) << n;
+    EXPECT_EQ(lookAtOnce(head.substr(0, n)), GateVerdict::kMore) << n;
 }
 
 TEST(HttpGate, whatAProxyMayReadInAnotherWayIsBroken) {
@@ -44,8 +44,8 @@ TEST(HttpGate, whatAProxyMayReadInAnotherWayIsBroken) {
         std::string("GET / HTTP/1.1\r\nX: \x0b\r\n\r\n"),
         std::string("GET / HTTP/1.1\r\nX: \x7f\r\n\r\n"), std::string("\x16\x03\x01\x02"),
         std::string(" GET / HTTP/1.1\r\n\r\n"), std::string("\r\n\r\n")}) {
-    EXPECT_EQ(lookAtOnce(bytes), Verdict::kBroken) << bytes;
-    EXPECT_EQ(lookByteByByte(bytes), Verdict::kBroken) << bytes;
+    EXPECT_EQ(lookAtOnce(bytes), GateVerdict::kBroken) << bytes;
+    EXPECT_EQ(lookByteByByte(bytes), GateVerdict::kBroken) << bytes;
   }
 }
 
@@ -55,8 +55,8 @@ TEST(HttpGate, thereAreAsManyLinesAsTheLimitAllows) {
     for (std::size_t i = 1; i < lines; ++i) out += "X: 1\r\n";
     return out + "\r\n";
   };
-  EXPECT_EQ(lookAtOnce(head(limits::kMaxHeaderLines)), Verdict::kComplete);
-  EXPECT_EQ(lookAtOnce(head(limits::kMaxHeaderLines + 1)), Verdict::kTooLong);
+  EXPECT_EQ(lookAtOnce(head(limits::kMaxHeaderLines)), GateVerdict::kComplete);
+  EXPECT_EQ(lookAtOnce(head(limits::kMaxHeaderLines + 1)), GateVerdict::kTooLong);
 }
 
 TEST(HttpGate, emptyLinesBeforeARequestAreFew) {

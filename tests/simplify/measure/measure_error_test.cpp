@@ -265,7 +265,7 @@ TEST(MeasureLevels, moreSamplesAgreeWithFewer) {
 double sampledMaximum(const FusionHistory& h, std::span<const TriangleTree::Cell> cells,
                       const std::vector<std::uint32_t>& ids, const TriangleTree& tree) {
   double squared = 0;
-  for (const Sample& sample : samplesOnSurface(h.points, cells, ids, 40000, 99)) {
+  for (const ErrorSample& sample : samplesOnSurface(h.points, cells, ids, 40000, 99)) {
     NearestTriangle nearest;
     tree.nearest(sample.at, nearest);
     squared = std::max(squared, nearest.point.squared);
