@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # The Debian packages in a Debian of their own (.ci/debian_root.sh): installed, started, used,
 # removed. Needs root.
-#   test.sh FOLDER-OF-PACKAGES FOLDER-TO-WORK-IN      77 = skipped
+#   test.sh FOLDER-OF-PACKAGES FOLDER-TO-WORK-IN [SUITE]      77 = skipped
+# SUITE is that of the Debian that made the packages; this machine's unless given.
 set -euo pipefail
 packages=$(realpath "$1")
 mkdir -p "$2"
 work=$(realpath "$2")
+suite=${3:-$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)}
 source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 port=$("$source/tests/support/free_port.sh")
 adminPort=$("$source/tests/support/free_port.sh")
@@ -46,9 +48,9 @@ else
   step "lintian is not installed; nobody judges the packages' form"
 fi
 
-# ---- a bare Debian 12; the first run downloads it, later ones copy it
+# ---- a bare Debian; the first run downloads it, later ones copy it
 
-"$source/.ci/debian_root.sh" "$work" || exit $?
+"$source/.ci/debian_root.sh" "$work" "$suite" || exit $?
 mount -t proc proc "$root/proc"
 mount --bind /dev "$root/dev"
 mkdir "$root/packages"
