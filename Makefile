@@ -142,7 +142,7 @@ build-checked:
 	@$(call configure,checked,checked)
 	cmake --build --preset checked --parallel $(JOBS) $(CHECKED_TARGETS)
 
-# Before anything is built: a port in use is told at once.
+# Refuses a port in use at once, before anything is built.
 demo-port:
 	@refuse() { echo "demo: $$1" >&2; exit 1; }
 	if [[ ! $$PORT =~ ^[0-9]{1,5}$$ ]] || ((10#$$PORT < 1 || 10#$$PORT > 65535)); then

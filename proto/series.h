@@ -46,7 +46,7 @@ struct Series {
 };
 
 /// The series of `fewest` and more instants, in the order of their first fields. Instants agree in
-/// association, components and type; of two with one time the first counts.
+/// association, components and type. Where two have one time, the first counts.
 template <class Field>
 [[nodiscard]] std::vector<Series> seriesOf(std::span<const Field> fields, std::size_t fewest = 2) {
   std::vector<Series> out;

@@ -64,6 +64,14 @@ if(QTET_PYTHON)
     qtet_system_test(sizes.${meshes} ROOM simplify SECONDS 1800 COMMAND ${QTET_PYTHON}
       ${here}/bench/sizes.py --check ${meshes} --tool $<TARGET_FILE:qtet>)
   endforeach()
+  # The figures of README.md.
+  if(QTET_WEB)
+    set(with_viewer --viewer ${QTET_VIEWER_DIR})
+  endif()
+  foreach(meshes IN ITEMS samples data)
+    qtet_system_test(documents.readme.${meshes} ROOM house SECONDS 1800 COMMAND ${QTET_PYTHON}
+      ${here}/documents/readme.py --check ${meshes} --tool $<TARGET_FILE:qtet> ${with_viewer})
+  endforeach()
 endif()
 
 # VTK's Python modules are part of libvtk9-dev, for Debian's own python3. ParaView excludes that
@@ -174,6 +182,9 @@ if(QTET_PYTHON)
     qtet_self_test(${script} "tests/bench/${script}.py;tests/bench/${script}_test.py"
       ${QTET_PYTHON} ${here}/bench/${script}_test.py)
   endforeach()
+  qtet_self_test(prose.selftest tests/prose ${QTET_PYTHON} ${here}/prose/check.py --selftest)
+  qtet_self_test(documents.readme.selftest "tests/documents/readme.py;tests/documents/readme_test.py"
+    ${QTET_PYTHON} -B ${here}/documents/readme_test.py)
 endif()
 if(QTET_WEB AND NOT QTET_SANITIZE)
   qtet_self_test(documents.selftest tests/documents ${QTET_NODE} ${here}/documents/selftest.mjs

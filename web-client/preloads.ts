@@ -9,7 +9,7 @@ import {readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import type {Plugin} from 'vite';
 
-/** The start of each name, and how the browser is told of it. The most urgent one comes first. */
+/** The start of each name, and the link that fetches it. The most urgent one comes first. */
 const kNeeded = [
   ['view_worker', 'modulepreload'], // graphics take longest to start
   ['worker', 'modulepreload'],

@@ -24,8 +24,8 @@ inline constexpr int kMoreDigits = 29;
                                std::uint64_t{bits & kFraction} << kMoreDigits);
 }
 
-/// The nearest float; of a NaN the sign and the upper digits of its fraction, or the quiet NaN
-/// where these are 0. widened() undoes it for what widened() made.
+/// The nearest float. A NaN keeps its sign and the upper digits of its fraction, or becomes the
+/// quiet NaN where these are 0. widened() undoes it for what widened() made.
 [[nodiscard]] inline float narrowed(double value) {
   using namespace float_bits;
   if (!std::isnan(value)) return static_cast<float>(value);

@@ -73,7 +73,7 @@ struct LogIndex {
   [[nodiscard]] Status readLater(ByteView part);
   /// Both, of a whole file. The head is enough for a log without later instants.
   [[nodiscard]] static Result<LogIndex> parse(ByteView file);
-  /// Both, of what encode() and encodeLater() give.
+  /// Parses both parts, the results of encode() and encodeLater().
   [[nodiscard]] static Result<LogIndex> parse(ByteView head, ByteView later);
   /// Header, manifest and table as they stand in the file. Ignores the values that the rows imply
   /// (offsets, first levels). REQUIRES: later instants that are read.

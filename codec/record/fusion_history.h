@@ -30,7 +30,7 @@ struct FusionHistory {
   Lattice lattice;
   std::vector<FieldInfo> fields;
   std::vector<LatticePoint> points;  ///< of every vertex that ever lived
-  /// Per field, components a vertex; of a cell field the input's, a tetrahedron.
+  /// Per field, components a vertex. Cell fields have the input's, components a tetrahedron.
   std::vector<std::vector<std::int32_t>> values;
   /// As they are now, or as they were when deleted.
   std::vector<std::array<VertexId, 4>> cells;

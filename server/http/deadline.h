@@ -11,8 +11,8 @@
 
 namespace qtet {
 
-/// From its making on: after `time` what waits on the socket is cancelled. For the socket's
-/// executor alone; the socket must outlive it.
+/// Cancels whatever waits on the socket, `time` after construction. For the socket's executor
+/// alone; the socket must outlive it.
 class Deadline {
  public:
   Deadline(ClientSocket& socket, std::chrono::milliseconds time)

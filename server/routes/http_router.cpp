@@ -84,8 +84,8 @@ Reply toLog(const RequestTarget& target, const ServedMesh& mesh) {
   return out;
 }
 
-/// 401 and 403 of a mesh, also of one that does not exist; of the list (nullptr) only for a token
-/// that nobody has.
+/// Refuses with 401 or 403, also for a mesh that does not exist, so that names do not leak. The
+/// list (nullptr) is refused only to an unknown token.
 std::optional<Reply> readingRefusal(const RequestView& request, const std::string* mesh,
                                     const Tokens& tokens) {
   if (!tokens.guardReading()) return std::nullopt;

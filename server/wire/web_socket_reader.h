@@ -38,7 +38,7 @@ class WebSocketReader {
   struct Event {
     enum class Kind : std::uint8_t { kText, kBinary, kPing, kPong, kClose };
     Kind kind = Kind::kText;
-    /// UTF-8 of a text; of a close its code and reason as they came, both sound.
+    /// A text in UTF-8, or the code and reason of a close as they arrived, both sound.
     std::string payload{};
   };
 

@@ -111,7 +111,7 @@ Result<Bytes> bytesOf(const TetMesh& mesh, const std::string& ending, const Mesh
   return meshFileBytes(fileMesh(mesh), ending);
 }
 
-/// The fields of the log's levels; of the last level also what its closing blocks hold.
+/// The fields of the log's levels. The last level also has those that its closing blocks hold.
 std::vector<ManifestField> fieldsOf(const OpenedLog& log, bool restores) {
   std::vector<ManifestField> out = log.manifest.fields;
   if (!restores || !log.file.hasClosing(ClosingKind::kOriginalCells)) return out;

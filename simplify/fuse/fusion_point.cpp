@@ -43,7 +43,7 @@ LatticePoint rounded(const Vector3& p) {
 }  // namespace
 
 // The error that the fusion adds to the mesh: how much the prey is off more than its vertices are
-// now. Only that decides; of the rest no fusion can take anything away.
+// now. Only that decides, since no fusion can reduce the rest.
 PreyQuadric FusionPointFinder::growth(const Prey& prey) const {
   PreyQuadric out = cost_.of(prey);
   for (const VertexId v : prey.vertices()) out.quadric.c -= cost_.of(v);

@@ -102,7 +102,7 @@ Status replaceLog(const EditedLog& edited, const PipelineOptions& options, Pipel
   return readBack(out.log, out.report);
 }
 
-/// The figures of the mesh are those of the sample's log. Those of the fields are counted anew.
+/// The figures of the mesh are those of the sample's log. Those of the fields are counted again.
 void countFields(PipelineOutput& out) {
   PipelineReport& report = out.report;
   LogStatistics& statistics = report.statistics;

@@ -145,7 +145,7 @@ std::uint32_t chunksWithin(std::span<const ChunkEntry> all, std::uint64_t bytes)
 }
 
 /// Cuts the log to the chunks with which the page has at most `most` bytes, `other` of them without
-/// it. Returns their number, 0 for all. The list is told.
+/// it. Returns their number, 0 for all, and notes the cut in the list.
 Result<std::uint32_t> cutLog(Bytes& content, const fs::path& path, std::uint64_t most,
                              std::uint64_t other, nlohmann::json& list) {
   const std::uint64_t room = most > other ? (most - other) / 4 * 3 : 0;

@@ -11,8 +11,8 @@
 
 namespace qtet {
 
-/// Calls visit(corners) for each face of a cell; of a curved one with its corners alone. Faces that
-/// name a point beyond mesh.points are left out.
+/// Calls visit(corners) for each face of a cell. Those of a curved cell have their corners alone.
+/// Faces that name a point beyond mesh.points are left out.
 template <class Visit>
 void forEachFace(const CellMesh& mesh, std::size_t cell, const Visit& visit) {
   const std::span<const VertexId> ids = mesh.cell(cell);

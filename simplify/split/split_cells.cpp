@@ -318,8 +318,8 @@ class Splitter {
     }
     best_ = simplices_;
     if (!best_.empty()) takeBest();
-    // VTK's own wedges are turned against its hexahedra; of what a cell's parts are the cell counts
-    // once.
+    // Counts a cell once, however many parts it was split into. VTK's own wedges are turned against
+    // its hexahedra.
     if (report_.insideOut > insideOut)
       report_.insideOut = insideOut + (shapeOf(type).corners == 6 ? 0 : 1);
     return {};

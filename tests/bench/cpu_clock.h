@@ -47,7 +47,7 @@ inline bool pinToCores(int count) {
   return sched_setaffinity(0, sizeof chosen, &chosen) == 0;
 }
 
-/// The median; of an even number of values the upper one. REQUIRES: not empty.
+/// The median, the upper one of an even number of values. REQUIRES: not empty.
 [[nodiscard]] inline double medianOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);

@@ -26,7 +26,7 @@ export function makeLog(bin, name, out, sample = [name], options = []) {
   return {name, folder, meshDigest: report.meshDigest};
 }
 
-/** Serves the mesh of a .vtu file's text as NAME, too; the server is started anew for it. */
+/** Serves the mesh of a .vtu file's text as NAME, too; the server starts again for it. */
 export async function serveMesh({server, logs, out, bin}, name, text, options = []) {
   const mesh = join(out, `${name}.vtu`);
   writeFileSync(mesh, text);

@@ -1,5 +1,5 @@
 // Every response of a running qtet-server against proto/openapi.yaml.
-//   node check.mjs --bin build/release/bin --out FOLDER      FOLDER is made anew
+//   node check.mjs --bin build/release/bin --out FOLDER      empties FOLDER first
 // Asks for everything that the description names and validates status, type, headers and JSON.
 // Fails if an answer that the description names was never seen.
 

@@ -19,8 +19,8 @@ function run(program, words) {
 }
 
 /**
- * Makes the folder `out` anew: logs/fin.qtet, other.qtet, tokens, viewer/. `bin` holds the
- * programs.
+ * Empties the folder `out` and makes logs/fin.qtet, other.qtet, tokens, viewer/ in it. `bin` holds
+ * the programs.
  */
 export function prepare({bin, out}) {
   rmSync(out, {recursive: true, force: true});

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Finds sentences in comments and documents that are read twice: those that begin with "Of" or
-"What" (but questions), and those of more than 25 words.
-    check.py [ROOT [PATH...]]"""
+"What" (but questions), those of more than 25 words, and those of the kinds in ODD.
+    check.py [ROOT [PATH...]]     0 = none; 1 = each is named
+    check.py --selftest           whether the kinds find their examples, and no others"""
 
 import pathlib
 import re
@@ -9,6 +10,45 @@ import subprocess
 import sys
 
 MOST_WORDS = 25
+
+# Kinds of sentences: what is wrong, a pattern, and examples that it has to find.
+ODD = [
+    (
+        'has a clause that begins with "of"; begin with its subject',
+        r"^[^a-z].*; of (?:the|an?|what|which|two)\b|(?:^|, |, and )of what\b",
+        [
+            "401 and 403 of a mesh; of the list (nullptr) only for a token that nobody has",
+            "of what is no JSON it says anything",
+            "The wedges are turned, and of what a cell's parts are the cell counts once",
+        ],
+    ),
+    (
+        'says "also of" something; write a sentence with "even for"',
+        r"\balso of (?:one|those)\b",
+        ["401 and 403 of a mesh, also of one that does not exist"],
+    ),
+    (
+        'begins with "From its ... on:"; begin with the verb',
+        r"^From (?:its|the|their) \w+ on:",
+        ["From its making on: after `time` what waits on the socket is cancelled"],
+    ),
+    (
+        'has "is told"; say who reports what to whom',
+        r"\b(?:is|are|was|were|be) told\b(?! apart)",
+        ["A port in use is told at once", "SIGHUP: what is wrong is told"],
+    ),
+    ('has "hold on"; write "keep"', r"\b(?:hold|holds|held) on\b", ["All that held holds on"]),
+    ('has "anew"; write "again"', r"\banew\b", ["The server is started anew"]),
+]
+# Sentences that none of the kinds finds.
+PLAIN = [
+    "SIGHUP reloads the configuration. If it is invalid, the server keeps the old one",
+    "The result is unspecified for invalid JSON",
+    "Cancels whatever waits on the socket, `time` after construction",
+    "Counts a cell once, however many parts it was split into",
+    "Refuses with 401 or 403, also for a mesh that does not exist, so that names do not leak",
+    "So many colours can be told apart",
+]
 
 CODE = (".h", ".cpp", ".c", ".ts", ".mjs", ".css")
 HASH = (".py", ".sh", ".cmake", ".txt", ".yml")
@@ -76,6 +116,21 @@ def sentences(lines):
         begin = end
 
 
+def odd(sentence):
+    return [why for why, pattern, _ in ODD if re.search(pattern, sentence)]
+
+
+def selftest():
+    """0 if every kind finds its examples, and nothing in plain sentences."""
+    missed = [(why, e) for why, _, examples in ODD for e in examples if why not in odd(e)]
+    false = [(why, sentence) for sentence in PLAIN for why in odd(sentence)]
+    for why, sentence in missed:
+        print(f"selftest: not found: {why}: {sentence}")
+    for why, sentence in false:
+        print(f"selftest: a false alarm: {why}: {sentence}")
+    return 1 if missed or false else 0
+
+
 def faults(root, paths):
     names = subprocess.run(
         ["git", "-C", root, "ls-files", "--", *paths], capture_output=True, text=True, check=True
@@ -97,12 +152,16 @@ def faults(root, paths):
                 bare = sentence.lstrip("(*_`\"'- ")
                 if re.match(r"(Of|What)\b", bare) and not question:
                     yield name, first + line, "begins with " + bare.split()[0], sentence
+                for why in odd(bare):
+                    yield name, first + line, why, sentence
                 count = len(re.sub(r"`[^`]*`|\([^()]*\)", "x", sentence).split())
                 if count > MOST_WORDS:
                     yield name, first + line, f"has {count} words", sentence
 
 
 def main():
+    if sys.argv[1:] == ["--selftest"]:
+        return selftest()
     root, *paths = sys.argv[1:] or ["."]
     found = list(faults(root, paths))
     for name, line, why, sentence in found:

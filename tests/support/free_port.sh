@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints a port of this machine that nobody listens on, for a program that must be told its port.
+# Prints a port of this machine that nobody listens on, for a program that takes one as an option.
 # The port lies below the kernel's range for outgoing connections, so none of them can take it.
 # Tests that run side by side get different ports: a file claims each port for an hour. Another
 # program may still take the port; start again with a new one then.

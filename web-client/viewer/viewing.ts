@@ -152,7 +152,7 @@ export class Viewing implements LaterHost {
     this.showRange();
   }
 
-  /** While a series plays, panels that do not show the time would be written anew for nothing. */
+  /** While a series plays, panels that do not show the time would be written again for nothing. */
   private updatePanels(): void {
     const {later, mesh, settings} = this;
     if (!later) return;

@@ -74,7 +74,7 @@ std::vector<std::int32_t> gridValue(const draco::PointAttribute& attribute, std:
   return out;
 }
 
-/// Per triangle corner, everything that a vertex carries; sorted, since Draco numbers anew.
+/// Per triangle corner, everything that a vertex carries; sorted, since Draco numbers them again.
 using Corner = std::vector<std::int32_t>;
 std::vector<std::vector<Corner>> sorted(std::vector<std::vector<Corner>> triangles) {
   for (auto& corners : triangles) std::ranges::rotate(corners, std::ranges::min_element(corners));

@@ -29,7 +29,7 @@ attack() {
   name=$1 least=$2 answered=0 attacker=
   shift 2
   while [ $answered -lt 20 ]; do
-    # The server gives up on slow clients in the end, and then it attacks anew.
+    # The server gives up on slow clients in the end, and then it attacks again.
     if ! kill -0 $attacker 2> /dev/null; then
       slowhttptest -c 300 -r 300 -l 30 "$@" > "$out/$name.txt" 2>&1 &
       attacker=$!

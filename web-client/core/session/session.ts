@@ -346,7 +346,7 @@ export class Session implements TransportHandlers {
     this.guarded(() => this.tellOfLater());
   }
 
-  /** The page is told of the manifest once the part of later instants is here. */
+  /** The page receives the manifest once the part of later instants is here. */
   private get awaitsLater(): boolean {
     return this.laterAsked && !this.manifestSent;
   }

@@ -1,5 +1,5 @@
 // The beat of the page's figures. Nobody reads figures that change faster. Each change makes the
-// browser compose the page anew, which costs slow graphics a frame: figures change together.
+// browser compose the page again, which costs slow graphics a frame: figures change together.
 
 const kBeatMs = 250;
 

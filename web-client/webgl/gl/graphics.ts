@@ -1,5 +1,5 @@
 // A WebGL 2 context. The browser may take it away and give it back; then all that was made in it
-// is gone. So whatever draws keeps its data, and makes its things anew when it needs them.
+// is gone. So whatever draws keeps its data, and makes its things again when it needs them.
 
 export interface Drawing {
   depths?: 'none' | 'tested' | 'written';
