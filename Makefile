@@ -23,7 +23,7 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .PHONY: help setup packages build build-checked demo demo-port demo-log test test-units
 .PHONY: test-system check
-.PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
+.PHONY: soak format format-check lint house tidy sanitize fuzz fresh bench results sizes rate deb test-deb
 .PHONY: bench-server wheel release gallery clean
 .DEFAULT_GOAL := help
 
@@ -39,6 +39,7 @@ help:
 	make format-check          fail where that would change a file, or a line is over 100 columns
 	make tidy                  clang-tidy over what changed since the merge base or in 20 commits
 	make lint                  the linter of TypeScript, with types
+	make house                 rules that need no build: arrows between rooms, plain words, packages
 	make fuzz                  run each fuzzer for 20 seconds, built with sanitizers
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make fresh SUITE=trixie    continuous integration in a new Debian (needs root and mmdebstrap);
@@ -295,6 +296,12 @@ format-check: setup web-packages
 
 lint: setup web-packages
 	@cd web-client && npm run --silent typecheck && npm run --silent lint
+
+# The rules of the house that need no build: arrows between rooms, plain words, packages.
+house:
+	@tests/arrows/check.sh .
+	tests/prose/check.py .
+	tests/packages/check.py . || [[ $$? == 77 ]]
 
 .PHONY: web-packages
 web-packages:

@@ -4,9 +4,9 @@
 #include <span>
 
 #include "proto/number_text.h"
-#include "simplify/read/bad_file.h"
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
+#include "simplify/read/options/bad_file.h"
 #include "simplify/read/parts/file_series.h"
 #include "simplify/read/parts/named_files.h"
 #include "simplify/read/parts/piece_files.h"

@@ -33,41 +33,33 @@ isIn() { # word list...
   return 1
 }
 
-# The C++ sources of a folder, one a line; nothing that was built or fetched.
-sourcesOf() {
-  find "$1" \( -name node_modules -o -name dist \) -prune -o \
-    -type f -regex '.*[.]\(h\|hpp\|c\|cc\|cpp\|inc\)' -print | sort
-}
-
-# Lines "number:name" of a file's includes; $2 is the opening delimiter.
-includesOf() {
+# Lines "file line kind name", one an include; kind is its opening delimiter. Nothing that was
+# built or fetched. One call for all files: most of the time would be that of starting programs.
+includes() {
   local include='#[[:space:]]*include'
-  sed -nE "/^[[:space:]]*$include/{=;s/^[^#]*$include[[:space:]]*$2([^\">]+)[\">].*/\\1/p}" "$1" |
-    awk '/^[0-9]+$/ {line = $0; next} {print line ":" $0}'
+  find "$@" \( -name node_modules -o -name dist \) -prune -o \
+    -type f -regex '.*[.]\(h\|hpp\|c\|cc\|cpp\|inc\)' -print | sort |
+    xargs -r grep -HnE "^[[:space:]]*$include" |
+    sed -nE "s/^([^:]+):([0-9]+):[^#]*$include[[:space:]]*([\"<])([^\">]+)[\">].*/\1 \2 \3 \4/p"
 }
 
-checkQuoted() { # file room
-  local file=$1 room=$2 line name target
-  while IFS=: read -r line name; do
-    target=${name%%/*}
-    if [[ $name != */* || ! -e $name ]]; then
-      complain "$file:$line: \"$name\" is no file of the repository;" \
-        "write includes from the root, like \"codec/mesh.h\""
-    elif [[ $target != "$room" ]] && ! isIn "$target" ${allowed[$room]}; then
-      complain "$file:$line: $room/ must not include \"$name\";" \
-        "it may use only: $room ${allowed[$room]}"
-    fi
-  done < <(includesOf "$file" '"')
+checkQuoted() { # file line name
+  local room=${1%%/*} target=${3%%/*}
+  if [[ $3 != */* || ! -e $3 ]]; then
+    complain "$1:$2: \"$3\" is no file of the repository;" \
+      "write includes from the root, like \"codec/mesh.h\""
+  elif [[ $target != "$room" ]] && ! isIn "$target" ${allowed[$room]}; then
+    complain "$1:$2: $room/ must not include \"$3\";" \
+      "it may use only: $room ${allowed[$room]}"
+  fi
 }
 
-checkForeign() { # file room
-  local file=$1 room=$2 line name
-  while IFS=: read -r line name; do
-    if [[ $name =~ ^(${foreign[$room]}) ]]; then
-      complain "$file:$line: $room/ must not include <$name>;" \
-        "move what needs it to the room that may"
-    fi
-  done < <(includesOf "$file" '<')
+checkForeign() { # file line name
+  local room=${1%%/*}
+  if [[ $3 =~ ^(${foreign[$room]}) ]]; then
+    complain "$1:$2: $room/ must not include <$3>;" \
+      "move what needs it to the room that may"
+  fi
 }
 
 checkLinks() { # room: a library linked is an arrow too
@@ -81,36 +73,28 @@ checkLinks() { # room: a library linked is an arrow too
     grep -noE 'qtet::(proto|codec|simplify|server)\b' | sed 's/qtet:://' || true)
 }
 
+rooms=()
 for room in proto codec simplify server; do
   [[ -d $room ]] || continue
-  while IFS= read -r file; do
-    checkQuoted "$file" "$room"
-    checkForeign "$file" "$room"
-  done < <(sourcesOf "$room")
+  rooms+=("$room")
   checkLinks "$room"
 done
+cpp=$([[ ${#rooms[@]} == 0 ]] || includes "${rooms[@]}")
+while read -r file line kind name; do
+  case $kind in
+    '"') checkQuoted "$file" "$line" "$name" ;;
+    '<') checkForeign "$file" "$line" "$name" ;;
+  esac
+done <<<"$cpp"
 
 # The viewer's own C++, if any, stands on nothing but the compiled codec.
 if [[ -d web-client ]]; then
-  while IFS= read -r file; do
-    while IFS=: read -r line name; do
-      isIn "${name%%/*}" proto codec simplify server &&
-        complain "$file:$line: web-client/ must not include \"$name\";" \
-          "it uses the codec through codec/api/wasm_api.h's exports"
-    done < <(includesOf "$file" '"')
-  done < <(sourcesOf web-client)
+  while read -r file line kind name; do
+    [[ $kind != '"' ]] || ! isIn "${name%%/*}" proto codec simplify server ||
+      complain "$file:$line: web-client/ must not include \"$name\";" \
+        "it uses the codec through codec/api/wasm_api.h's exports"
+  done < <(includes web-client)
 fi
-
-# Lines "from to": which file includes or imports which.
-cppArrows() {
-  local room
-  for room in proto codec simplify server; do
-    [[ -d $room ]] || continue
-    sourcesOf "$room" | while IFS= read -r file; do
-      includesOf "$file" '"' | while IFS=: read -r _ name; do printf '%s %s\n' "$file" "$name"; done
-    done
-  done
-}
 
 # The page's own modules; a worker's address (new URL) is no import, so it makes no arrow.
 typescriptArrows() {
@@ -144,7 +128,8 @@ folderArrows() { awk '{
     if (from != to) print from, to
   }' | sort -u; }
 
-arrows=$(cppArrows)
+# Lines "from to": which file includes or imports which.
+arrows=$(awk '$3 == "\"" {print $1, $4}' <<<"$cpp")
 checkCircles "these files" "move what they share into a file of its own" <<<"$arrows"
 checkCircles "these folders" "move what they share into the lower one" \
   < <(folderArrows <<<"$arrows")

@@ -1,8 +1,8 @@
 #include "simplify/read/foam/read_foam.h"
 
-#include "simplify/read/bad_file.h"
 #include "simplify/read/foam/foam_fields.h"
 #include "simplify/read/foam/poly_mesh.h"
+#include "simplify/read/options/bad_file.h"
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/process/guarded_folder.h"
 #include "simplify/read/process/inflate_file.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-#include "simplify/read/bad_file.h"
+#include "simplify/read/options/bad_file.h"
 #include "simplify/read/parts/xml_tree.h"
 
 namespace qtet {

@@ -15,7 +15,7 @@
 #include <exception>
 #include <new>
 
-#include "simplify/read/bad_file.h"
+#include "simplify/read/options/bad_file.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/step_reports.h"
 #include "simplify/read/vtk/vtk_cells.h"

@@ -23,7 +23,7 @@
 #include <type_traits>
 
 #include "codec/coding/float_bits.h"
-#include "simplify/read/bad_file.h"
+#include "simplify/read/options/bad_file.h"
 #include "simplify/read/vtu/grid_parts.h"
 #include "simplify/split/higher_cells.h"
 
