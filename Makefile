@@ -24,7 +24,7 @@ SHELL := /bin/bash
 .PHONY: help setup packages build build-checked demo demo-port demo-log test test-units
 .PHONY: test-system check
 .PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
-.PHONY: bench-server wheel release gallery clean
+.PHONY: same-bytes bench-server wheel release gallery clean
 .DEFAULT_GOAL := help
 
 help:
@@ -39,6 +39,8 @@ help:
 	make format-check          fail where that would change a file, or a line is over 100 columns
 	make tidy                  clang-tidy over what changed since the merge base or in 20 commits
 	make lint                  the linter of TypeScript, with types
+	make same-bytes            the logs of tests/same_bytes.txt from every build, processor and number
+	                           of threads; WRITE=1 writes the table anew
 	make fuzz                  run each fuzzer for 20 seconds, built with sanitizers
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make fresh SUITE=trixie    continuous integration in a new Debian (needs root and mmdebstrap);
@@ -306,6 +308,20 @@ TIDY_SINCE ?=
 tidy: setup
 	@$(call configure,tidy,tidy)
 	.ci/tidy.py build/tidy $(JOBS) $(TIDY_SINCE)
+
+# Doors to the same bytes; that of another processor where its compiler and qemu are here.
+WRITE :=
+same-bytes: TARGETS := --target same_bytes $(if $(WRITE),,qtet_viewer)
+same-bytes: CHECKED_TARGETS := --target same_bytes
+same-bytes: build $(if $(WRITE),,build-checked)
+	@if [[ -n "$(WRITE)" ]]; then
+	  exec tests/same_bytes/doors.sh anew $(BUILD)/bin/same_bytes
+	fi
+	if command -v aarch64-linux-gnu-g++ >/dev/null; then
+	  grep -q '^QTET_AARCH64_CXX:.*=/' $(BUILD)/CMakeCache.txt || cmake --preset release
+	  cmake --build --preset release --parallel $(JOBS) --target same_bytes_aarch64
+	fi
+	tests/same_bytes/doors.sh all $(BUILD) $(CHECKED)
 
 # A fuzzer's finds stay in build/checked/fuzz/found.
 fuzz: CHECKED_TARGETS := --target qtet_fuzzers

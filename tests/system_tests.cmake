@@ -28,11 +28,8 @@ foreach(script IN ITEMS view pipes completion)
   qtet_system_test(${script} ROOM simplify
     COMMAND ${here}/simplify/commands/${script}.sh $<TARGET_FILE:qtet> ${out}/${script})
 endforeach()
-if(NOT QTET_SANITIZE)
-  qtet_system_test(same_bytes ROOM simplify COMMAND ${here}/simplify/commands/same_bytes.sh
-    $<TARGET_FILE:qtet> ${PROJECT_SOURCE_DIR}/build/checked/bin/qtet ${here}/golden
-    ${out}/same_bytes)
-endif()
+qtet_system_test(golden ROOM codec COMMAND ${here}/golden/verify.sh $<TARGET_FILE:qtet>
+  ${here}/golden)
 foreach(script IN ITEMS slow_clients docker_health metrics)
   qtet_system_test(${script} ROOM server
     COMMAND ${here}/server/program/${script}.sh ${bin} ${out}/${script})
