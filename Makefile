@@ -24,7 +24,7 @@ SHELL := /bin/bash
 .PHONY: help setup packages build build-checked demo demo-port demo-log test test-units
 .PHONY: test-system check
 .PHONY: soak format format-check lint tidy sanitize fuzz fresh bench results sizes rate deb test-deb
-.PHONY: same-bytes bench-server wheel release gallery clean
+.PHONY: same-bytes guard bench-server wheel release gallery clean
 .DEFAULT_GOAL := help
 
 help:
@@ -56,6 +56,7 @@ help:
 	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root), and
 	                           fetch the sources that the browser's simplifier is compiled from
 	make bench                 build and run the benchmarks
+	make guard BASE=COMMIT     fail where simplifying, decoding or serving became slower than COMMIT
 	make bench-server          qtet-server beside nginx: the table of tests/bench/SERVER.md made anew
 	make results               compare with VTK's decimation: tests/bench/RESULTS.md
 	make sizes                 tests/bench/SIZES.md made anew: to the byte
@@ -378,6 +379,13 @@ bench: setup build
 	  echo "== $$program"
 	  "$$program"
 	done
+
+# Whether this tree is slower than another commit, which is built below build/guard.
+BASE ?=
+guard: TARGETS := --target qtet qtet-server web-client/qtet-codec.wasm
+guard: setup web-packages build
+	@[[ -n "$(BASE)" ]] || { echo "guard: give BASE=COMMIT, to compare with" >&2; exit 1; }
+	tests/bench/guard.py --base "$(BASE)" --jobs $(JOBS)
 
 # The table of tests/bench/SERVER.md. Counts on a quiet machine only.
 bench-server: TARGETS := --target qtet-server server_log

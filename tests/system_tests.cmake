@@ -162,7 +162,7 @@ function(qtet_self_test name paths)
 endfunction()
 qtet_self_test(arrows.selftest tests/arrows ${here}/arrows/selftest.sh)
 if(QTET_PYTHON)
-  foreach(script IN ITEMS results sizes server_bench)
+  foreach(script IN ITEMS guard results sizes server_bench)
     qtet_self_test(${script} "tests/bench/${script}.py;tests/bench/${script}_test.py"
       ${QTET_PYTHON} ${here}/bench/${script}_test.py)
   endforeach()
