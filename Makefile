@@ -23,8 +23,8 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .PHONY: help setup packages build build-checked demo demo-port demo-log test test-units
 .PHONY: test-system check
-.PHONY: soak format format-check lint house tidy sanitize fuzz fresh bench results sizes rate deb test-deb
-.PHONY: bench-server wheel release gallery clean
+.PHONY: soak format format-check lint house tidy sanitize fuzz fresh bench results sizes rate deb
+.PHONY: test-deb same-bytes guard bench-server wheel release gallery clean
 .DEFAULT_GOAL := help
 
 help:
@@ -40,6 +40,8 @@ help:
 	make tidy                  clang-tidy over what changed since the merge base or in 20 commits
 	make lint                  the linter of TypeScript, with types
 	make house                 rules that need no build: arrows between rooms, plain words, packages
+	make same-bytes            the logs of tests/same_bytes.txt from every build, processor and number
+	                           of threads; WRITE=1 writes the table anew
 	make fuzz                  run each fuzzer for 20 seconds, built with sanitizers
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make fresh SUITE=trixie    continuous integration in a new Debian (needs root and mmdebstrap);
@@ -55,6 +57,7 @@ help:
 	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root), and
 	                           fetch the sources that the browser's simplifier is compiled from
 	make bench                 build and run the benchmarks
+	make guard BASE=COMMIT     fail where simplifying, decoding or serving became slower than COMMIT
 	make bench-server          qtet-server beside nginx: the table of tests/bench/SERVER.md made anew
 	make results               compare with VTK's decimation: tests/bench/RESULTS.md
 	make sizes                 tests/bench/SIZES.md made anew: to the byte
@@ -300,8 +303,8 @@ lint: setup web-packages
 # The rules of the house that need no build: arrows between rooms, plain words, packages.
 house:
 	@tests/arrows/check.sh .
-	tests/prose/check.py .
-	tests/packages/check.py . || [[ $$? == 77 ]]
+	python3 tests/prose/check.py .
+	python3 tests/packages/check.py . || [[ $$? == 77 ]]
 
 .PHONY: web-packages
 web-packages:
@@ -316,6 +319,20 @@ TIDY_SINCE ?=
 tidy: setup
 	@$(call configure,tidy,tidy)
 	.ci/tidy.py build/tidy $(JOBS) $(TIDY_SINCE)
+
+# Doors to the same bytes; that of another processor where its compiler and qemu are here.
+WRITE :=
+same-bytes: TARGETS := --target same_bytes $(if $(WRITE),,qtet_viewer)
+same-bytes: CHECKED_TARGETS := --target same_bytes
+same-bytes: build $(if $(WRITE),,build-checked)
+	@if [[ -n "$(WRITE)" ]]; then
+	  exec tests/same_bytes/doors.sh anew $(BUILD)/bin/same_bytes
+	fi
+	if command -v aarch64-linux-gnu-g++ >/dev/null; then
+	  grep -q '^QTET_AARCH64_CXX:.*=/' $(BUILD)/CMakeCache.txt || cmake --preset release
+	  cmake --build --preset release --parallel $(JOBS) --target same_bytes_aarch64
+	fi
+	tests/same_bytes/doors.sh all $(BUILD) $(CHECKED)
 
 # A fuzzer's finds stay in build/checked/fuzz/found.
 fuzz: CHECKED_TARGETS := --target qtet_fuzzers
@@ -372,6 +389,13 @@ bench: setup build
 	  echo "== $$program"
 	  "$$program"
 	done
+
+# Whether this tree is slower than another commit, which is built below build/guard.
+BASE ?=
+guard: TARGETS := --target qtet qtet-server web-client/qtet-codec.wasm
+guard: setup web-packages build
+	@[[ -n "$(BASE)" ]] || { echo "guard: give BASE=COMMIT, to compare with" >&2; exit 1; }
+	tests/bench/guard.py --base "$(BASE)" --jobs $(JOBS)
 
 # The table of tests/bench/SERVER.md. Counts on a quiet machine only.
 bench-server: TARGETS := --target qtet-server server_log

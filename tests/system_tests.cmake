@@ -28,11 +28,8 @@ foreach(script IN ITEMS view pipes completion)
   qtet_system_test(${script} ROOM simplify
     COMMAND ${here}/simplify/commands/${script}.sh $<TARGET_FILE:qtet> ${out}/${script})
 endforeach()
-if(NOT QTET_SANITIZE)
-  qtet_system_test(same_bytes ROOM simplify COMMAND ${here}/simplify/commands/same_bytes.sh
-    $<TARGET_FILE:qtet> ${PROJECT_SOURCE_DIR}/build/checked/bin/qtet ${here}/golden
-    ${out}/same_bytes)
-endif()
+qtet_system_test(golden ROOM codec COMMAND ${here}/golden/verify.sh $<TARGET_FILE:qtet>
+  ${here}/golden)
 foreach(script IN ITEMS slow_clients docker_health metrics)
   qtet_system_test(${script} ROOM server
     COMMAND ${here}/server/program/${script}.sh ${bin} ${out}/${script})
@@ -178,7 +175,7 @@ function(qtet_self_test name paths)
 endfunction()
 qtet_self_test(arrows.selftest tests/arrows ${here}/arrows/selftest.sh)
 if(QTET_PYTHON)
-  foreach(script IN ITEMS results sizes server_bench)
+  foreach(script IN ITEMS guard results sizes server_bench)
     qtet_self_test(${script} "tests/bench/${script}.py;tests/bench/${script}_test.py"
       ${QTET_PYTHON} ${here}/bench/${script}_test.py)
   endforeach()

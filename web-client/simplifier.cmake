@@ -89,20 +89,8 @@ list(REMOVE_ITEM own ${numbers})
 qtet_simplifier_object(${QTET_WASM_CXX} ${numbers} ${own_flags} -O3)
 qtet_simplifier_objects(${QTET_WASM_CXX} small "${own}" ${own_flags} -Os)
 
-# Draco without the decoding of meshes, as the values of a log are point clouds.
-file(GLOB draco_sources
-  ${draco}/src/draco/attributes/*.cc ${draco}/src/draco/compression/*.cc
-  ${draco}/src/draco/compression/attributes/*.cc
-  ${draco}/src/draco/compression/attributes/prediction_schemes/*.cc
-  ${draco}/src/draco/compression/bit_coders/*.cc ${draco}/src/draco/compression/entropy/*.cc
-  ${draco}/src/draco/compression/mesh/*_encoder*.cc
-  ${draco}/src/draco/compression/point_cloud/*.cc
-  ${draco}/src/draco/compression/point_cloud/algorithms/*.cc ${draco}/src/draco/core/*.cc
-  ${draco}/src/draco/mesh/mesh.cc ${draco}/src/draco/mesh/mesh_attribute_corner_table.cc
-  ${draco}/src/draco/mesh/corner_table.cc ${draco}/src/draco/mesh/mesh_misc_functions.cc
-  ${draco}/src/draco/metadata/*.cc
-  ${draco}/src/draco/point_cloud/*.cc)
-list(FILTER draco_sources EXCLUDE REGEX "_test|test_|draco_tests")
+include(draco_sources.cmake)
+qtet_draco_sources(draco_sources ${draco})
 qtet_simplifier_objects(${QTET_WASM_CXX} draco "${draco_sources}" -std=c++17 -O2 -fignore-exceptions
   -fno-rtti -w ${libraries_flags})
 

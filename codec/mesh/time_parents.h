@@ -1,5 +1,5 @@
-// From which other instants of the same field the values of one are predicted (FORMAT.md, "Series").
-// A log then holds what is left, coded as a field of its own.
+// The instants that the values of another one of the same field are predicted from (FORMAT.md,
+// "Series"). A log then holds what is left, coded as a field of its own.
 #pragma once
 
 #include <array>

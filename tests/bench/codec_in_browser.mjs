@@ -7,6 +7,7 @@ import {createRequire} from 'node:module';
 import {readFileSync} from 'node:fs';
 import {basename} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {measuringScript} from './parts/measuring_script.mjs';
 
 const kRuns = 7;
 const core = new URL('../../web-client/core/', import.meta.url);
@@ -21,73 +22,6 @@ if (!args.includes('--wasm') || logs.length === 0) {
   process.exit(2);
 }
 
-const page = `
-import {headBytesOf} from './transport/block_source';
-import {WasmCodec, kDracoCodec} from './decode/codec';
-import {kDraco} from './decode/draco';
-import {readManifest} from './protocol/manifest';
-import {readValueBlock} from './decode/value_block';
-const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-
-globalThis.measure = async (module, log, runs) => {
-  const file = bytesOf(log);
-  const compiled = await WebAssembly.compile(bytesOf(module));
-  let best = {values: Infinity, all: Infinity};
-  for (let run = 0; run < runs; ++run) {
-    const codec = new WasmCodec(compiled);
-    const raw = codec.wasm;
-    const head = file.subarray(0, headBytesOf(file));
-    codec.open(head);
-    const chunks = codec.chunkCount;
-    const manifest = readManifest(head, (bytes, columns) => codec.levelColumns(bytes, columns));
-    const components = [0, 3, ...manifest.fields.map((field) => field.components)];
-    const fields = components.length - 2;
-    let values = 0, integers = 0, valueBytes = 0;
-    const begin = performance.now();
-    for (let chunk = 0; chunk < chunks; ++chunk) {
-      const block = (part) => {
-        const offset = codec.blockOffset(chunk, part);
-        return file.subarray(offset, offset + codec.blockSize(chunk, part));
-      };
-      const valuesOf = (part) => {
-        const bytes = block(part);
-        integers += codec.blockValues(chunk, part) * components[part];
-        valueBytes += bytes.length;
-        const from = performance.now();
-        const at = {chunk, part, components: components[part]};
-        const out = readValueBlock(codec, kDraco, at, bytes);
-        if (codec.blockCodec(chunk, part) === kDracoCodec) values += performance.now() - from;
-        return out;
-      };
-      for (let part = 0; part < components.length; ++part) {
-        codec.checkBlock(chunk, part, block(part));
-      }
-      codec.apply(chunk, block(0), valuesOf(1));
-      for (let f = 0; f < fields; ++f) codec.applyField(f, chunk, valuesOf(2 + f));
-    }
-    const all = performance.now() - begin;
-    best = {
-      values: Math.min(best.values, values),
-      all: Math.min(best.all, all),
-      cells: codec.tetrahedronCount,
-      integers,
-      valueBytes,
-      memory: raw.memory.buffer.byteLength,
-      digest: codec.digest(),
-    };
-  }
-  return best;
-};
-`;
-
-const {build} = require('esbuild');
-const bundled = await build({
-  stdin: {contents: page, resolveDir: fileURLToPath(core), loader: 'ts'},
-  bundle: true,
-  write: false,
-  format: 'iife',
-  target: 'es2022',
-});
 const launch = [];
 if (process.getuid?.() === 0) launch.push('--no-sandbox');
 const browser = await chromium.launch({
@@ -96,7 +30,7 @@ const browser = await chromium.launch({
   args: launch,
 });
 const tab = await browser.newPage();
-await tab.addScriptTag({content: bundled.outputFiles[0].text});
+await tab.addScriptTag({content: await measuringScript(fileURLToPath(core))});
 console.log(
   '| log | value blocks | Draco alone | everything | tetrahedra a second | memory of the module |',
 );

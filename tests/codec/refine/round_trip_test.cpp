@@ -164,18 +164,6 @@ TEST_P(RoundTrip, aCellHasItsValueFromTheFirstPrefixThatHoldsIt) {
   }
 }
 
-TEST_P(RoundTrip, theSameInputGivesTheSameBytes) {
-  FusionOptions options;
-  options.targetRatio = 0;
-  LogWriterOptions writer;
-  writer.chunkBytes = 160;
-  const auto history = simplify(mesh_, options);
-  ASSERT_TRUE(history);
-  const auto log = encodeLog(*history, writer);
-  ASSERT_TRUE(log);
-  EXPECT_EQ(log->bytes, bytes_);
-}
-
 INSTANTIATE_TEST_SUITE_P(
     Shapes, RoundTrip,
     ::testing::Values(Shape{"solid", everything, 1}, Shape{"solidAgain", everything, 2},

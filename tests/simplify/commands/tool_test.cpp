@@ -514,12 +514,6 @@ TEST_F(Tool, verifyFindsAFlippedByteAnywhere) {
   EXPECT_EQ(run("verify cut.qtet").code, 1);
 }
 
-TEST_F(Tool, theSameInputGivesTheSameBytes) {
-  makeBoxLog();
-  ASSERT_EQ(run("simplify box.vtu -o again.qtet --threads 4").code, 0);
-  EXPECT_EQ(contentOf(folder_ / "box.qtet"), contentOf(folder_ / "again.qtet"));
-}
-
 TEST_F(Tool, fieldsCanBeLeftOut) {
   ASSERT_EQ(run("sample box -o box.vtu").code, 0);
   ASSERT_EQ(run("simplify box.vtu -o none.qtet --fields none").code, 0);

@@ -143,15 +143,12 @@ TEST_P(AsThePaper, theFiguresAddUp) {
       << "the heap was not empty at the end";
 }
 
-TEST_P(AsThePaper, theSameMeshGivesTheSameLogWhichHoldsTheWholeMesh) {
+TEST_P(AsThePaper, theLastLevelIsTheWholeMesh) {
   const LatticeMesh mesh = GetParam().mesh();
-  const PaperFusion one = fused(mesh), other = fused(mesh);
-  const auto same = sameMesh(meshOfHistory(one.history, one.history.levels), mesh);
+  const PaperFusion paper = fused(mesh);
+  const auto same = sameMesh(meshOfHistory(paper.history, paper.history.levels), mesh);
   EXPECT_TRUE(same) << same.error().text();
-  const auto log = encodeLog(one.history, {}), again = encodeLog(other.history, {});
-  ASSERT_TRUE(log) << log.error().text();
-  ASSERT_TRUE(again);
-  EXPECT_EQ(log->bytes, again->bytes);
+  EXPECT_TRUE(encodeLog(paper.history, {}));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -117,13 +117,6 @@ TEST_F(SeriesPipeline, instantsBelowTheRoomOfTheSampleHaveTheirOwnStep) {
   EXPECT_NE(jump->step, made.report.manifest.fields[0].step);
 }
 
-TEST_F(SeriesPipeline, givesTheSameBytesTwiceAndWithTwoThreads) {
-  PipelineOptions two;
-  two.fusion.threads = 2;
-  const Bytes once = make().value().log.bytes().value();
-  EXPECT_EQ(once, make(two).value().log.bytes().value());
-}
-
 /// A static field at the last level: what it is, and its integers by place, or sorted of cells.
 struct Finest {
   FieldInfo info;
