@@ -41,7 +41,7 @@ help:
 	make lint                  the linter of TypeScript, with types
 	make house                 rules that need no build: arrows between rooms, plain words, packages
 	make same-bytes            the logs of tests/same_bytes.txt from every build, processor and number
-	                           of threads; WRITE=1 writes the table anew
+	                           of threads; WRITE=1 writes the table again
 	make fuzz                  run each fuzzer for 20 seconds, built with sanitizers
 	make sanitize              every test under ASan and UBSan, then under TSan, and how long that took
 	make fresh SUITE=trixie    continuous integration in a new Debian (needs root and mmdebstrap);
@@ -326,7 +326,7 @@ same-bytes: TARGETS := --target same_bytes $(if $(WRITE),,qtet_viewer)
 same-bytes: CHECKED_TARGETS := --target same_bytes
 same-bytes: build $(if $(WRITE),,build-checked)
 	@if [[ -n "$(WRITE)" ]]; then
-	  exec tests/same_bytes/doors.sh anew $(BUILD)/bin/same_bytes
+	  exec tests/same_bytes/doors.sh write $(BUILD)/bin/same_bytes
 	fi
 	if command -v aarch64-linux-gnu-g++ >/dev/null; then
 	  grep -q '^QTET_AARCH64_CXX:.*=/' $(BUILD)/CMakeCache.txt || cmake --preset release

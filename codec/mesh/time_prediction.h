@@ -8,7 +8,7 @@
 
 namespace qtet {
 
-/// What is restored stays within this on both sides of 0, as far as Draco codes integers.
+/// A restored value stays within this on both sides of 0, as far as Draco codes integers.
 inline constexpr std::int64_t kMaxRestored = std::int64_t{1} << 30;
 
 /// The weighted sum of the parents' values, which `at(field)` gives. Where one is missing, it is

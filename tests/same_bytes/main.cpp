@@ -1,8 +1,8 @@
 // Makes the logs of tests/same_bytes.txt in memory: the same bytes from every compiler, processor
 // and number of threads. It needs the rooms proto, codec and simplify alone, no reader and no VTK,
 // so that a cross compiler builds it.
-//   same_bytes [--threads N]      prints a line a log: its SHA-256, and the command that makes it
-//   same_bytes --meshes FOLDER    writes the meshes as .vtu, for what simplifies files
+//   same_bytes [--threads N]      Prints a line a log: its SHA-256, and the command that makes it.
+//   same_bytes --meshes FOLDER    Writes the meshes as .vtu, for programs that simplify files.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

@@ -28,7 +28,7 @@ import {
 } from './fakes';
 
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: 40};
-/** Of more bytes than the first request and the next ones ask for. */
+/** It has more bytes than the first request and the next ones ask for. */
 const kLongLog = {...kLog, blockBytes: 1000};
 const kParts = 4;
 const kSha = 'a'.repeat(64);

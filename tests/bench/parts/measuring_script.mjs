@@ -1,4 +1,4 @@
-// What measures decoding, as a script for a page or for node. It is made of the sources of a
+// Measures decoding, as a script for a page or for node. It is made of the sources of a
 // web-client/core, so that two versions can be compared.
 import {createRequire} from 'node:module';
 

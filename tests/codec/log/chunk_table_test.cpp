@@ -7,7 +7,7 @@
 namespace qtet {
 namespace {
 
-/// What is wrong with two later blocks of these sizes in a chunk whose row says `bytes`.
+/// The error of two later blocks of these sizes in a chunk whose row says `bytes`.
 std::optional<ErrorCode> errorOfLater(std::uint32_t first, std::uint32_t second,
                                       std::uint64_t bytes) {
   ChunkEntry written, row;

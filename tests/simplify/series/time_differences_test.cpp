@@ -188,7 +188,7 @@ TEST_F(TimeDifferences, instantsOfAnotherScaleDoNotPredict) {
       EXPECT_NE(parent.field, 0) << field.name;
 }
 
-/// The anchors that an anchor is decoded from, itself among them, at most: in a series of equal
+/// The anchors that an anchor is decoded from, itself among them, at most. The series has equal
 /// instants, where each may be predicted from the one before.
 std::size_t longestRowOfAnchors(std::size_t anchors) {
   FusionHistory history;
