@@ -326,7 +326,7 @@ same-bytes: TARGETS := --target same_bytes $(if $(WRITE),,qtet_viewer)
 same-bytes: CHECKED_TARGETS := --target same_bytes
 same-bytes: build $(if $(WRITE),,build-checked)
 	@if [[ -n "$(WRITE)" ]]; then
-	  exec tests/same_bytes/doors.sh write $(BUILD)/bin/same_bytes
+	  exec tests/same_bytes/doors.sh --write $(BUILD)/bin/same_bytes
 	fi
 	if command -v aarch64-linux-gnu-g++ >/dev/null; then
 	  grep -q '^QTET_AARCH64_CXX:.*=/' $(BUILD)/CMakeCache.txt || cmake --preset release

@@ -2,7 +2,7 @@
 # Compares the logs that a program makes with tests/same_bytes.txt, line by line.
 #   doors.sh DOOR COMMAND...        0: the same. 1: differs, with the lines that do (- table, + made).
 #   doors.sh all BUILD CHECKED      Compares every door that is built; "skipped" names the others.
-#   doors.sh write COMMAND...       Writes the table again.
+#   doors.sh --write COMMAND...       Writes the table again.
 set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 table=$here/../same_bytes.txt
@@ -20,7 +20,7 @@ door() {
 }
 
 case $1 in
-  write)
+  --write)
     made=$("${@:2}")
     printf '%s\n%s\n' "$head" "$made" >"$table"
     echo "same_bytes: wrote $(wc -l <<<"$made") lines" ;;
