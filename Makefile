@@ -130,11 +130,11 @@ packages:
 PRESET := release
 define configure
 cache=build/$(1)/CMakeCache.txt
-if ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$$(pwd -P)" "$$cache"; then
-  cmake --preset $(2) --fresh
-elif [[ ! -f build/$(1)/build.ninja || CMakePresets.json -nt build/$(1)/build.ninja ]] ||
+if ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$$(pwd -P)" "$$cache" ||
+  [[ ! -f build/$(1)/build.ninja || CMakePresets.json -nt build/$(1)/build.ninja ]] ||
   { [[ $(2) != demo ]] && grep -qx 'QTET_TESTS:[A-Z]*=OFF' "$$cache"; }; then
-  cmake --preset $(2)
+  # Fresh, since CMake forgets a preset's variables where its compiler has changed.
+  cmake --preset $(2) --fresh
 fi
 endef
 build:
