@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Compares the logs that a program makes with tests/same_bytes.txt, line by line.
-#   doors.sh DOOR COMMAND...        0: the same. 1: differs, with the lines that do (- table, + made).
-#   doors.sh all BUILD CHECKED      Compares every door that is built; "skipped" names the others.
-#   doors.sh --write COMMAND...       Writes the table again.
+#   doors.sh DOOR COMMAND...       0: the same. 1: differs, with those lines (- table, + made).
+#   doors.sh all BUILD CHECKED     Compares every door that is built; "skipped" names the others.
+#   doors.sh --write COMMAND...    Writes the table again.
 set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 table=$here/../same_bytes.txt
 head='# SHA-256 of logs, the same from every compiler, processor and number of threads.
-# `make same-bytes` compares; `make same-bytes WRITE=1` writes it again, after a change that means to
-# make other logs. Lines are commands of qtet, for the meshes of `same_bytes --meshes FOLDER`.'
+# `make same-bytes` compares; `make same-bytes WRITE=1` writes it again, after a change that means
+# to make other logs. Lines are commands of qtet, for the meshes of `same_bytes --meshes FOLDER`.'
 
 door() {
   local name=$1 start=$SECONDS made

@@ -94,7 +94,7 @@ export interface FakeLog {
   /** They come after the point fields. */
   cellFields?: string[];
   chunks: number;
-  /** The bytes of every block; without it, kFakeBlockBytes. A long log of few chunks needs little time. */
+  /** The bytes of every block; without it, kFakeBlockBytes. Few chunks need little time. */
   blockBytes?: number;
 }
 
