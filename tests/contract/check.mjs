@@ -330,6 +330,10 @@ async function checkWriting(expect, mesh) {
     token,
     readFileSync(new URL('../golden/must-fail/bad-value.structure-of-noise.qtet', import.meta.url)),
   );
+  // a level that its kind of file cannot hold
+  await put(201, '/v1/meshes/up-long', token, readFileSync(join(options.out, 'long.qtet')));
+  const long = JSON.parse((await expect(200, 'GET', '/v1/meshes/up-long')).body);
+  await expect(422, 'GET', `/v1/logs/${long.digest}/levels/0.msh`);
   await put(412, '/v1/meshes/up', {...token, 'if-match': '*'});
   await put(400, '/v1/meshes/up?digest=1', token);
   await put(202, `/v1/meshes/up?digest=${digest}`, range(0, half - 1), other.subarray(0, half));

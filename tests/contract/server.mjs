@@ -18,9 +18,26 @@ function run(program, words) {
   if (done.status !== 0) throw new Error(`${program} ${words.join(' ')}: ${done.stderr}`);
 }
 
+/** A cell with a field whose name is longer than a .msh takes. */
+const kLongNamed = `# vtk DataFile Version 3.0
+one cell
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 4 float
+0 0 0 1 0 0 0 1 0 0 0 1
+CELLS 1 5
+4 0 1 2 3
+CELL_TYPES 1
+10
+POINT_DATA 4
+SCALARS ${'n'.repeat(253)} float
+LOOKUP_TABLE default
+1 2 3 4
+`;
+
 /**
- * Empties the folder `out` and makes logs/fin.qtet, other.qtet, tokens, viewer/ in it. `bin` holds
- * the programs.
+ * Empties the folder `out` and makes logs/fin.qtet, other.qtet, long.qtet, tokens, viewer/ in it.
+ * `bin` holds the programs.
  */
 export function prepare({bin, out}) {
   rmSync(out, {recursive: true, force: true});
@@ -29,6 +46,8 @@ export function prepare({bin, out}) {
   run(join(bin, 'qtet'), ['sample', 'fin', '--cells', '3000', '-o', mesh]);
   run(join(bin, 'qtet'), ['simplify', mesh, '-o', join(out, 'logs/fin.qtet')]);
   run(join(bin, 'qtet'), ['simplify', mesh, '-o', join(out, 'other.qtet'), '--field-bits', '8']);
+  writeFileSync(join(out, 'long.vtk'), kLongNamed);
+  run(join(bin, 'qtet'), ['simplify', join(out, 'long.vtk'), '-o', join(out, 'long.qtet')]);
   writeFileSync(join(out, 'tokens'), `write up* ${kToken}\nread [!s]* anyone\n`);
   writeFileSync(join(out, 'viewer/index.html'), '<!doctype html><title>viewer</title>');
 }
