@@ -95,16 +95,16 @@ TEST(OwesTurn, isWhoHasTakenMoreThanTheFreeTime) {
 class TakeTurnTest : public TurnsTest {
  protected:
   void comes(char name, AddressLimits::Client* client) {
-    asio::co_spawn(
-        context_,
-        [this, name, client]() -> asio::awaitable<void> {
-          co_await takeTurn(context_.get_executor(), client);
-          order_ += name;
-        },
-        asio::detached);
+    asio::co_spawn(context_, turn(name, client), asio::detached);
   }
 
   Clients clients_;
+
+ private:
+  asio::awaitable<void> turn(char name, AddressLimits::Client* client) {
+    co_await takeTurn(context_.get_executor(), client);
+    order_ += name;
+  }
 };
 
 TEST_F(TakeTurnTest, whoOwesLessGoesFirstAndWhoHasNoBoundsOwesNothing) {
