@@ -2,7 +2,7 @@
 // web-client/core, so that two versions can be compared.
 import {createRequire} from 'node:module';
 
-const require = createRequire(new URL('../../web-client/package.json', import.meta.url));
+const require = createRequire(new URL('../../../web-client/package.json', import.meta.url));
 
 const page = `
 import {headBytesOf} from './transport/block_source';
@@ -22,7 +22,7 @@ globalThis.measure = async (module, log, runs) => {
     const head = file.subarray(0, headBytesOf(file));
     codec.open(head);
     const chunks = codec.chunkCount;
-    const manifest = readManifest(head, (bytes, columns) => codec.levelColumns(bytes, columns));
+    const manifest = readManifest(head, (...words) => codec.levelColumns(...words));
     const components = [0, 3, ...manifest.fields.map((field) => field.components)];
     const fields = components.length - 2;
     let values = 0, integers = 0, valueBytes = 0;
