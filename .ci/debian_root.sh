@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # A bare Debian in a folder, to install and try things in. Needs root, and mmdebstrap or
-# debootstrap.
-# The first run downloads it to FOLDER/SUITE; each run copies it to FOLDER/root.
+# debootstrap. The first run downloads it to FOLDER/SUITE; each run copies it to FOLDER/root.
 #   debian_root.sh FOLDER [SUITE]     SUITE: bookworm (Debian 12, the default) or trixie (13);
 #                                     77 = skipped, and says why
 # QTET_DEBIAN_MIRROR names another mirror than the program's default.

@@ -26,25 +26,26 @@ def changed(since):
     return {ROOT / pathlib.Path(line).with_suffix(".cpp") for line in text.splitlines()}
 
 
-def digest(entry):
-    """Of all that a verdict depends on; None: the source cannot be preprocessed."""
+def digest(entry, rules):
+    """The digest of all that a verdict depends on, with `rules` for every source. None: the source
+    cannot be preprocessed."""
     words = shlex.split(entry["command"])
     out = words.index("-o")
     del words[out : out + 2]
     words[words.index("-c")] = "-E"
-    # Comments count, since NOLINT is one. Paths count no more than they have to.
-    made = subprocess.run([*words, "-CC", "-P"], cwd=entry["directory"], capture_output=True)
+    # Comments count, since NOLINT is one. The folder does not, so that clones share verdicts:
+    # asserts hold the file's path.
+    command = [*words, "-CC", "-P", f"-fmacro-prefix-map={ROOT}=."]
+    made = subprocess.run(command, cwd=entry["directory"], capture_output=True)
     if made.returncode != 0:
         return None
-    version = subprocess.run([TIDY, "--version"], capture_output=True, check=True).stdout
     flags = [word for word in words if not word.startswith(("-I/", "/"))]
-    parts = [version, (ROOT / ".clang-tidy").read_bytes(), " ".join(flags).encode(), made.stdout]
-    return hashlib.sha256(b"\0".join(parts)).hexdigest()
+    return hashlib.sha256(b"\0".join([rules, " ".join(flags).encode(), made.stdout])).hexdigest()
 
 
-def look(build, entry):
-    """What is wrong, or None."""
-    known = digest(entry)
+def look(build, entry, rules):
+    """The findings, or None."""
+    known = digest(entry, rules)
     if known and (CACHE / known).exists():
         return None
     found = subprocess.run(
@@ -64,9 +65,11 @@ def main():
     wanted = changed(since)
     entries = {entry["file"]: entry for entry in entries if pathlib.Path(entry["file"]) in wanted}
     print(f"tidy: {len(entries)} sources changed {since and 'since ' + since}", flush=True)
+    version = subprocess.run([TIDY, "--version"], capture_output=True, check=True).stdout
+    rules = version + (ROOT / ".clang-tidy").read_bytes()
     wrong = 0
     with concurrent.futures.ThreadPoolExecutor(int(jobs)) as pool:
-        for text in pool.map(lambda entry: look(build, entry), entries.values()):
+        for text in pool.map(lambda entry: look(build, entry, rules), entries.values()):
             if text:
                 wrong += 1
                 print(text, flush=True)

@@ -5,18 +5,11 @@
 #include <optional>
 
 #include "codec/mesh/mesh.h"
+#include "codec/picture/vector.h"
 #include "proto/manifest.h"
 
 namespace qtet {
 
-using Vector = std::array<double, 3>;
-
-[[nodiscard]] inline double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-[[nodiscard]] inline Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 [[nodiscard]] Vector unit(const Vector& a);
 
 /// The least and the largest coordinates of the boundary's vertices.

@@ -1,22 +1,15 @@
 #include "server/routes/write_routes.h"
 
 #include <cassert>
-#include <charconv>
 
 #include "codec/log/log_delta.h"
 #include "proto/json_reader.h"
 #include "proto/log_digest.h"
 #include "server/routes/access_routes.h"
+#include "server/routes/level_answer.h"
 
 namespace qtet {
 namespace {
-
-std::optional<std::uint64_t> parseNumber(std::string_view text) {
-  std::uint64_t out = 0;
-  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (text.empty() || ec != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return out;
-}
 
 /// "bytes 100-199/200" into first and total, and, of an empty body, "bytes */200": all of them are
 /// there. False where it is nothing of that kind or speaks of another number of bytes.
@@ -24,17 +17,18 @@ bool readContentRange(std::string_view text, UploadRequest& out) {
   constexpr std::string_view kUnit = "bytes ";
   if (!text.starts_with(kUnit)) return false;
   text.remove_prefix(kUnit.size());
-  if (const auto all = text.starts_with("*/") && out.bodyBytes == 0 ? parseNumber(text.substr(2))
-                                                                    : std::nullopt) {
+  if (const auto all = text.starts_with("*/") && out.bodyBytes == 0
+                           ? parseNumber<std::uint64_t>(text.substr(2))
+                           : std::nullopt) {
     out.first = out.totalBytes = *all;
     return *all > 0;  // from 0 on the upload would begin anew
   }
   const std::size_t dash = text.find('-'), slash = text.find('/');
   if (dash == std::string_view::npos || slash == std::string_view::npos || dash > slash)
     return false;
-  const auto first = parseNumber(text.substr(0, dash)),
-             last = parseNumber(text.substr(dash + 1, slash - dash - 1)),
-             total = parseNumber(text.substr(slash + 1));
+  const auto first = parseNumber<std::uint64_t>(text.substr(0, dash)),
+             last = parseNumber<std::uint64_t>(text.substr(dash + 1, slash - dash - 1)),
+             total = parseNumber<std::uint64_t>(text.substr(slash + 1));
   if (!first || !last || !total || *last < *first || *last >= *total) return false;
   if (!out.from && *last - *first + 1 != out.bodyBytes) return false;
   if (out.from && *last + 1 != *total) return false;
@@ -57,7 +51,7 @@ Answer routePut(const RequestView& request, const RequestTarget& target, UploadR
     return problem(415, "unsupported-media-type",
                    "a log is sent as it is, without a Content-Encoding");
   // too large in any case
-  out.bodyBytes = parseNumber(*request.contentLength).value_or(~std::uint64_t{0});
+  out.bodyBytes = parseNumber<std::uint64_t>(*request.contentLength).value_or(~std::uint64_t{0});
   out.totalBytes = out.bodyBytes;
   out.digest = target.parameter("digest");
   if (out.digest && !isLogDigest(*out.digest))

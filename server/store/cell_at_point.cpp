@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/store/vector.h"
+#include "codec/picture/vector.h"
 
 namespace qtet {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "codec/files/field_colours.h"
-#include "server/store/vector.h"
+#include "codec/picture/vector.h"
 
 namespace qtet {
 namespace {
@@ -23,9 +23,6 @@ constexpr Vector kEye = {1, -1.3, 0.8};
 /// The light that a face turned away from the lamp still has.
 constexpr double kAmbient = 0.35;
 
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Vector unit(const Vector& a) {
   const double length = std::sqrt(dot(a, a));
   return length > 0 ? Vector{a[0] / length, a[1] / length, a[2] / length} : a;

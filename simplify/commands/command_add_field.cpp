@@ -65,7 +65,7 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   progress.stage("adding fields");
   AddFieldsOptions options;
   options.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
-  options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
+  options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
   options.kept = *kept;
   options.progress = [&](double fraction) { progress.update(fraction); };
   const Result<AddedFields> added = addFields(log->file, read->mesh, options);

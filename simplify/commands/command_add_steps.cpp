@@ -240,7 +240,7 @@ Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console)
   request.reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
   request.reading.namesTime = true;
   request.adding.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
-  request.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
+  request.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
   request.adding.progress = [&](double fraction) { progress.update(fraction); };
   for (const std::string& file : request.files)
     if (Status checked = checkNewLog(parsed, file); !checked) return checked;

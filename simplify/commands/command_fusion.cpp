@@ -8,6 +8,8 @@
 namespace qtet {
 namespace {
 
+constexpr int kMaxThreads = 1024;
+
 // Weights beyond are words gone wrong: what counts a million times as much as the rest decides
 // alone.
 constexpr double kMaxWeight = 1e6;

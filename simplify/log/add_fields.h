@@ -20,6 +20,9 @@
 
 namespace qtet {
 
+/// Threads that may be asked for.
+inline constexpr int kMaxAddingThreads = 256;
+
 struct AddFieldsOptions {
   int fieldBits = 12;
   Effort effort = Effort::kLevels;  ///< for measuring, where the log knows the errors of its levels

@@ -15,9 +15,6 @@
 
 namespace qtet {
 
-/// Threads that may be asked for.
-inline constexpr int kMaxThreads = 1024;
-
 /// As many of the threads that were asked for as the machine runs at once. More would wait for one
 /// another, ten times as long with 256 on two cores.
 [[nodiscard]] int threadsAtOnce(int asked);
