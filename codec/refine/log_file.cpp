@@ -54,30 +54,31 @@ std::uint64_t LogFile::headBytes() const { return state_->index.headBytes(); }
 const std::string& LogFile::digest() const { return state_->digest; }
 
 Result<LogFile> LogFile::open(const std::filesystem::path& path, DigestOf digestOf) {
-  const auto io = [&](const char* what) {
-    return fail(ErrorCode::kIo, path.string() + ": " + what + ": " + std::strerror(errno));
-  };
   // of a pipe, without waiting for who writes
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) return io("cannot be opened");
-  struct stat info{};
-  auto state = std::make_unique<State>();
-  const bool known = fstat(file, &info) == 0;
-  if (known && S_ISREG(info.st_mode) && info.st_size > 0) {
-    void* address =
-        mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_PRIVATE, file, 0);
-    if (address != MAP_FAILED)
-      state->address = address, state->bytes = static_cast<std::size_t>(info.st_size);
-  }
+  if (file < 0)
+    return fail(ErrorCode::kIo, path.string() + ": cannot be opened: " + std::strerror(errno));
+  Result<LogFile> log = map(file, path.string(), digestOf);
   ::close(file);
-  if (!known) return io("cannot be read");
-  if (!S_ISREG(info.st_mode)) return fail(ErrorCode::kIo, path.string() + ": not a regular file");
-  if (info.st_size == 0)
-    return fail(ErrorCode::kTruncated, path.string() + ": the file is empty", 0);
-  if (state->address == nullptr) return io("cannot be mapped into memory");
+  return log;
+}
+
+Result<LogFile> LogFile::map(int file, const std::string& name, DigestOf digestOf) {
+  const auto io = [&](const char* what) {
+    return fail(ErrorCode::kIo, name + ": " + what + ": " + std::strerror(errno));
+  };
+  struct stat info{};
+  if (::fstat(file, &info) != 0) return io("cannot be read");
+  if (!S_ISREG(info.st_mode)) return fail(ErrorCode::kIo, name + ": not a regular file");
+  if (info.st_size == 0) return fail(ErrorCode::kTruncated, name + ": the file is empty", 0);
+  void* address =
+      ::mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_PRIVATE, file, 0);
+  if (address == MAP_FAILED) return io("cannot be mapped into memory");
+  auto state = std::make_unique<State>();
+  state->address = address, state->bytes = static_cast<std::size_t>(info.st_size);
 
   Result<LogFile> log = checked(std::move(state), digestOf);
-  if (!log) log.error().message = path.string() + ": " + log.error().message;
+  if (!log) log.error().message = name + ": " + log.error().message;
   return log;
 }
 

@@ -35,6 +35,10 @@ class LogFile {
   /// LogIndex::parse's.
   [[nodiscard]] static Result<LogFile> open(const std::filesystem::path& path,
                                             DigestOf digestOf = nullptr);
+  /// The same of a file that is open for reading, and may be closed afterwards. Errors call it
+  /// `name`.
+  [[nodiscard]] static Result<LogFile> map(int file, const std::string& name,
+                                           DigestOf digestOf = nullptr);
   /// The same of bytes that were read or fetched elsewhere. Errors: as open, but for io.
   [[nodiscard]] static Result<LogFile> fromBytes(Bytes bytes);
   LogFile(LogFile&&) noexcept;

@@ -24,13 +24,8 @@ inline constexpr std::uintmax_t kMaxPartBytes = std::uintmax_t{128} << 30;
 inline constexpr std::uintmax_t kMaxPartBytesOfToken = std::uintmax_t{32} << 30;
 /// Threads that check complete uploads by decoding them whole, beside those that make levels.
 inline constexpr std::size_t kCheckThreads = 1;
-/// Bytes of memory that one check may take, as predicted by codec/log/decoding_memory.h: 80 for
-/// each tetrahedron of a log of 50 million with a field.
-inline constexpr std::uintmax_t kMaxCheckBytes = std::uintmax_t{4} << 30;
 /// Bytes of the old log that a delta copies at a time, on a thread that may wait for the disk.
 inline constexpr std::size_t kDeltaPiece = 1u << 20;
-/// From a check's beginning to its end. That many tetrahedra take a minute.
-inline constexpr auto kCheckTime = 10min;
 /// The part of an interrupted upload is kept for so long, so that the upload can be resumed.
 inline constexpr auto kPartialUploadTime = 24h;
 

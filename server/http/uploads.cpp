@@ -53,6 +53,18 @@ std::optional<Reply> folderInTheWay(const fs::path& target) {
                      "; send the log by another name, or ask the server's operator to remove it");
 }
 
+/// nullopt: the log is sound.
+std::optional<Reply> replyTo(const CheckVerdict& verdict) {
+  switch (verdict.end) {
+    case CheckVerdict::End::kSound: return std::nullopt;
+    case CheckVerdict::End::kTooLarge: return problem(413, "content-too-large", verdict.reason);
+    case CheckVerdict::End::kUnsound: return problem(422, "bad-log", verdict.reason);
+    case CheckVerdict::End::kBusy: return busyReply(verdict.reason);
+    case CheckVerdict::End::kFailed: break;
+  }
+  return problem(500, "internal", verdict.reason);
+}
+
 class Counted {
  public:
   explicit Counted(std::atomic<std::size_t>& count) : count_(count) { ++count_; }
@@ -129,7 +141,7 @@ std::optional<Reply> Upload::verify(const std::stop_token& stop, MeshPointer& me
         422, "bad-log",
         "the log has the digest " + mesh->log.digest() + ", not the one that the request names");
   const Counted counted(uploads_.checking_);
-  return uploads_.options_.check(*mesh, uploads_.options_.checkLimits, stop);
+  return replyTo(uploads_.options_.check(*mesh, uploads_.options_.checkLimits, stop));
 }
 
 Reply Upload::finish(const std::stop_token& stop) {

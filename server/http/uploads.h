@@ -16,9 +16,9 @@
 
 #include "codec/log/log_delta.h"
 #include "server/http/http_message.h"
-#include "server/http/log_check.h"
 #include "server/http/upload_limits.h"
 #include "server/http/upload_parts.h"
+#include "server/store/log_check.h"
 #include "server/store/mesh_store.h"
 #include "server/wire/upload_request.h"
 

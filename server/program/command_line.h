@@ -12,6 +12,7 @@
 #include "proto/error.h"
 #include "server/http/upload_limits.h"
 #include "server/store/free_disk.h"
+#include "server/store/log_check.h"
 #include "server/store/store_limits.h"
 #include "server/wire/connection_limits.h"
 #include "server/wire/trusted_proxies.h"

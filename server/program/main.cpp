@@ -18,6 +18,8 @@
 
 #include "codec/files/temporary_folder.h"
 #include "proto/version.h"
+#include "server/decode/decoder_main.h"
+#include "server/decode/decoders.h"
 #include "server/program/command_line.h"
 #include "server/program/server.h"
 #include "server/store/bus_guard.h"
@@ -233,7 +235,15 @@ int serve(const CommandLine& options) {
   const Result<Secrets> secrets = loadSecrets(options);
   if (!secrets) return cannotServe(secrets.error());
 
-  Server server(*store, *viewer, serverOptions(options, cache->get(), accessLog->get(), *secrets));
+  Decoders decoders({.processes = limits::kLevelThreads + limits::kCheckThreads,
+                     .levelBytes = limits::kMaxCheckBytes});
+  ServerOptions wired = serverOptions(options, cache->get(), accessLog->get(), *secrets);
+  wired.decoders = &decoders;
+  wired.uploads.check = [&decoders](const ServedMesh& mesh, const CheckLimits& limits,
+                                    const std::stop_token& stop) {
+    return decoders.check(mesh, limits, stop);
+  };
+  Server server(*store, *viewer, std::move(wired));
   if (const Status listening = server.listen(); !listening) return cannotServe(listening.error());
   const Result<std::optional<FolderWatch>> watch = watchFolder(options, *store);
   if (!watch) return cannotServe(watch.error());
@@ -285,6 +295,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && std::string_view(argv[1]) == kDecoderArgument) runDecoder();
   // until the server listens to them: what is meant for a running one must not end it
   std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGUSR1, SIG_IGN);

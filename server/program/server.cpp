@@ -118,6 +118,12 @@ struct Server::State {
   }
   void watchSignals();
   [[nodiscard]] asio::io_context& mainContext() { return lanes.front().context; }
+  [[nodiscard]] LevelJobs::Maker maker() const {
+    if (options.decoders == nullptr) return options.makeLevel;
+    return [decoders = options.decoders](const LevelRequest& request, const std::stop_token& stop) {
+      return decoders->level(request, stop);
+    };
+  }
 
   const MeshStore& store;
   ServerOptions options;
@@ -138,7 +144,7 @@ struct Server::State {
   tcp::acceptor adminAcceptor{mainContext()};
   asio::steady_timer grace{mainContext()}, drained{mainContext()};
   asio::signal_set signals{mainContext()};
-  LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, options.makeLevel,
+  LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, maker(),
                   options.maxLevelsPerAddress}};
   asio::thread_pool writers{1}, checkers{limits::kCheckThreads};
   Services services{store,
@@ -229,6 +235,8 @@ void Server::State::handOver(tcp::socket socket, const tcp::endpoint& peer,
 
 std::vector<Metrics::Figure> Server::State::figures() const {
   const LevelJobCounts levels = jobs.counts();
+  const DecoderCounts decoders =
+      options.decoders != nullptr ? options.decoders->counts() : DecoderCounts();
   const Handshakes::Counts hands = handshakes.counts();
   const CataloguePointer catalogue = store.catalogue();
   const auto gauge = [](const char* name, const char* help, auto value) {
@@ -279,7 +287,10 @@ std::vector<Metrics::Figure> Server::State::figures() const {
               levels.cancelled),
       counter("levels_refused_total", "Levels refused because there were too many.",
               levels.refused),
-      counter("levels_failed_total", "Levels that could not be made.", levels.failed)};
+      counter("levels_failed_total", "Levels that could not be made.", levels.failed),
+      gauge("decoders_running", "Processes that decode a level or check a log.", decoders.running),
+      counter("decoders_lost_total", "Such processes that crashed or were ended at their limits.",
+              decoders.lost)};
   out.insert(out.end(), ours.begin(), ours.end());
   return out;
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "server/decode/decoders.h"
 #include "server/routes/viewer_files.h"
 #include "server/session/services.h"
 #include "server/store/level_maker.h"
@@ -56,14 +57,16 @@ struct ServerOptions {
   std::string frameAncestors = "*";
   /// Proxies whose clients count by their own addresses.
   TrustedProxies proxies{};
-  LevelJobs::Maker makeLevel = qtet::makeLevel;
+  /// Where levels are decoded; nullptr: `makeLevel` does it, in this process.
+  Decoders* decoders = nullptr;
+  LevelJobs::Maker makeLevel = makeLevelHere;
   UploadOptions uploads{};
   /// From the first signal to the end. Meanwhile the server serves everything, and /readyz is 503,
   /// so that a load balancer takes it out.
   std::chrono::milliseconds drain{0};
 };
 
-/// Store, viewer, cache, access log, TLS and access must outlive it.
+/// Store, viewer, cache, decoders, access log, TLS and access must outlive it.
 class Server {
  public:
   Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions options);

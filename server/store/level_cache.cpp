@@ -49,11 +49,6 @@ std::optional<LevelFile> mapFile(const fs::path& path) {
                    {address, [size](void* mapped) { ::munmap(mapped, size); }}};
 }
 
-LevelFile fromMemory(Bytes bytes) {
-  const auto owner = std::make_shared<const Bytes>(std::move(bytes));
-  return {*owner, owner};
-}
-
 /// Without its seal; nullopt: it is not what was written.
 std::optional<LevelFile> unsealed(LevelFile file) {
   if (file.bytes.size() < kSealBytes) return std::nullopt;
@@ -145,26 +140,26 @@ std::optional<LevelFile> LevelCache::find(const std::string& key) {
   return out;
 }
 
-LevelFile LevelCache::put(const std::string& key, Bytes bytes) {
-  if (bytes.empty() || bytes.size() > maxBytes_ ||
-      freeBytes_(folder_) < reserve_ + bytes.size() + kSealBytes)
-    return fromMemory(std::move(bytes));
-  const std::size_t size = bytes.size();
-  const Bytes seal = sealOf(bytes);
-  bytes.insert(bytes.end(), seal.begin(), seal.end());
+LevelFile LevelCache::put(const std::string& key, LevelFile level) {
+  const std::size_t size = level.bytes.size();
+  if (size == 0 || size > maxBytes_ || freeBytes_(folder_) < reserve_ + size + kSealBytes)
+    return level;
+  const Bytes seal = sealOf(level.bytes);
+  const ByteSource content = [&](const ByteSink& sink) {
+    const Status done = sink(level.bytes);
+    return done ? sink(seal) : done;
+  };
   // the folder may hold many files, and open() has removed what writers before left
-  const Status written = writeFileAtomically(
-      pathOf(key), [&](const ByteSink& sink) { return sink(bytes); }, systemFileCalls(),
-      Leftovers::kKeep);
-  bytes.resize(size);
-  if (!written) {
+  if (const Status written =
+          writeFileAtomically(pathOf(key), content, systemFileCalls(), Leftovers::kKeep);
+      !written) {
     spdlog::warn("a level is not kept: {}", written.error().message);
-    return fromMemory(std::move(bytes));
+    return level;
   }
   const std::scoped_lock lock(mutex_);
   std::optional<LevelFile> out = mapFile(pathOf(key));
   add(key, size);
-  if (!out || out->bytes.size() != size + kSealBytes) return fromMemory(std::move(bytes));
+  if (!out || out->bytes.size() != size + kSealBytes) return level;
   out->bytes = out->bytes.first(size);
   return std::move(*out);
 }

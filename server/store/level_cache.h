@@ -30,9 +30,9 @@ class LevelCache {
   /// nullopt: there is none, or its file is not what was written (its length or its CRC-32C
   /// differs), which then goes. Reads the whole level. `key` is hexadecimal.
   [[nodiscard]] std::optional<LevelFile> find(const std::string& key);
-  /// Keeps the bytes on disk and returns them from there. Returns them from memory in three cases:
-  /// the disk refuses, they alone exceed the cache's size, or the disk's reserve would be touched.
-  [[nodiscard]] LevelFile put(const std::string& key, Bytes bytes);
+  /// Keeps the level on disk and returns it from there. Returns it as it is in three cases: the
+  /// disk refuses, it alone exceeds the cache's size, or the disk's reserve would be touched.
+  [[nodiscard]] LevelFile put(const std::string& key, LevelFile level);
   [[nodiscard]] std::uintmax_t bytes() const;
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "proto/bytes.h"
 
@@ -12,5 +13,11 @@ struct LevelFile {
   ByteView bytes;
   std::shared_ptr<const void> owner;
 };
+
+/// The bytes in memory.
+[[nodiscard]] inline LevelFile inMemory(Bytes bytes) {
+  const auto owner = std::make_shared<const Bytes>(std::move(bytes));
+  return {*owner, owner};
+}
 
 }  // namespace qtet

@@ -47,7 +47,7 @@ struct LevelJobs::State {
   std::vector<std::jthread> threads;
 
   void work();
-  void finish(const JobPointer& job, Result<Bytes> bytes);
+  void finish(const JobPointer& job, Result<LevelFile> file);
   /// The first job of the address that has waited longest since one of its own began. REQUIRES:
   /// mutex is held, and some job waits.
   [[nodiscard]] JobPointer takeNext();
@@ -95,16 +95,9 @@ JobPointer LevelJobs::State::takeNext() {
   return out;
 }
 
-void LevelJobs::State::finish(const JobPointer& job, Result<Bytes> bytes) {
-  Result<LevelFile> file = std::unexpected(Error{});
-  if (!bytes) {
-    file = std::unexpected(bytes.error());
-  } else if (options.cache != nullptr && !job->stop.stop_requested()) {
-    file = options.cache->put(job->key, std::move(*bytes));
-  } else {
-    const auto owner = std::make_shared<const Bytes>(std::move(*bytes));
-    file = LevelFile{*owner, owner};
-  }
+void LevelJobs::State::finish(const JobPointer& job, Result<LevelFile> file) {
+  if (file && options.cache != nullptr && !job->stop.stop_requested())
+    file = options.cache->put(job->key, std::move(*file));
   Subscribers subscribers;
   {
     const std::scoped_lock lock(mutex);

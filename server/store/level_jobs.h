@@ -37,7 +37,7 @@ class LevelJobs {
   /// without a bound.
   using Address = const void*;
   using Done = std::move_only_function<void(Result<LevelFile>)>;
-  using Maker = std::function<Result<Bytes>(const LevelRequest&, const std::stop_token&)>;
+  using Maker = std::function<Result<LevelFile>(const LevelRequest&, const std::stop_token&)>;
 
   struct Options {
     std::size_t threads = 1;

@@ -21,8 +21,9 @@ Result<Bytes> written(LatticeMesh& mesh, const LevelRequest& request) {
   }
 }
 
-Result<Bytes> fileOf(const LevelRequest& request, const std::stop_token& stop) {
-  if (request.point) return makeSeries(request, stop);
+Result<Bytes> fileOf(const LevelRequest& request, const std::stop_token& stop,
+                     SeriesMaker& series) {
+  if (request.point) return series.make(request, stop);
   Result<LatticeMesh> mesh = meshAtLevel(request.mesh->log, request.level, request.fields, stop);
   if (!mesh) return std::unexpected(mesh.error());
   return written(*mesh, request);
@@ -30,9 +31,10 @@ Result<Bytes> fileOf(const LevelRequest& request, const std::stop_token& stop) {
 
 }  // namespace
 
-Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop) {
+Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop,
+                        SeriesMaker& series) {
   try {
-    Result<Bytes> file = fileOf(request, stop);
+    Result<Bytes> file = fileOf(request, stop, series);
     if (!file || stop.stop_requested()) return file;
     return encoded(std::move(*file), request.coding);
   } catch (const std::bad_alloc&) {
@@ -40,6 +42,17 @@ Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop
   } catch (const std::exception& error) {  // of a library: it ends one job, not the server
     return fail(ErrorCode::kBadCodec, std::string("this level cannot be written: ") + error.what());
   }
+}
+
+Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop) {
+  SeriesMaker series;
+  return makeLevel(request, stop, series);
+}
+
+Result<LevelFile> makeLevelHere(const LevelRequest& request, const std::stop_token& stop) {
+  Result<Bytes> made = makeLevel(request, stop);
+  if (!made) return std::unexpected(made.error());
+  return inMemory(std::move(*made));
 }
 
 }  // namespace qtet

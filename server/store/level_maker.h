@@ -5,13 +5,23 @@
 
 #include "proto/bytes.h"
 #include "proto/error.h"
+#include "server/store/level_file.h"
 #include "server/store/level_request.h"
 
 namespace qtet {
 
-/// The whole file, or the values of a series where the request has a point. Looks at `stop` after
-/// every chunk; if it was requested, the result is useless. Errors: those of applyChunk, of the
-/// writers and of makeSeries; io when there is not enough memory.
+class SeriesMaker;
+
+/// The whole file, or the values of a series where the request has a point: `series` keeps what
+/// the next point needs. Looks at `stop` after every chunk; if it was requested, the result is
+/// useless. Errors: those of applyChunk, of the writers and of SeriesMaker; io when there is not
+/// enough memory.
+[[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop,
+                                      SeriesMaker& series);
 [[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop);
+
+/// The same in memory of this process.
+[[nodiscard]] Result<LevelFile> makeLevelHere(const LevelRequest& request,
+                                              const std::stop_token& stop);
 
 }  // namespace qtet

@@ -37,36 +37,6 @@ Status stopped() {
   return fail(ErrorCode::kIo, "stopped, because nobody waits for the values any more");
 }
 
-Status refineTo(const LevelRequest& request, Refiner& refiner, const std::stop_token& stop) {
-  const LogFile& log = request.mesh->log;
-  refiner.stopAtLevel(request.level);
-  for (std::uint32_t chunk = 0;
-       chunk < log.chunks().size() && (chunk == 0 || refiner.level() < request.level); ++chunk) {
-    if (stop.stop_requested()) return stopped();
-    if (Status s = applyChunk(log, refiner, chunk, {}); !s) return s;
-  }
-  return {};
-}
-
-/// Decodes the fields and those that they are predicted from, one after the other; parents have
-/// smaller numbers. Each is shown to `whole` when it is there, and forgotten once none of the rest
-/// is predicted from it.
-Status eachField(const LevelRequest& request, Refiner& refiner, const std::stop_token& stop,
-                 const std::function<void(std::uint32_t field)>& whole) {
-  const LogFile& log = request.mesh->log;
-  const std::vector<std::uint32_t> fields = withParents(log.fields(), request.fields);
-  const std::vector<std::vector<std::uint32_t>> uses = lastUses(log.fields(), fields);
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk) {
-      if (stop.stop_requested()) return stopped();
-      if (Status s = applyFieldBlock(log, refiner, chunk, fields[i]); !s) return s;
-    }
-    whole(fields[i]);
-    for (const std::uint32_t used : uses[i]) refiner.forgetField(used);
-  }
-  return {};
-}
-
 std::unexpected<Error> isOutside(const LevelRequest& request, std::span<const LatticePoint> points,
                                  const Lattice& lattice) {
   const auto [low, high] = boxOf(points);
@@ -152,39 +122,149 @@ std::string csvText(const LevelRequest& request, const std::string& name,
 
 }  // namespace
 
-Result<Bytes> makeSeries(const LevelRequest& request, const std::stop_token& stop) {
+// A mesh at a level. The values of all of `whole` are there. Fields with too many values are
+// decoded again for each point, at its place alone.
+struct SeriesMaker::Kept {
+  Kept(MeshPointer of, std::uint32_t at) : mesh(std::move(of)), level(at) {}
+
+  [[nodiscard]] const LogFile& log() const { return mesh->log; }
+  Status refine(const std::stop_token& stop);
+  Status decode(std::uint32_t field, const std::stop_token& stop);
+  /// Bytes of the values of these fields, and of the differences that they are made from.
+  [[nodiscard]] std::uint64_t bytesOf(std::span<const std::uint32_t> fields) const;
+  /// All values of the fields and their parents.
+  Status decodeWhole(const std::vector<std::uint32_t>& fields, const std::stop_token& stop);
+  /// Decodes the fields and their parents at these elements, one after the other; parents have
+  /// smaller numbers. Each is shown to `take` when it is there, and forgotten once none of the rest
+  /// is predicted from it.
+  Status decodeOnlyAt(std::span<const std::uint32_t> elements,
+                      const std::vector<std::uint32_t>& fields, const std::stop_token& stop,
+                      const std::function<void(std::uint32_t field)>& take);
+
+  const MeshPointer mesh;
+  const std::uint32_t level;
+  Refiner refiner{mesh->log.index()};
+  std::vector<std::uint32_t> whole;  // ascending
+  bool onlyAt = false;               // the refiner decodes no whole field any more
+};
+
+Status SeriesMaker::Kept::refine(const std::stop_token& stop) {
+  refiner.stopAtLevel(level);
+  for (std::uint32_t chunk = 0;
+       chunk < log().chunks().size() && (chunk == 0 || refiner.level() < level); ++chunk) {
+    if (stop.stop_requested()) return stopped();
+    if (Status s = applyChunk(log(), refiner, chunk, {}); !s) return s;
+  }
+  return {};
+}
+
+Status SeriesMaker::Kept::decode(std::uint32_t field, const std::stop_token& stop) {
+  for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk) {
+    if (stop.stop_requested()) return stopped();
+    if (Status s = applyFieldBlock(log(), refiner, chunk, field); !s) return s;
+  }
+  return {};
+}
+
+std::uint64_t SeriesMaker::Kept::bytesOf(std::span<const std::uint32_t> fields) const {
+  std::uint64_t sum = 0;
+  for (const std::uint32_t f : fields) {
+    const FieldShape& shape = log().fields()[f];
+    const std::uint64_t elements = shape.association == Association::kPoint
+                                       ? refiner.points().size()
+                                       : refiner.tetrahedra().size();
+    const std::uint64_t copies = shape.prediction.isNone() ? 1 : 2;
+    sum += copies * sizeof(std::int32_t) * elements * shape.components;
+  }
+  return sum;
+}
+
+Status SeriesMaker::Kept::decodeWhole(const std::vector<std::uint32_t>& fields,
+                                      const std::stop_token& stop) {
+  for (const std::uint32_t f : whole)
+    if (!std::ranges::binary_search(fields, f)) refiner.forgetField(f);
+  for (const std::uint32_t f : fields)
+    if (!std::ranges::binary_search(whole, f))
+      if (Status s = decode(f, stop); !s) return s;
+  whole = fields;
+  return {};
+}
+
+Status SeriesMaker::Kept::decodeOnlyAt(std::span<const std::uint32_t> elements,
+                                       const std::vector<std::uint32_t>& fields,
+                                       const std::stop_token& stop,
+                                       const std::function<void(std::uint32_t field)>& take) {
+  onlyAt = true;
+  for (const std::uint32_t f : std::exchange(whole, {})) refiner.forgetField(f);
+  refiner.fieldsOnlyAt(log().fields()[fields.back()].association, elements);
+  const std::vector<std::vector<std::uint32_t>> uses = lastUses(log().fields(), fields);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (Status s = decode(fields[i], stop); !s) return s;
+    take(fields[i]);
+    for (const std::uint32_t used : uses[i]) refiner.forgetField(used);
+  }
+  return {};
+}
+
+SeriesMaker::SeriesMaker(std::uint64_t keptValueBytes) : keptValueBytes_(keptValueBytes) {}
+
+SeriesMaker::~SeriesMaker() = default;
+
+void SeriesMaker::forget() { kept_ = nullptr; }
+
+Result<Bytes> SeriesMaker::make(const LevelRequest& request, const std::stop_token& stop) {
   const Manifest& manifest = request.mesh->manifest;
   const Lattice lattice{manifest.latticeBits, manifest.latticeStep, manifest.latticeOrigin};
-  Refiner refiner(request.mesh->log.index());
-  if (Status s = refineTo(request, refiner, stop); !s) return std::unexpected(s.error());
+  // After an error nothing half decoded is kept.
+  std::unique_ptr<Kept> kept = std::move(kept_);
+  const auto isOther = [&] {
+    return !kept || kept->mesh != request.mesh || kept->level != request.level;
+  };
+  const std::vector<std::uint32_t> fields = withParents(request.mesh->log.fields(), request.fields);
+  if (isOther() || (kept->onlyAt && kept->bytesOf(fields) <= keptValueBytes_)) {
+    kept = nullptr;  // before there are two
+    kept = std::make_unique<Kept>(request.mesh, request.level);
+    if (Status s = kept->refine(stop); !s) return std::unexpected(s.error());
+  }
+  const Refiner& refiner = kept->refiner;
   std::array<double, 3> point{};
   for (std::size_t a = 0; a < 3; ++a)
     point[a] = ((*request.point)[a] - lattice.origin[a]) / lattice.step;
   const std::optional<PointInCell> place =
       cellAtPoint(refiner.points(), refiner.tetrahedra(), point,
                   nearStepsOf(refiner.points(), manifest.levels[request.level].error));
-  if (!place) return isOutside(request, refiner.points(), lattice);
+  if (!place) {
+    auto out = isOutside(request, refiner.points(), lattice);
+    kept_ = std::move(kept);
+    return out;
+  }
 
   const Tetrahedron& corners = refiner.tetrahedra()[place->cell];
-  if (manifest.fields[request.fields.front()].association == "cell")
-    refiner.fieldsOnlyAt(Association::kCell, std::span(&place->cell, 1));
-  else
-    refiner.fieldsOnlyAt(Association::kPoint, corners);
   std::string name;
   std::vector<Instant> instants;
   const auto take = [&](std::uint32_t f) {
-    if (std::ranges::find(request.fields, f) == request.fields.end()) return;
+    if (!std::ranges::binary_search(request.fields, f)) return;
     const ManifestField& field = manifest.fields[f];
     const std::optional<InstantName> instant = instantName(field.name);
     name = instant ? instant->series : field.name;
     instants.push_back({instant ? std::optional(instant->time) : std::nullopt,
                         valuesAt(field, refiner.fieldValues(f), *place, corners)});
   };
-  if (Status s = eachField(request, refiner, stop, take); !s) return std::unexpected(s.error());
+  if (kept->bytesOf(fields) <= keptValueBytes_) {
+    if (Status s = kept->decodeWhole(fields, stop); !s) return std::unexpected(s.error());
+    std::ranges::for_each(fields, take);
+  } else {
+    const bool ofCells = manifest.fields[request.fields.front()].association == "cell";
+    const std::span<const std::uint32_t> elements =
+        ofCells ? std::span<const std::uint32_t>(&place->cell, 1) : std::span(corners);
+    if (Status s = kept->decodeOnlyAt(elements, fields, stop, take); !s)
+      return std::unexpected(s.error());
+  }
   std::ranges::sort(instants, {}, &Instant::time);
   const std::string text = request.form == LevelForm::kCsv
                                ? csvText(request, name, instants)
                                : jsonText(request, name, place->cell, instants);
+  kept_ = std::move(kept);
   return Bytes(text.begin(), text.end());
 }
 

@@ -117,15 +117,12 @@ thread_local const std::string* knownDigest = nullptr;
 
 Result<LogFile> openLog(const Descriptor& file, const std::filesystem::path& path,
                         const std::string* digest) {
-  const std::string alias = "/proc/self/fd/" + std::to_string(file.number);
   const auto digestOf = [](ByteView bytes) {
     return knownDigest != nullptr ? *knownDigest : hexDigestOf(bytes);
   };
   knownDigest = digest;
-  Result<LogFile> log = LogFile::open(alias, digestOf);
+  Result<LogFile> log = LogFile::map(file.number, path.string(), digestOf);
   knownDigest = nullptr;
-  if (!log && log.error().message.starts_with(alias))
-    log.error().message.replace(0, alias.size(), path.string());
   return log;
 }
 

@@ -4,15 +4,15 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "server/http/log_check.h"
+#include "server/store/log_check.h"
 
 namespace qtet::test {
 
 /// The real check. After a hold, each check first waits until it is released or stopped.
 class HeldCheck {
  public:
-  std::optional<Reply> operator()(const ServedMesh& mesh, const CheckLimits& limits,
-                                  const std::stop_token& stop) {
+  CheckVerdict operator()(const ServedMesh& mesh, const CheckLimits& limits,
+                          const std::stop_token& stop) {
     {
       const std::stop_callback wake(stop, [this] { changed_.notify_all(); });
       std::unique_lock lock(mutex_);

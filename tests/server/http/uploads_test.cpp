@@ -888,9 +888,8 @@ TEST(Uploads, aCheckThatThrowsEndsOneUploadAndIsNotCountedForEver) {
   const UploadRequest request{
       .id = "wing", .digest = sha256Hex(log), .bodyBytes = log.size(), .totalBytes = log.size()};
   for (const bool memory : {true, false}) {
-    Uploads uploads(folder.store(),
-                    {.check = [memory](const ServedMesh&, const CheckLimits&,
-                                       const std::stop_token&) -> std::optional<Reply> {
+    Uploads uploads(folder.store(), {.check = [memory](const ServedMesh&, const CheckLimits&,
+                                                       const std::stop_token&) -> CheckVerdict {
                       if (memory) throw std::bad_alloc();
                       throw std::length_error("too long");
                     }});

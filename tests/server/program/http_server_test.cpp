@@ -275,13 +275,13 @@ struct SlowMaker {
   std::atomic<int> begun = 0;
   std::atomic<int> stopped = 0;
 
-  Result<Bytes> operator()(const LevelRequest& request, const std::stop_token& stop) {
+  Result<LevelFile> operator()(const LevelRequest& request, const std::stop_token& stop) {
     const std::stop_callback wake(stop, [this] { ++stopped, changed.notify_all(); });
     ++begun;
     std::unique_lock lock(mutex);
     changed.wait(lock, [&] { return go || stop.stop_requested(); });
     if (request.level == 11) return fail(ErrorCode::kBadCodec, "broken on purpose");
-    return Bytes(request.level + 1, 'v');
+    return inMemory(Bytes(request.level + 1, 'v'));
   }
   void release() {
     const std::scoped_lock lock(mutex);

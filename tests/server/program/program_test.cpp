@@ -1,10 +1,13 @@
 // The program itself: what it prints, its exit codes, and how it ends on a signal.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/types.h>
 
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -267,6 +270,38 @@ TEST(Program, servesAndEndsOnSigtermWithZero) {
     EXPECT_EQ(stream.closeCode(), 1001u);
     EXPECT_EQ(program.exitCode(), 0);
   }
+}
+
+/// The processes that decode for it.
+std::vector<pid_t> decodersOf(const Program& program) {
+  const std::string thread = std::to_string(program.id());
+  std::ifstream in("/proc/" + thread + "/task/" + thread + "/children");
+  return {std::istream_iterator<pid_t>(in), {}};
+}
+
+TEST(Program, theDeathOfAProcessThatDecodesIsA500OfOneRequest) {
+  const std::filesystem::path log = testing::sampleLog();
+  Program program({log.parent_path(), "--port", "0"});
+  const std::uint16_t port = program.port();
+  ASSERT_NE(port, 0);
+  test::RawClient client(port);
+  const std::string level =
+      client.get("/v1/meshes/" + log.stem().string() + "/levels/1.vtu").header("location");
+  const std::vector<pid_t> decoders = decodersOf(program);
+  ASSERT_EQ(decoders.size(), limits::kLevelThreads + limits::kCheckThreads);
+  for (const pid_t decoder : decoders) ::kill(decoder, SIGSTOP);
+  client.send("GET " + level + " HTTP/1.1\r\nHost: a\r\n\r\n");
+  test::RawClient other(port);
+  EXPECT_TRUE(test::eventually([&] {
+    return other.get("/metrics").body.find("qtet_decoders_running 1\n") != std::string::npos;
+  })) << "served meanwhile";
+  for (const pid_t decoder : decoders) ::kill(decoder, SIGKILL);
+  const test::HttpResponse died = client.receive();
+  EXPECT_EQ(died.status, 500u);
+  EXPECT_NE(died.body.find("signal 9"), std::string::npos) << died.body;
+  EXPECT_EQ(client.get(level).status, 200u) << "by the next process, on the same connection";
+  EXPECT_NE(other.get("/metrics").body.find("qtet_decoders_lost_total 1\n"), std::string::npos);
+  EXPECT_GE(program.complaints("was ended by signal 9"), 1u);
 }
 
 TEST(Program, aDamagedLogIsNamedAndTheOthersAreServed) {

@@ -102,7 +102,8 @@ TEST_F(PushTest, whatTheServersLogHasIsNotSentAgain) {
       *store_, folder_.viewer(),
       {.access = &access_,
        .uploads = {.check = [&](const ServedMesh&, const CheckLimits&, const std::stop_token&) {
-         return ++checks == 2 ? std::optional(problem(422, "bad-log", "unsound")) : std::nullopt;
+         using End = CheckVerdict::End;
+         return ++checks == 2 ? CheckVerdict{End::kUnsound, "unsound"} : CheckVerdict();
        }}});
   const std::string url = "http://127.0.0.1:" + std::to_string(server.port()) + "/";
   const LogFile log = *LogFile::fromBytes(log_);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <stop_token>
 
+#include "server/store/level_file.h"
 #include "server/store/level_request.h"
 #include "tests/server/program/loopback.h"
 
@@ -15,7 +16,7 @@ namespace qtet::test {
 /// Makes levels on command, and notices when it is stopped.
 class HeldMaker {
  public:
-  Result<Bytes> operator()(const LevelRequest& request, const std::stop_token& stop) {
+  Result<LevelFile> operator()(const LevelRequest& request, const std::stop_token& stop) {
     const std::stop_callback wake(stop, [this] { changed_.notify_all(); });
     std::unique_lock lock(mutex_);
     ++begun_;
@@ -23,7 +24,7 @@ class HeldMaker {
     changed_.wait(lock, [&] { return free_ || stop.stop_requested(); });
     if (stop.stop_requested()) ++stopped_;
     changed_.notify_all();
-    return Bytes(request.level + 1, 0x42);
+    return inMemory(Bytes(request.level + 1, 0x42));
   }
   void release() {
     const std::scoped_lock lock(mutex_);

@@ -206,7 +206,7 @@ TEST(LevelCache, aDamagedLevelIsNoticedAndMadeAnew) {
     for (std::size_t i = 0; i < damages.size(); ++i) {
       auto cache = LevelCache::open(folder.path(), 100);
       ASSERT_TRUE(cache);
-      EXPECT_TRUE(std::ranges::equal((*cache)->put(key, level).bytes, level));
+      EXPECT_TRUE(std::ranges::equal((*cache)->put(key, inMemory(level)).bytes, level));
       EXPECT_TRUE((*cache)->find(key));
       damages[i]();
       if (restarted) cache = LevelCache::open(folder.path(), 100);
@@ -223,13 +223,14 @@ TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
       LevelCache::open(folder.path(), 100, 50, [&](const std::filesystem::path&) { return left; });
   const std::string key(64, 'c');
   const Bytes level(10, 1);
-  EXPECT_TRUE(std::ranges::equal((*cache)->put(key, level).bytes, level)) << "from memory";
+  EXPECT_TRUE(std::ranges::equal((*cache)->put(key, inMemory(level)).bytes, level))
+      << "from memory";
   EXPECT_FALSE((*cache)->find(key));
   constexpr std::uintmax_t kNeeded = 50 + 10 + 8;  // the reserve, the level, its seal
   for (const std::uintmax_t bytes : {kNeeded - 1, kNeeded, kNeeded + 1}) {
     left = bytes;
     const std::string own(64, static_cast<char>('0' + bytes - kNeeded + 1));
-    EXPECT_TRUE(std::ranges::equal((*cache)->put(own, level).bytes, level));
+    EXPECT_TRUE(std::ranges::equal((*cache)->put(own, inMemory(level)).bytes, level));
     EXPECT_EQ((*cache)->find(own).has_value(), bytes >= kNeeded) << bytes;
   }
 }
@@ -240,7 +241,7 @@ TEST(LevelCache, keepsNoMoreLevelsThanItMay) {
     const auto keyOf = [](char c) { return std::string(64, c); };
     const auto cache =
         LevelCache::open(folder.path(), 1000, 0, [](const auto&) { return 1u << 30; }, most);
-    for (const char c : std::string("abc")) (void)(*cache)->put(keyOf(c), Bytes(10, 1));
+    for (const char c : std::string("abc")) (void)(*cache)->put(keyOf(c), inMemory(Bytes(10, 1)));
     EXPECT_EQ((*cache)->find(keyOf('a')).has_value(), most >= 3) << most;
     EXPECT_TRUE((*cache)->find(keyOf('b'))) << most;
     EXPECT_EQ((*cache)->bytes(), 10 * std::min<std::size_t>(most, 3));
@@ -254,7 +255,8 @@ TEST(LevelCache, afterARestartTheLeastRecentlyUsedStillGoesFirst) {
   const auto fileOf = [&](char c) { return folder.path() / (keyOf(c) + ".level"); };
   {
     const auto cache = LevelCache::open(folder.path(), 60);
-    for (const char c : std::string("05ba27")) (void)(*cache)->put(keyOf(c), Bytes(10, 1));
+    for (const char c : std::string("05ba27"))
+      (void)(*cache)->put(keyOf(c), inMemory(Bytes(10, 1)));
   }
   const auto hourAgo = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
   for (std::size_t age = 0; age < byAge.size(); ++age)
@@ -267,10 +269,10 @@ TEST(LevelCache, afterARestartTheLeastRecentlyUsedStillGoesFirst) {
   expectKept(0);
   cache = LevelCache::open(folder.path(), 59);
   expectKept(1);
-  for (const char next : {'c', 'd'}) (void)(*cache)->put(keyOf(next), Bytes(10, 1));
+  for (const char next : {'c', 'd'}) (void)(*cache)->put(keyOf(next), inMemory(Bytes(10, 1)));
   expectKept(3);
   EXPECT_TRUE((*cache)->find(keyOf(byAge[3])));
-  (void)(*cache)->put(keyOf('e'), Bytes(10, 1));
+  (void)(*cache)->put(keyOf('e'), inMemory(Bytes(10, 1)));
   EXPECT_TRUE(std::filesystem::exists(fileOf(byAge[3]))) << "used since";
   EXPECT_FALSE(std::filesystem::exists(fileOf(byAge[4])));
   EXPECT_TRUE((*cache)->find(keyOf(byAge[5])));
@@ -285,7 +287,7 @@ TEST_F(LevelJobsTest, addressesTakeTurns) {
   std::vector<std::uint32_t> made;
   LevelJobs::Options turns = options(20);
   turns.maker = [&](const LevelRequest& request, const std::stop_token& stop) {
-    Result<Bytes> out = maker_(request, stop);
+    Result<LevelFile> out = maker_(request, stop);
     const std::scoped_lock lock(mutex);
     made.push_back(request.level);
     return out;

@@ -20,7 +20,7 @@ namespace {
 
 using test::Json;
 
-class SeriesMaker : public ::testing::Test {
+class SeriesTest : public ::testing::Test {
  protected:
   static constexpr std::size_t kInstants = 9;
 
@@ -81,7 +81,7 @@ class SeriesMaker : public ::testing::Test {
   MeshPointer served_ = written(mesh());
 };
 
-TEST_F(SeriesMaker, pointValuesAreThoseBetweenTheCornersAtEveryLevel) {
+TEST_F(SeriesTest, pointValuesAreThoseBetweenTheCornersAtEveryLevel) {
   const std::vector<std::uint32_t> wanted = fields("T@");
   ASSERT_EQ(wanted.size(), kInstants);
   for (std::uint32_t level = 0; level <= last(); level += 3) {
@@ -108,7 +108,7 @@ TEST_F(SeriesMaker, pointValuesAreThoseBetweenTheCornersAtEveryLevel) {
   }
 }
 
-TEST_F(SeriesMaker, cellValuesAreThoseOfTheCell) {
+TEST_F(SeriesTest, cellValuesAreThoseOfTheCell) {
   const LatticeMesh mesh = meshAtLevel(served_->log, last(), fields("C@")).value();
   const Json json = Json::parse(text(request("C@", last(), middleOf(mesh, 11))));
   EXPECT_EQ(json["association"], "cell");
@@ -119,7 +119,7 @@ TEST_F(SeriesMaker, cellValuesAreThoseOfTheCell) {
       EXPECT_EQ(json["values"][i][c].number(), mesh.fields[0].value(c, mesh.values[0][22 + c]));
 }
 
-TEST_F(SeriesMaker, csvHasARowForEachInstant) {
+TEST_F(SeriesTest, csvHasARowForEachInstant) {
   const LatticeMesh mesh = meshAtLevel(served_->log, 0, fields("C@")).value();
   LevelRequest wanted = request("C@", 0, middleOf(mesh, 0));
   const Json values = Json::parse(text(wanted))["values"];
@@ -130,7 +130,7 @@ TEST_F(SeriesMaker, csvHasARowForEachInstant) {
   EXPECT_TRUE(csv.ends_with("\r\n"));
 }
 
-TEST_F(SeriesMaker, aFieldWithoutTimeHasOneValue) {
+TEST_F(SeriesTest, aFieldWithoutTimeHasOneValue) {
   const LatticeMesh mesh = meshAtLevel(served_->log, last(), fields("p")).value();
   LevelRequest wanted = request("p", last(), middleOf(mesh, 5));
   const Json json = Json::parse(text(wanted));
@@ -142,7 +142,7 @@ TEST_F(SeriesMaker, aFieldWithoutTimeHasOneValue) {
   EXPECT_TRUE(text(wanted).starts_with("time,\"p,\"\"q\"\r\n,")) << text(wanted);
 }
 
-TEST_F(SeriesMaker, aValueIsMissingWhereThatOfACornerIsThatCounts) {
+TEST_F(SeriesTest, aValueIsMissingWhereThatOfACornerIsThatCounts) {
   served_ = withMissing();
   const LatticeMesh mesh = meshAtLevel(served_->log, last()).value();
   const auto isMissing = [&](VertexId v) { return mesh.values[0][v] == kMissing; };
@@ -164,7 +164,7 @@ TEST_F(SeriesMaker, aValueIsMissingWhereThatOfACornerIsThatCounts) {
   EXPECT_GT(mixed, 0);
 }
 
-TEST_F(SeriesMaker, aPointOutsideIsNotFoundAndTheBoxIsNamed) {
+TEST_F(SeriesTest, aPointOutsideIsNotFoundAndTheBoxIsNamed) {
   const Result<Bytes> made = makeLevel(request("T@", 0, {1e9, 0.5, -2}), {});
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::kNotFound);
@@ -173,15 +173,40 @@ TEST_F(SeriesMaker, aPointOutsideIsNotFoundAndTheBoxIsNamed) {
       << made.error().message;
 }
 
-TEST_F(SeriesMaker, whoStopsGetsNothing) {
+TEST_F(SeriesTest, pointsAfterTheFirstHaveTheSameValues) {
+  const LatticeMesh mesh = meshAtLevel(served_->log, last()).value();
+  // A series of points, a field without time, a series of cells; both ways of decoding in turns.
+  for (const std::uint64_t kept :
+       {std::uint64_t{0}, std::uint64_t{3000}, limits::kKeptValueBytes}) {
+    SeriesMaker series(kept);
+    for (const std::uint32_t level : {last(), last() / 2})
+      for (const std::string_view field : {"T@", "p", "C@", "T@"})
+        for (const CellId cell : {0u, 5u, 1'000'000u}) {
+          const auto point =
+              cell < mesh.tetrahedra.size() ? middleOf(mesh, cell) : std::array{1e9, 0.0, 0.0};
+          LevelRequest wanted = request(field, level, point);
+          const Result<Bytes> fresh = makeLevel(wanted, {}), next = makeLevel(wanted, {}, series);
+          ASSERT_EQ(next.has_value(), fresh.has_value()) << field << kept;
+          if (fresh) EXPECT_EQ(*next, *fresh) << field << kept;
+          if (!fresh) EXPECT_EQ(next.error().text(), fresh.error().text());
+        }
+    std::stop_source stop;
+    stop.request_stop();
+    series.forget();
+    EXPECT_FALSE(makeLevel(request("T@", last(), middleOf(mesh, 0)), stop.get_token(), series));
+    EXPECT_TRUE(makeLevel(request("T@", last(), middleOf(mesh, 0)), {}, series));
+  }
+}
+
+TEST_F(SeriesTest, whoStopsGetsNothing) {
   std::stop_source stop;
   stop.request_stop();
-  const Result<Bytes> made = makeSeries(request("T@", 0, {0, 0, 0}), stop.get_token());
+  const Result<Bytes> made = makeLevel(request("T@", 0, {0, 0, 0}), stop.get_token());
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::kIo);
 }
 
-TEST_F(SeriesMaker, everyPartOfARequestIsInItsKey) {
+TEST_F(SeriesTest, everyPartOfARequestIsInItsKey) {
   const LevelRequest one = request("T@", 1, {1, 2, 3});
   LevelRequest other = request("T@", 1, {1, 2, 4});
   EXPECT_NE(one.key(), other.key());

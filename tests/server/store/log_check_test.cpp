@@ -1,5 +1,5 @@
 // Tests the check's answer to a log: sound or not, and at each limit and past it.
-#include "server/http/log_check.h"
+#include "server/store/log_check.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,8 @@
 
 namespace qtet {
 namespace {
+
+using End = CheckVerdict::End;
 
 class LogCheckTest : public ::testing::Test {
  protected:
@@ -24,31 +26,28 @@ class LogCheckTest : public ::testing::Test {
 };
 
 TEST_F(LogCheckTest, aSoundLogHasNoAnswerAndNoiseHasOne) {
-  EXPECT_FALSE(checkLog(*open(testing::logBytes(testing::soundMesh(8, 1))), enough_, {}));
-  const auto refused = checkLog(*open(test::makeLog({})), enough_, {});
-  ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->status, 422u);
+  EXPECT_EQ(checkLog(*open(testing::logBytes(testing::soundMesh(8, 1))), enough_, {}).end,
+            End::kSound);
+  EXPECT_EQ(checkLog(*open(test::makeLog({})), enough_, {}).end, End::kUnsound);
 }
 
 TEST_F(LogCheckTest, theFirstByteBeyondTheLimitOfMemoryIsTooMuch) {
   const MeshPointer mesh = open(testing::logBytes(testing::soundMesh(6, 1)));
   const std::uint64_t needed = decodingBytes(mesh->log.index());
-  EXPECT_FALSE(checkLog(*mesh, {.bytes = needed, .time = test::kNever}, {}));
-  EXPECT_EQ(checkLog(*mesh, {.bytes = needed - 1, .time = test::kNever}, {})->status, 413u);
-  EXPECT_EQ(checkLog(*open(test::makeLog({})), {.bytes = 0, .time = test::kNever}, {})->status,
-            413u)
+  EXPECT_EQ(checkLog(*mesh, {.bytes = needed, .time = test::kNever}, {}).end, End::kSound);
+  EXPECT_EQ(checkLog(*mesh, {.bytes = needed - 1, .time = test::kNever}, {}).end, End::kTooLarge);
+  EXPECT_EQ(checkLog(*open(test::makeLog({})), {.bytes = 0, .time = test::kNever}, {}).end,
+            End::kTooLarge)
       << "before a block is looked at";
 }
 
 TEST_F(LogCheckTest, timeThatIsOverAndAStopAreToldApart) {
   const MeshPointer mesh = open(testing::logBytes(testing::soundMesh(6, 1)));
-  EXPECT_EQ(checkLog(*mesh, {.time = std::chrono::milliseconds(0)}, {})->status, 413u);
+  EXPECT_EQ(checkLog(*mesh, {.time = std::chrono::milliseconds(0)}, {}).end, End::kTooLarge);
   std::stop_source stop;
   stop.request_stop();
   const auto stopped = checkLog(*mesh, {.time = std::chrono::milliseconds(0)}, stop.get_token());
-  ASSERT_TRUE(stopped);
-  EXPECT_EQ(stopped->status, 503u);
-  EXPECT_EQ(stopped->header("Retry-After"), "2");
+  EXPECT_EQ(stopped.end, End::kBusy);
 }
 
 }  // namespace
