@@ -13,6 +13,7 @@
 #include <cstring>
 #include <mutex>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -49,7 +50,8 @@ Result<LevelFile> levelIn(const Descriptor& file) {
 struct Decoders::State {
   struct Place {
     std::unique_ptr<Decoder> decoder{};  // nullptr: it has ended, or could not be started
-    std::string digest{};                // of the log that it had last
+    std::string subject{};               // what it has in memory
+    std::uint64_t used = 0;              // when its last task ended, counted in tasks
     bool busy = false;
   };
 
@@ -57,7 +59,7 @@ struct Decoders::State {
 
   /// A place that is this task's alone.
   struct Taken {
-    Taken(State& from, const std::string& digest) : state(from), place(from.take(digest)) {}
+    Taken(State& from, const std::string& subject) : state(from), place(from.take(subject)) {}
     ~Taken() { state.giveBack(place); }
     Taken(const Taken&) = delete;
     Taken& operator=(const Taken&) = delete;
@@ -65,15 +67,15 @@ struct Decoders::State {
     Place& place;
   };
 
-  /// The answer of a process that is idle. `digest` is that of the log; `what` names the task in
-  /// the server's log.
+  /// The answer of a process that is idle. `subject` names what it may have in memory, `what` the
+  /// task in the server's log.
   Result<DecodeAnswer> ask(const DecodeTask& task, std::span<const int> files,
                            const TaskLimits& bounds, const std::stop_token& stop,
-                           const std::string& digest, const std::string& what);
+                           const std::string& subject, const std::string& what);
   Status start(Place& place);
   void countLost(const std::string& how);
-  /// Waits for an idle one, if possible the one that had the log last.
-  Place& take(const std::string& digest);
+  /// Waits for an idle one: that of the subject, or the one that has been idle for longest.
+  Place& take(const std::string& subject);
   void giveBack(Place& place);
   void warnUnconfined(const Decoder& decoder);
 
@@ -82,27 +84,29 @@ struct Decoders::State {
   std::condition_variable idle;
   std::vector<Place> places;  // guarded by `mutex`, but for the decoder of one that is busy
   DecoderCounts counts;
+  std::uint64_t tasks = 0;
   bool warned = false;
 };
 
-Decoders::State::Place& Decoders::State::take(const std::string& digest) {
+Decoders::State::Place& Decoders::State::take(const std::string& subject) {
   std::unique_lock lock(mutex);
   const auto isIdle = [](const Place& place) { return !place.busy; };
   idle.wait(lock, [&] { return std::ranges::any_of(places, isIdle); });
-  auto best = std::ranges::find_if(
-      places, [&](const Place& place) { return !place.busy && place.digest == digest; });
-  if (best == places.end()) best = std::ranges::find_if(places, isIdle);
-  best->busy = true;
-  best->digest = digest;
+  const auto rank = [&](const Place& place) {
+    return std::tuple(place.busy, place.subject != subject, place.used);
+  };
+  Place& best = *std::ranges::min_element(places, {}, rank);
+  best.busy = true;
+  best.subject = subject;
   ++counts.running;
-  return *best;
+  return best;
 }
 
 void Decoders::State::giveBack(Place& place) {
   const std::scoped_lock lock(mutex);
   place.busy = false;
+  place.used = ++tasks;
   --counts.running;
-  if (!place.decoder) place.digest.clear();
   idle.notify_one();
 }
 
@@ -128,8 +132,8 @@ void Decoders::State::countLost(const std::string& how) {
 
 Result<DecodeAnswer> Decoders::State::ask(const DecodeTask& task, std::span<const int> files,
                                           const TaskLimits& bounds, const std::stop_token& stop,
-                                          const std::string& digest, const std::string& what) {
-  const Taken taken(*this, digest);
+                                          const std::string& subject, const std::string& what) {
+  const Taken taken(*this, subject);
   Place& place = taken.place;
   if (place.decoder && !place.decoder->alive()) {
     countLost("an idle process that decodes has ended");
@@ -178,8 +182,8 @@ CheckVerdict Decoders::check(const ServedMesh& mesh, const CheckLimits& limits,
   const TaskLimits bounds{kForgedFactor * limits.bytes + limits::kDecoderBaseBytes, 0,
                           std::chrono::ceil<std::chrono::seconds>(limits.time) + kCheckMargin};
   const std::array files = {mesh.descriptor->number};
-  Result<DecodeAnswer> answer = state_->ask(CheckTask{limits}, files, bounds, stop,
-                                            mesh.log.digest(), mesh.id + ": the check of a log");
+  Result<DecodeAnswer> answer = state_->ask(CheckTask{limits}, files, bounds, stop, "checks",
+                                            mesh.id + ": the check of a log");
   if (!answer) {
     const bool stopped = answer.error().code == ErrorCode::kCancelled;
     return {stopped ? CheckVerdict::End::kBusy : CheckVerdict::End::kFailed,

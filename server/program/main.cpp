@@ -24,6 +24,7 @@
 #include "server/program/server.h"
 #include "server/store/bus_guard.h"
 #include "server/store/folder_watch.h"
+#include "server/store/level_cache.h"
 #include "server/store/store_limits.h"
 
 namespace {
@@ -235,8 +236,9 @@ int serve(const CommandLine& options) {
   const Result<Secrets> secrets = loadSecrets(options);
   if (!secrets) return cannotServe(secrets.error());
 
-  Decoders decoders({.processes = limits::kLevelThreads + limits::kCheckThreads,
-                     .levelBytes = limits::kMaxCheckBytes});
+  Decoders decoders(
+      {.processes = limits::kLevelThreads + limits::kPointThreads + limits::kCheckThreads,
+       .levelBytes = limits::kMaxCheckBytes});
   ServerOptions wired = serverOptions(options, cache->get(), accessLog->get(), *secrets);
   wired.decoders = &decoders;
   wired.uploads.check = [&decoders](const ServedMesh& mesh, const CheckLimits& limits,

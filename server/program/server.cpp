@@ -30,6 +30,7 @@
 #include "server/routes/http_router.h"
 #include "server/session/http_session.h"
 #include "server/store/free_disk.h"
+#include "server/store/kept_points.h"
 #include "server/store/store_limits.h"
 #include "server/wire/connection_limits.h"
 #include "server/wire/handshakes.h"
@@ -120,8 +121,8 @@ struct Server::State {
   [[nodiscard]] asio::io_context& mainContext() { return lanes.front().context; }
   [[nodiscard]] LevelJobs::Maker maker() const {
     if (options.decoders == nullptr) return options.makeLevel;
-    return [decoders = options.decoders](const LevelRequest& request, const std::stop_token& stop) {
-      return decoders->level(request, stop);
+    return [from = options.decoders](const LevelRequest& request, const std::stop_token& stop) {
+      return from->level(request, stop);
     };
   }
 
@@ -146,11 +147,15 @@ struct Server::State {
   asio::signal_set signals{mainContext()};
   LevelJobs jobs{{limits::kLevelThreads, limits::kMaxLevelJobs, options.cache, maker(),
                   options.maxLevelsPerAddress}};
+  KeptPoints points;
+  LevelJobs pointJobs{{limits::kPointThreads, limits::kMaxPointJobs, &points, maker(),
+                       options.maxLevelsPerAddress}};
   asio::thread_pool writers{1}, checkers{limits::kCheckThreads};
   Services services{store,
                     [this](const RequestView& request) { return router.route(request); },
                     true,
                     jobs,
+                    pointJobs,
                     metrics,
                     options.accessLog,
                     options.timeouts,
@@ -164,6 +169,7 @@ struct Server::State {
                          [this](const RequestView& request) { return routeAdmin(admin, request); },
                          false,
                          jobs,
+                         pointJobs,
                          metrics,
                          options.accessLog,
                          options.timeouts,
@@ -234,7 +240,8 @@ void Server::State::handOver(tcp::socket socket, const tcp::endpoint& peer,
 }
 
 std::vector<Metrics::Figure> Server::State::figures() const {
-  const LevelJobCounts levels = jobs.counts();
+  LevelJobCounts levels = jobs.counts();
+  levels += pointJobs.counts();
   const DecoderCounts decoders =
       options.decoders != nullptr ? options.decoders->counts() : DecoderCounts();
   const Handshakes::Counts hands = handshakes.counts();
@@ -262,6 +269,7 @@ std::vector<Metrics::Figure> Server::State::figures() const {
       gauge("uploads_part_bytes", "Bytes of uploads that are not whole.", uploads.partBytes()),
       cache("{cache=\"pages\"}", router.pageBytes()),
       cache("{cache=\"levels\"}", options.cache != nullptr ? options.cache->bytes() : 0),
+      cache("{cache=\"points\"}", points.bytes()),
       cache("{cache=\"copies\"}", bytesOfCopies()),
       gauge("uploads_checking", "Uploads whose logs are being decoded.", uploads.checking()),
       counter("uploads_published_total", "Logs that were uploaded and published.",

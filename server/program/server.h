@@ -38,9 +38,9 @@ struct ServerOptions {
   Timeouts timeouts{};
   std::optional<std::string> adminHost{};  ///< operators' paths are answered here and nowhere else
   std::uint16_t adminPort = 0;
-  bool readyEarly = false;      ///< /readyz is 200 before the folder's names are known
-  bool endOnSignals = false;    ///< SIGINT and SIGTERM do what stop() does
-  LevelCache* cache = nullptr;  ///< finished levels; nullptr: none is kept
+  bool readyEarly = false;       ///< /readyz is 200 before the folder's names are known
+  bool endOnSignals = false;     ///< SIGINT and SIGTERM do what stop() does
+  KeptAnswers* cache = nullptr;  ///< finished levels; nullptr: none is kept
   AccessLog* accessLog = nullptr;
   /// For everything but the operators' address; nullptr: plain HTTP.
   CurrentTls* tls = nullptr;

@@ -55,24 +55,27 @@ Reply failedLevel(const Error& error) {
 /// The level's bytes behind `head`, or the range of them that is asked for.
 asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const RequestView& request,
                                  Peer& peer, LevelJobs& jobs) {
-  std::optional<LevelFile> file = jobs.find(level);
-  if (!file && head.sendBody) {
+  KeptAnswer answer = jobs.find(level);
+  if (!answer && (head.sendBody || jobs.keeps(level))) {
     LevelAnswer answered = co_await waitForLevel(peer.socket, jobs, level, peer.address());
     if (const auto* refusal = std::get_if<LevelRefusal>(&answered))
       co_return *refusal == LevelRefusal::kGone ? clientGone(std::move(head))
                                                 : refusedLevel(*refusal);
-    Result<LevelFile>& made = std::get<Result<LevelFile>>(answered);
-    if (!made) {
-      if (made.error().code != ErrorCode::kNotFound && made.error().code != ErrorCode::kBadInput)
-        spdlog::error("{}: level {} cannot be made: {}", level.mesh->id, level.level,
-                      made.error().text());
-      co_return failedLevel(made.error());
-    }
-    file = std::move(*made);
+    answer = std::move(std::get<Result<LevelFile>>(answered));
+    if (!*answer && answer->error().code != ErrorCode::kNotFound &&
+        answer->error().code != ErrorCode::kBadInput)
+      spdlog::error("{}: level {} cannot be made: {}", level.mesh->id, level.level,
+                    answer->error().text());
   }
-  if (!file) co_return head;
+  if (!answer) co_return head;
   const bool sendBody = head.sendBody;
-  Reply out = rangeReply(request, std::move(head), file->bytes, file->owner);
+  if (!*answer) {
+    Reply failed = failedLevel(answer->error());
+    failed.sendBody = sendBody;
+    co_return failed;
+  }
+  const LevelFile& file = **answer;
+  Reply out = rangeReply(request, std::move(head), file.bytes, file.owner);
   out.sendBody = sendBody;
   co_return out;
 }
@@ -162,7 +165,8 @@ asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& r
                                              HttpInput& input, const Services& services) {
   std::optional<Reply> out;
   if (const auto* level = std::get_if<LevelRequest>(&answer.work)) {
-    out = co_await makeReply(std::move(answer.reply), *level, request, peer, services.jobs);
+    LevelJobs& jobs = level->point ? services.pointJobs : services.jobs;
+    out = co_await makeReply(std::move(answer.reply), *level, request, peer, jobs);
   } else if (const auto* upload = std::get_if<UploadRequest>(&answer.work)) {
     if (upload->kind == UploadRequest::Kind::kDelete)
       out = co_await runOn<Reply>(*services.writers,

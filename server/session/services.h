@@ -52,6 +52,7 @@ struct Services {
   std::function<Answer(const RequestView&)> route;
   bool streams = true;  ///< WebSockets are answered
   LevelJobs& jobs;
+  LevelJobs& pointJobs;
   Metrics& metrics;
   AccessLog* accessLog = nullptr;
   Timeouts timeouts{};

@@ -104,46 +104,79 @@ void LevelCache::add(const std::string& key, std::uintmax_t bytes) {
   entries_.push_front({key, bytes});
   byKey_[key] = entries_.begin();
   bytes_ += bytes;
-  while (bytes_ > maxBytes_ || entries_.size() > maxLevels_) {
-    const std::string oldest = entries_.back().key;
-    std::error_code ec;
-    fs::remove(pathOf(oldest), ec);  // whoever is sending it has it mapped
-    forget(oldest);
-  }
+  // whoever is sending one has it mapped
+  while (bytes_ > maxBytes_ || entries_.size() > maxLevels_)
+    discard(std::string(entries_.back().key));
 }
 
 void LevelCache::forget(const std::string& key) {
   const auto it = byKey_.find(key);
   if (it == byKey_.end()) return;
   bytes_ -= it->second->bytes;
+  open_ -= it->second->open.has_value();
   entries_.erase(it->second);
   byKey_.erase(it);
 }
 
-std::optional<LevelFile> LevelCache::find(const std::string& key) {
-  const std::scoped_lock lock(mutex_);
-  const auto it = byKey_.find(key);
-  if (it == byKey_.end()) return std::nullopt;
-  entries_.splice(entries_.begin(), entries_, it->second);
-  std::optional<LevelFile> out = mapFile(pathOf(key));
-  if (out) out = unsealed(std::move(*out));
-  // also where no file can be opened now: what is not counted any more may not lie there
-  if (!out || out->bytes.size() != it->second->bytes) {
-    std::error_code ec;
-    fs::remove(pathOf(key), ec);
-    forget(key);
-    return std::nullopt;
-  }
-  // the next run orders them by these times
+void LevelCache::discard(const std::string& key) {
   std::error_code ec;
-  fs::last_write_time(pathOf(key), fs::file_time_type::clock::now(), ec);
-  return out;
+  fs::remove(pathOf(key), ec);
+  forget(key);
 }
 
-LevelFile LevelCache::put(const std::string& key, LevelFile level) {
+void LevelCache::hold(Entry& entry, const LevelFile& level, const FileIdentity& file) {
+  open_ += !entry.open.has_value();
+  entry.open = level, entry.file = file;
+  for (auto it = entries_.rbegin(); open_ > limits::kMaxOpenLevels; ++it)
+    if (it->open && &*it != &entry) it->open.reset(), --open_;
+}
+
+KeptAnswer LevelCache::atHand(const std::string& key) {
+  const std::scoped_lock lock(mutex_);
+  const auto it = byKey_.find(key);
+  if (it == byKey_.end() || !it->second->open) return std::nullopt;
+  Entry& entry = *it->second;
+  if (identityOf(pathOf(key)) != entry.file) {  // somebody else has written there
+    entry.open.reset(), --open_;
+    return std::nullopt;
+  }
+  entries_.splice(entries_.begin(), entries_, it->second);
+  return *entry.open;
+}
+
+bool LevelCache::has(const std::string& key) const {
+  const std::scoped_lock lock(mutex_);
+  return byKey_.contains(key);
+}
+
+KeptAnswer LevelCache::find(const std::string& key) {
+  if (KeptAnswer out = atHand(key)) return out;
+  if (!has(key)) return std::nullopt;
+  // Reading it all takes long, so others may look meanwhile.
+  std::error_code ec;
+  fs::last_write_time(pathOf(key), fs::file_time_type::clock::now(), ec);  // orders the next run
+  const auto file = identityOf(pathOf(key));
+  std::optional<LevelFile> out = mapFile(pathOf(key));
+  if (out) out = unsealed(std::move(*out));
+  const std::scoped_lock lock(mutex_);
+  const auto it = byKey_.find(key);
+  if (it == byKey_.end()) return out ? KeptAnswer(std::move(*out)) : std::nullopt;
+  // also where no file can be opened now: what is not counted any more may not lie there
+  if (!out || !file || out->bytes.size() != it->second->bytes) {
+    discard(key);
+    return std::nullopt;
+  }
+  entries_.splice(entries_.begin(), entries_, it->second);
+  hold(*it->second, *out, *file);
+  return std::move(*out);
+}
+
+Result<LevelFile> LevelCache::put(const std::string& key, Result<LevelFile> made) {
+  if (!made) return made;
+  const LevelFile& level = *made;
   const std::size_t size = level.bytes.size();
   if (size == 0 || size > maxBytes_ || freeBytes_(folder_) < reserve_ + size + kSealBytes)
-    return level;
+    return made;
   const Bytes seal = sealOf(level.bytes);
   const ByteSource content = [&](const ByteSink& sink) {
     const Status done = sink(level.bytes);
@@ -154,13 +187,15 @@ LevelFile LevelCache::put(const std::string& key, LevelFile level) {
           writeFileAtomically(pathOf(key), content, systemFileCalls(), Leftovers::kKeep);
       !written) {
     spdlog::warn("a level is not kept: {}", written.error().message);
-    return level;
+    return made;
   }
   const std::scoped_lock lock(mutex_);
+  const auto file = identityOf(pathOf(key));
   std::optional<LevelFile> out = mapFile(pathOf(key));
   add(key, size);
-  if (!out || out->bytes.size() != size + kSealBytes) return level;
+  if (!out || !file || out->bytes.size() != size + kSealBytes) return made;
   out->bytes = out->bytes.first(size);
+  if (const auto it = byKey_.find(key); it != byKey_.end()) hold(*it->second, *out, *file);
   return std::move(*out);
 }
 

@@ -47,7 +47,7 @@ struct LevelJobs::State {
   std::vector<std::jthread> threads;
 
   void work();
-  void finish(const JobPointer& job, Result<LevelFile> file);
+  void finish(const JobPointer& job);
   /// The first job of the address that has waited longest since one of its own began. REQUIRES:
   /// mutex is held, and some job waits.
   [[nodiscard]] JobPointer takeNext();
@@ -66,7 +66,7 @@ void LevelJobs::State::work() {
       job = takeNext();
       running.push_back(job);
     }
-    finish(job, options.maker(job->request, job->stop.get_token()));
+    finish(job);
   }
 }
 
@@ -95,9 +95,13 @@ JobPointer LevelJobs::State::takeNext() {
   return out;
 }
 
-void LevelJobs::State::finish(const JobPointer& job, Result<LevelFile> file) {
-  if (file && options.cache != nullptr && !job->stop.stop_requested())
-    file = options.cache->put(job->key, std::move(*file));
+void LevelJobs::State::finish(const JobPointer& job) {
+  KeptAnswer kept = options.kept != nullptr ? options.kept->find(job->key) : std::nullopt;
+  const bool found = kept.has_value();
+  Result<LevelFile> file =
+      found ? std::move(*kept) : options.maker(job->request, job->stop.get_token());
+  if (!found && options.kept != nullptr && !job->stop.stop_requested())
+    file = options.kept->put(job->key, std::move(file));
   Subscribers subscribers;
   {
     const std::scoped_lock lock(mutex);
@@ -106,7 +110,8 @@ void LevelJobs::State::finish(const JobPointer& job, Result<LevelFile> file) {
     // a point outside the mesh, or numbers that a kind of file does not know, are no failures
     const bool isAnswer = file || file.error().code == ErrorCode::kNotFound ||
                           file.error().code == ErrorCode::kBadInput;
-    if (!job->stop.stop_requested()) ++(isAnswer ? counts.made : counts.failed);
+    if (!job->stop.stop_requested())
+      ++(found ? counts.found : isAnswer ? counts.made : counts.failed);
     if (!ending) subscribers = std::exchange(job->subscribers, {});
   }
   for (auto& [number, subscription] : subscribers) subscription.done(file);
@@ -171,14 +176,18 @@ LevelJobs::~LevelJobs() {
   }
 }
 
-std::optional<LevelFile> LevelJobs::find(const LevelRequest& request) {
-  if (state_->options.cache == nullptr) return std::nullopt;
-  std::optional<LevelFile> out = state_->options.cache->find(request.key());
+KeptAnswer LevelJobs::find(const LevelRequest& request) {
+  if (state_->options.kept == nullptr) return std::nullopt;
+  KeptAnswer out = state_->options.kept->atHand(request.key());
   if (out) {
     const std::scoped_lock lock(state_->mutex);
     ++state_->counts.found;
   }
   return out;
+}
+
+bool LevelJobs::keeps(const LevelRequest& request) const {
+  return state_->options.kept != nullptr && state_->options.kept->has(request.key());
 }
 
 std::expected<LevelJobs::Subscription, LevelRefusal> LevelJobs::submit(const LevelRequest& request,

@@ -10,7 +10,7 @@
 #include <stop_token>
 #include <utility>
 
-#include "server/store/level_cache.h"
+#include "server/store/kept_answers.h"
 #include "server/store/level_request.h"
 
 namespace qtet {
@@ -20,6 +20,13 @@ struct LevelJobCounts {
   std::size_t running = 0;
   std::size_t wanted = 0;  ///< subscribers that are not answered
   std::uint64_t made = 0, found = 0, cancelled = 0, refused = 0, failed = 0;  ///< since the start
+
+  LevelJobCounts& operator+=(const LevelJobCounts& other) {
+    waiting += other.waiting, running += other.running, wanted += other.wanted;
+    made += other.made, found += other.found, cancelled += other.cancelled;
+    refused += other.refused, failed += other.failed;
+    return *this;
+  }
 };
 
 enum class LevelRefusal : std::uint8_t {
@@ -42,7 +49,7 @@ class LevelJobs {
   struct Options {
     std::size_t threads = 1;
     std::size_t most = 1;         ///< jobs waiting or running; each may hold a whole mesh in memory
-    LevelCache* cache = nullptr;  ///< nullptr: nothing is kept; else it outlives the jobs
+    KeptAnswers* kept = nullptr;  ///< nullptr: nothing is kept; else it outlives the jobs
     Maker maker{};
     std::size_t maxOfAddress = 0;  ///< of these jobs, that one address may want; 0: no bound
   };
@@ -71,8 +78,10 @@ class LevelJobs {
     std::move_only_function<void()> withdraw_;
   };
 
-  /// The level if it was kept. Thread-safe, as all that follow.
-  [[nodiscard]] std::optional<LevelFile> find(const LevelRequest& request);
+  /// The answer if it was kept and is at hand. Thread-safe, as all that follow.
+  [[nodiscard]] KeptAnswer find(const LevelRequest& request);
+  /// Whether a job for it would find it kept, and need not make it.
+  [[nodiscard]] bool keeps(const LevelRequest& request) const;
   /// Has the level made and calls `done` once, on a thread of the pool. A subscription for a job
   /// that is there already is never refused. REQUIRES: `from` outlives the subscription.
   [[nodiscard]] std::expected<Subscription, LevelRefusal> submit(const LevelRequest& request,

@@ -52,8 +52,22 @@ inline constexpr std::size_t kMaxLevelJobsPerAddress = 6;
 inline constexpr std::size_t kLevelThreads = 1;
 /// Bytes of finished levels kept on disk: some hundred of a mesh of a million cells.
 inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{2} << 30;
-/// Files of finished levels. Values of a series at a point are small files. This many take 20 MB of
-/// memory for their names, and 256 MiB of a disk that gives each 4 KiB.
+/// Files of finished levels. This many take 20 MB of memory for their names, and 256 MiB of a disk
+/// that gives each 4 KiB.
 inline constexpr std::size_t kMaxCachedLevels = 65'536;
+/// Finished levels held open, a mapping each, whose checksum was compared: as many as are asked for
+/// again and again, whole or range by range.
+inline constexpr std::size_t kMaxOpenLevels = 64;
+
+// ---- values of series at points
+
+/// Jobs waiting or running at a time, beside those of levels. The part of one address is as there.
+inline constexpr std::size_t kMaxPointJobs = 64;
+/// Threads that wait for the processes that make them.
+inline constexpr std::size_t kPointThreads = 1;
+/// Answers kept in memory, and their bytes: 1,000 of a series of 8,192 instants, or all of short
+/// ones.
+inline constexpr std::size_t kMaxKeptPoints = 16'384;
+inline constexpr std::uint64_t kMaxKeptPointBytes = 64u << 20;
 
 }  // namespace qtet::limits

@@ -288,7 +288,7 @@ TEST(Program, theDeathOfAProcessThatDecodesIsA500OfOneRequest) {
   const std::string level =
       client.get("/v1/meshes/" + log.stem().string() + "/levels/1.vtu").header("location");
   const std::vector<pid_t> decoders = decodersOf(program);
-  ASSERT_EQ(decoders.size(), limits::kLevelThreads + limits::kCheckThreads);
+  ASSERT_EQ(decoders.size(), limits::kLevelThreads + limits::kPointThreads + limits::kCheckThreads);
   for (const pid_t decoder : decoders) ::kill(decoder, SIGSTOP);
   client.send("GET " + level + " HTTP/1.1\r\nHost: a\r\n\r\n");
   test::RawClient other(port);

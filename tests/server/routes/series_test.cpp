@@ -98,8 +98,10 @@ TEST_F(SeriesServer, aPointOutsideIsNotFoundAndNoFailure) {
   EXPECT_EQ(answer.header("content-type"), "application/problem+json");
   EXPECT_NE(answer.body.find("lies in no cell of level"), std::string::npos) << answer.body;
   EXPECT_NE(answer.body.find("whose box is from"), std::string::npos) << answer.body;
+  EXPECT_EQ(client.get(series("x=1e300&y=-1e300&z=0&field=T")).body, answer.body);
   EXPECT_TRUE(server.comesTo("levels_failed_total", 0));
-  EXPECT_EQ(client.get("/livez").status, 200u) << "the connection goes on";
+  EXPECT_TRUE(server.comesTo("levels_made_total", 1));
+  EXPECT_TRUE(server.comesTo("levels_found_total", 1)) << "the answer is kept";
 }
 
 TEST_F(SeriesServer, aLevelOfOneTimeIsTheFileThatExtractWrites) {

@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "server/store/kept_points.h"
+#include "server/store/level_cache.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
 #include "tests/server/store/held_maker.h"
@@ -161,7 +163,7 @@ TEST_F(LevelJobsTest, finishedLevelsAreKeptOnDiskUpToALimit) {
   ASSERT_TRUE(again);
   const auto found = (*again)->find(level(5).key());
   ASSERT_TRUE(found) << "a later run finds them";
-  EXPECT_EQ(found->bytes.size(), 6u);
+  EXPECT_EQ((*found)->bytes.size(), 6u);
   std::filesystem::resize_file(folder.path() / "levels" / (level(3).key() + ".level"), 1);
   EXPECT_FALSE((*again)->find(level(3).key())) << "not the file that was put there";
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "levels" / (level(3).key() + ".level")))
@@ -195,6 +197,9 @@ TEST(LevelCache, aDamagedLevelIsNoticedAndMadeAnew) {
   const auto damages = std::vector<std::function<void()>>{
       [&] {
         std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(3).put('x');
+        // later than the clock's last tick
+        std::filesystem::last_write_time(
+            file, std::filesystem::file_time_type::clock::now() + std::chrono::seconds(1));
       },
       [&] { std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1); },
       [&] { std::filesystem::resize_file(file, std::filesystem::file_size(file) + 1); },
@@ -206,7 +211,7 @@ TEST(LevelCache, aDamagedLevelIsNoticedAndMadeAnew) {
     for (std::size_t i = 0; i < damages.size(); ++i) {
       auto cache = LevelCache::open(folder.path(), 100);
       ASSERT_TRUE(cache);
-      EXPECT_TRUE(std::ranges::equal((*cache)->put(key, inMemory(level)).bytes, level));
+      EXPECT_TRUE(std::ranges::equal((*cache)->put(key, inMemory(level))->bytes, level));
       EXPECT_TRUE((*cache)->find(key));
       damages[i]();
       if (restarted) cache = LevelCache::open(folder.path(), 100);
@@ -216,6 +221,64 @@ TEST(LevelCache, aDamagedLevelIsNoticedAndMadeAnew) {
     }
 }
 
+TEST(LevelCache, theLevelsUsedLastAreAtHandUntilTheirFilesChange) {
+  const test::TempFolder folder;
+  const auto keyOf = [](std::size_t number) {
+    const std::string digits = std::to_string(number);
+    return digits + std::string(64 - digits.size(), 'a');
+  };
+  const Bytes level(3, 7);
+  const auto cache = LevelCache::open(folder.path(), 1'000'000, 0);
+  for (std::size_t i = 0; i <= limits::kMaxOpenLevels; ++i)
+    ASSERT_TRUE((*cache)->put(keyOf(i), inMemory(level)));
+  EXPECT_FALSE((*cache)->atHand(keyOf(0)));
+  EXPECT_TRUE((*cache)->atHand(keyOf(1)));
+  EXPECT_TRUE((*cache)->has(keyOf(0)));
+  EXPECT_TRUE((*cache)->find(keyOf(0)));
+  const KeptAnswer opened = (*cache)->atHand(keyOf(0));
+  ASSERT_TRUE(opened);
+  EXPECT_TRUE(std::ranges::equal((*opened)->bytes, level));
+  EXPECT_FALSE((*cache)->atHand(keyOf(2))) << "the least recently used went";
+
+  std::filesystem::last_write_time(
+      folder.path() / (keyOf(0) + ".level"),
+      std::filesystem::file_time_type::clock::now() + std::chrono::seconds(1));
+  EXPECT_FALSE((*cache)->atHand(keyOf(0))) << "it may be another one";
+  EXPECT_TRUE((*cache)->find(keyOf(0))) << "it is not";
+  EXPECT_FALSE((*cache)->has(keyOf(limits::kMaxOpenLevels + 1)));
+  const Error error{ErrorCode::kIo, "", 0};
+  EXPECT_FALSE((*cache)->put(keyOf(999), std::unexpected(error)));
+  EXPECT_FALSE((*cache)->has(keyOf(999)));
+}
+
+TEST(KeptPoints, keepsSoManyAnswersAndSoManyBytesAndThatAPointIsOutside) {
+  const auto put = [](KeptPoints& points, const std::string& key, std::size_t bytes) {
+    (void)points.put(key, inMemory(Bytes(bytes, 1)));
+  };
+  KeptPoints few(2), small(100, 3 * (2 + 10));
+  for (const char* key : {"a", "b", "c"}) put(few, key, 10), put(small, key, 10);
+  EXPECT_FALSE(few.has("a"));
+  EXPECT_TRUE(few.atHand("b"));
+  EXPECT_TRUE(small.has("a")) << "just as many bytes as may be";
+  put(small, "d", 10);
+  EXPECT_FALSE(small.has("a"));
+  put(small, "large", 27);  // with twice its key one too many
+  EXPECT_FALSE(small.has("large"));
+  EXPECT_TRUE(small.has("d"));
+  put(few, "d", 10);
+  EXPECT_FALSE(few.has("c")) << "b was used since";
+
+  const auto answer = [](ErrorCode code) {
+    return Result<LevelFile>(std::unexpected(Error{code, "outside", Error::kNoOffset}));
+  };
+  EXPECT_FALSE(few.put("outside", answer(ErrorCode::kNotFound)));
+  EXPECT_FALSE(few.put("io", answer(ErrorCode::kIo)));
+  const KeptAnswer outside = few.atHand("outside");
+  ASSERT_TRUE(outside);
+  EXPECT_EQ(outside->error().message, "outside");
+  EXPECT_FALSE(few.has("io"));
+}
+
 TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
   const test::TempFolder folder;
   std::uintmax_t left = 0;
@@ -223,14 +286,14 @@ TEST(LevelCache, aDiskWithTooLittleLeftKeepsNothing) {
       LevelCache::open(folder.path(), 100, 50, [&](const std::filesystem::path&) { return left; });
   const std::string key(64, 'c');
   const Bytes level(10, 1);
-  EXPECT_TRUE(std::ranges::equal((*cache)->put(key, inMemory(level)).bytes, level))
+  EXPECT_TRUE(std::ranges::equal((*cache)->put(key, inMemory(level))->bytes, level))
       << "from memory";
   EXPECT_FALSE((*cache)->find(key));
   constexpr std::uintmax_t kNeeded = 50 + 10 + 8;  // the reserve, the level, its seal
   for (const std::uintmax_t bytes : {kNeeded - 1, kNeeded, kNeeded + 1}) {
     left = bytes;
     const std::string own(64, static_cast<char>('0' + bytes - kNeeded + 1));
-    EXPECT_TRUE(std::ranges::equal((*cache)->put(own, inMemory(level)).bytes, level));
+    EXPECT_TRUE(std::ranges::equal((*cache)->put(own, inMemory(level))->bytes, level));
     EXPECT_EQ((*cache)->find(own).has_value(), bytes >= kNeeded) << bytes;
   }
 }
