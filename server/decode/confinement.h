@@ -4,7 +4,7 @@
 namespace qtet {
 
 /// From now on no thread of this process can open a file, a socket or another process, or make
-/// memory executable: all calls but those of computing with open files fail with EPERM. False:
+/// memory executable. All calls but those of computing with open files fail with EPERM. False:
 /// this kernel has no such filter, and nothing has changed.
 [[nodiscard]] bool confine();
 

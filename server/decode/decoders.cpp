@@ -30,7 +30,7 @@ constexpr std::uint64_t kForgedFactor = 3;
 /// A file in memory that a level is written into. -1: there is none, and errno says why.
 int fileForLevel() { return ::memfd_create("qtet-level", MFD_CLOEXEC | MFD_ALLOW_SEALING); }
 
-/// What the process wrote. From now on it can change nothing in it. Errors: io.
+/// The bytes that the process wrote. From now on it can change nothing in them. Errors: io.
 Result<LevelFile> levelIn(const Descriptor& file) {
   struct stat info{};
   if (::fcntl(file.number, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0 ||
