@@ -18,6 +18,11 @@
 
 namespace qtet {
 
+namespace limits {
+/// The longest time of draining: a day. deploy/qtet-server.service waits for longer.
+inline constexpr std::chrono::seconds kMaxDrainTime{86'400};
+}  // namespace limits
+
 struct CommandLine {
   enum class Action { kServe, kCheckConfig, kHelp, kHelpAll, kVersion };
   Action action = Action::kServe;
