@@ -14,7 +14,7 @@
 namespace qtet {
 namespace {
 
-/// What the first group of `pattern` matches in the file of server/deploy; "": nothing.
+/// The first group of `pattern` where it matches the file of server/deploy; "": nowhere.
 std::string found(const char* file, const std::string& pattern) {
   std::ifstream in(std::filesystem::path(testing::kSourceFolder) / "server/deploy" / file);
   std::ostringstream text;
