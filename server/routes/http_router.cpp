@@ -265,7 +265,7 @@ Reply Router::viewerReply(const RequestView& request, const RequestTarget& targe
       return pageReply(request, *file, *mesh, pageLinks_, std::move(resource), *pages_);
     if (!pageLinks_.empty()) resource.headers.add("Link", pageLinks_);
   }
-  return variantReply(request, std::move(resource), {file->bytes, file->gzip, file->zstd}, nullptr);
+  return variantReply(request, std::move(resource), viewer_.variantsOf(*file), nullptr);
 }
 
 }  // namespace qtet
