@@ -93,6 +93,9 @@ for _ in {1..50}; do
 done
 [[ $(get /v1/meshes) == *'"meshes":[]'* ]] || fail "an empty folder is not an empty list"
 get / | grep >/dev/null '<qtet-viewer\|<script' || fail "the viewer is missing"
+viewer=$root/usr/share/qtet/viewer
+[[ -f $viewer/index.html.gz && -f $viewer/index.html.zst ]] ||
+  fail "the viewer's files are not compressed"
 
 # ---- the tool: makes a log, which the running server takes up
 

@@ -1,6 +1,7 @@
 #include "proto/utf8.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace qtet {
@@ -36,6 +37,20 @@ bool isUtf8(std::string_view text) {
     text.remove_prefix(size);
   }
   return true;
+}
+
+bool hasControl(std::string_view text) {
+  constexpr std::array<std::string_view, 2> kSeparators = {"\xE2\x80\xA8", "\xE2\x80\xA9"};
+  for (; !text.empty(); text.remove_prefix(1)) {
+    const auto first = static_cast<std::uint8_t>(text[0]);
+    if (first < 0x20 || first == 0x7F) return true;
+    if (first == 0xC2 && text.size() > 1 && isContinuation(text[1]) &&
+        static_cast<std::uint8_t>(text[1]) < 0xA0)
+      return true;
+    for (const std::string_view separator : kSeparators)
+      if (text.starts_with(separator)) return true;
+  }
+  return false;
 }
 
 std::string soundUtf8(std::string_view text) {

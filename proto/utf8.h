@@ -12,4 +12,8 @@ namespace qtet {
 /// `text` with a question mark for each byte that belongs to no sound character: as long as it was.
 [[nodiscard]] std::string soundUtf8(std::string_view text);
 
+/// Whether it has a character that moves, ends or hides a line where it is shown: C0, DEL, C1, or
+/// the separators U+2028 and U+2029.
+[[nodiscard]] bool hasControl(std::string_view text);
+
 }  // namespace qtet

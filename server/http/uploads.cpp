@@ -163,15 +163,28 @@ Reply Upload::finish(const std::stop_token& stop) {
   }
 }
 
+std::optional<Reply> Upload::baseGone(const std::string& digest) const {
+  if (!request_.from) return std::nullopt;
+  const MeshPointer mesh = uploads_.store_.find(request_.id);
+  if (mesh && (mesh->log.digest() == *request_.from || mesh->log.digest() == digest))
+    return std::nullopt;
+  return problem(409, "upload-conflict",
+                 "the mesh's log was replaced or removed while this delta to it arrived; nothing "
+                 "was changed; look at the present log, then send yours again");
+}
+
 Reply Upload::publish(const std::string& digest) {
   const std::scoped_lock lock(uploads_.publishing_);
   std::optional<FolderLock> folder(uploads_.store_.folder());
-  if (request_.ifMatch || request_.ifNoneMatch)
+  if (request_.ifMatch || request_.ifNoneMatch || request_.from)
     (void)uploads_.store_.rescan(request_.id);  // what another server has published counts
   if (std::optional<Reply> refusal = uploads_.precondition(request_)) return std::move(*refusal);
+  if (std::optional<Reply> refusal = baseGone(digest)) return std::move(*refusal);
+  // A file that is no sound log stands for no mesh.
+  const bool unsound = uploads_.store_.catalogue()->refused.contains(request_.id);
   const bool replaced = uploads_.store_.find(request_.id) != nullptr;
   const fs::path target = *pathOfMesh(uploads_.store_.folder(), request_.id);
-  const int failed = publishAs(part_, target, request_.ifNoneMatch && !replaced);
+  const int failed = publishAs(part_, target, request_.ifNoneMatch && !replaced && !unsound);
   if (failed != 0)
     if (std::optional<Reply> refusal = folderInTheWay(target)) return std::move(*refusal);
   if (failed == EEXIST)

@@ -68,6 +68,9 @@ class Upload {
   Reply diskTrouble(const std::string& what, int number);
   /// nullopt: the log is sound, and `mesh` it; else the answer.
   std::optional<Reply> verify(const std::stop_token& stop, MeshPointer& mesh);
+  /// 409 where the mesh's log is neither the one that the body was a delta to nor the new one.
+  /// REQUIRES: `uploads_.publishing_` is held.
+  [[nodiscard]] std::optional<Reply> baseGone(const std::string& digest) const;
   Reply publish(const std::string& digest);
 
   Uploads& uploads_;

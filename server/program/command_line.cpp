@@ -228,7 +228,8 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.number("max-check-bytes", out.maxCheckBytes, 1, kAny);
   reader.seconds("max-check-seconds", out.maxCheckTime, 1, 1'000'000);
   reader.number("disk-reserve-bytes", out.diskReserve, 0, kAny);
-  reader.seconds("drain-seconds", out.drainTime, 0, 86'400);
+  reader.seconds("drain-seconds", out.drainTime, 0,
+                 static_cast<std::uint64_t>(limits::kMaxDrainTime.count()));
   reader.path("ticket-key", out.ticketKey);
   reader.number("max-connections", out.maxConnections, 1, 1'000'000);
   reader.number("max-connections-per-address", out.maxConnectionsPerAddress, 0, 1'000'000);

@@ -19,6 +19,11 @@
 
 namespace qtet {
 
+namespace limits {
+/// The longest time of draining: a day. deploy/qtet-server.service waits for longer.
+inline constexpr std::chrono::seconds kMaxDrainTime{3'600};
+}  // namespace limits
+
 struct CommandLine {
   enum class Action { kServe, kCheckConfig, kHelp, kHelpAll, kVersion };
   Action action = Action::kServe;

@@ -109,6 +109,14 @@ std::jthread readOn(const MeshStore& store) {
   });
 }
 
+/// Makes what the viewer's folder lacks beside the serving, after the threads that serve.
+std::jthread compressRest(ViewerFiles& viewer) {
+  return std::jthread([&viewer](const std::stop_token& stop) {
+    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), limits::kReadingNiceness);
+    viewer.compressRest(stop);
+  });
+}
+
 Result<std::optional<FolderWatch>> watchFolder(const CommandLine& options, const MeshStore& store) {
   if (!options.watch) return std::optional<FolderWatch>();
   Result<FolderWatch> watch = FolderWatch::start(options.folder, [&store] { lookAgain(store); });
@@ -218,7 +226,7 @@ int serve(const CommandLine& options) {
   if (!store) return cannotServe(store.error());
   const CataloguePointer catalogue = store->catalogue();
   logRefused(catalogue->refused);
-  const Result<ViewerFiles> viewer = loadViewer(options);
+  Result<ViewerFiles> viewer = loadViewer(options);
   if (!viewer) return cannotServe(viewer.error());
   if (viewer->empty())
     spdlog::info("no viewer found; build it or name it with --viewer DIR, the API works without");
@@ -257,6 +265,7 @@ int serve(const CommandLine& options) {
     std::cout << "qtet-server: operators' address is " << *options.adminHost << ":"
               << server.adminPort() << std::endl;
   const std::jthread reading = readOn(*store);
+  const std::jthread compressing = compressRest(*viewer);
   server.run();
   return 0;
 }

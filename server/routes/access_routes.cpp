@@ -31,6 +31,12 @@ std::optional<Reply> refusalOf(Tokens::Verdict verdict, Tokens::Scope scope) {
               : "send a token that may write this mesh, as Authorization: Bearer TOKEN");
 }
 
+std::optional<Reply> repeatedRefusal(const RequestTarget& target) {
+  const std::optional<std::string> name = target.repeatedParameter();
+  if (!name) return std::nullopt;
+  return badRequestReply("the parameter '" + *name + "' is given twice; give it once");
+}
+
 Reply ticketReply(const RequestView& request, Access& access) {
   const std::optional<SecretDigest> bearer = bearerDigest(request.authorization);
   if (!access.tokens()->knows(bearer))
@@ -48,9 +54,12 @@ Reply ticketReply(const RequestView& request, Access& access) {
 }
 
 std::expected<MayRead, Reply> admitStream(const RequestView& request, Access* access) {
+  const std::optional<RequestTarget> target = parseTarget(request.target);
+  if (target)
+    if (std::optional<Reply> refusal = repeatedRefusal(*target))
+      return std::unexpected(std::move(*refusal));
   if (access == nullptr) return MayRead();
   std::optional<SecretDigest> bearer = bearerDigest(request.authorization);
-  const std::optional<RequestTarget> target = parseTarget(request.target);
   const std::optional<std::string> ticket = target ? target->parameter("ticket") : std::nullopt;
   if (ticket) bearer = access->takeTicket(*ticket);
   // Who says nothing may still open what is anyone's.

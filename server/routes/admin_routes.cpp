@@ -1,5 +1,6 @@
 #include "server/routes/admin_routes.h"
 
+#include "codec/log/log_versions.h"
 #include "proto/json_reader.h"
 #include "proto/messages.h"
 #include "proto/version.h"
@@ -19,9 +20,11 @@ std::optional<Reply> AdminRoutes::route(const RequestTarget& target) const {
   if (name == "metrics")
     return momentaryReply(200, "text/plain; version=0.0.4; charset=utf-8", metrics.text(figures()));
   if (name == "version")
-    return momentaryReply(
-        200, "application/json",
-        dumpJson({{"version", version()}, {"logFormat", "2.0"}, {"protocol", kStreamSubprotocol}}));
+    return momentaryReply(200, "application/json",
+                          dumpJson({{"version", version()},
+                                    {"logFormat", newestLogVersion()},
+                                    {"oldestLogFormat", oldestLogVersion()},
+                                    {"protocol", kStreamSubprotocol}}));
   return std::nullopt;
 }
 

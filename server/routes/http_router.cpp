@@ -150,6 +150,7 @@ std::optional<Answer> Router::routeWithTokens(const RequestView& request,
   if (!ofTickets && (!isMeshPath(target) || reads)) return std::nullopt;
   const std::string_view allow = ofTickets ? kAllowTickets : kAllowWriting;
   if (request.method == "OPTIONS") return optionsReply(allow);
+  if (std::optional<Reply> refusal = repeatedRefusal(target)) return std::move(*refusal);
   if (ofTickets && request.method == "POST") return ticketReply(request, writing_->access);
   if (!ofTickets && (request.method == "PUT" || request.method == "DELETE"))
     return routeWriting(request, target, writing_->access);
@@ -184,6 +185,7 @@ Answer Router::find(const RequestView& request, const RequestTarget& target) con
 }
 
 Answer Router::api(const RequestView& request, const RequestTarget& target) const {
+  if (std::optional<Reply> refusal = repeatedRefusal(target)) return std::move(*refusal);
   const auto& path = target.segments;
   if (path.size() == 2 && path[1] == "stream") {
     Reply out = problem(426, "upgrade-required", "this is a WebSocket, subprotocol qtet.v1");
@@ -263,7 +265,7 @@ Reply Router::viewerReply(const RequestView& request, const RequestTarget& targe
       return pageReply(request, *file, *mesh, pageLinks_, std::move(resource), *pages_);
     if (!pageLinks_.empty()) resource.headers.add("Link", pageLinks_);
   }
-  return variantReply(request, std::move(resource), {file->bytes, file->gzip, file->zstd}, nullptr);
+  return variantReply(request, std::move(resource), viewer_.variantsOf(*file), nullptr);
 }
 
 }  // namespace qtet

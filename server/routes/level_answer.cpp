@@ -32,6 +32,11 @@ bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == Le
 
 }  // namespace
 
+std::optional<std::uint32_t> parseLevel(std::string_view text) {
+  if (text.starts_with('0') && text != "0") return std::nullopt;
+  return parseNumber<std::uint32_t>(text);
+}
+
 std::optional<double> parseFinite(std::string_view text) {
   const auto out = parseNumber<double>(text);
   return out && std::isfinite(*out) ? out : std::nullopt;

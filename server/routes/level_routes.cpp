@@ -65,9 +65,8 @@ OrRefusal<std::uint32_t> fittingLevel(const RequestTarget& target, const ServedM
 OrRefusal<std::uint32_t> levelOfName(std::string_view name, const RequestTarget& target,
                                      const ServedMesh& mesh) {
   if (name == "fit") return fittingLevel(target, mesh);
-  const auto level = parseNumber<std::uint32_t>(name);
-  const bool canonical = name == "0" || !name.starts_with('0');
-  if (!level || !canonical || *level >= mesh.manifest.levels.size())
+  const auto level = parseLevel(name);
+  if (!level || *level >= mesh.manifest.levels.size())
     return notFound("there is no such level; this mesh has " + levelsText(mesh) +
                     ", and fit.vtu?tets=N");
   return *level;

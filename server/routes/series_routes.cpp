@@ -45,9 +45,10 @@ OrRefusal<std::array<double, 3>> pointOf(const RequestTarget& target) {
 }
 
 OrRefusal<std::uint32_t> namedLevel(const ServedMesh& mesh, const std::string& text) {
-  const auto level = parseNumber<std::uint32_t>(text);
-  if (!level) return badRequest("level is '" + text + "'; give a whole number, like level=3");
-  if (*level >= mesh.manifest.levels.size())
+  if (!parseNumber<std::uint32_t>(text))
+    return badRequest("level is '" + text + "'; give a whole number, like level=3");
+  const auto level = parseLevel(text);
+  if (!level || *level >= mesh.manifest.levels.size())
     return notFound("there is no level " + text + "; this mesh has " + levelsText(mesh));
   return *level;
 }

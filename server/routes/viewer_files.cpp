@@ -1,5 +1,6 @@
 #include "server/routes/viewer_files.h"
 
+#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 #include <fstream>
 #include <utility>
 
+#include "server/http/http_resource.h"
 #include "server/routes/viewer_limits.h"
-#include "server/wire/content_coding.h"
 #include "server/wire/digest.h"
 
 namespace qtet {
@@ -69,6 +70,12 @@ Result<ViewerFile> readFile(const fs::path& path, const std::string& name, std::
       name.starts_with("assets/")};
 }
 
+/// Kinds of files that compressing makes smaller.
+bool isText(std::string_view type) {
+  return type.starts_with("text/") || type == "application/json" || type == "image/svg+xml" ||
+         type == "application/wasm" || type == "application/manifest+json";
+}
+
 bool hidden(const fs::path& path) { return path.filename().native().starts_with('.'); }
 
 }  // namespace
@@ -98,8 +105,8 @@ Result<ViewerFiles> ViewerFiles::load(const fs::path& folder) {
     if (!file) return std::unexpected(file.error());
     out.files_.emplace(name, std::move(*file));
   }
-  out.attachCompressed();
-  out.compressText();
+  out.attach(".gz", ContentCoding::kGzip, &CodedFile::gzip);
+  out.attach(".zst", ContentCoding::kZstd, &CodedFile::zstd);
   if (ec)
     return fail(ErrorCode::kIo,
                 folder.string() + ": " + ec.message() + "; name the built viewer's folder");
@@ -109,31 +116,46 @@ Result<ViewerFiles> ViewerFiles::load(const fs::path& folder) {
   return out;
 }
 
-void ViewerFiles::attachCompressed() {
-  constexpr std::string_view kSuffix = ".gz";
+void ViewerFiles::attach(std::string_view suffix, ContentCoding coding, Bytes CodedFile::* form) {
   for (auto it = files_.begin(); it != files_.end();) {
     const std::string_view name = it->first;
-    const auto original = name.ends_with(kSuffix)
-                              ? files_.find(name.substr(0, name.size() - kSuffix.size()))
+    const auto original = name.ends_with(suffix)
+                              ? files_.find(name.substr(0, name.size() - suffix.size()))
                               : files_.end();
     if (original == files_.end()) {
       ++it;
-    } else {
-      original->second.gzip = std::move(it->second.bytes);
-      it = files_.erase(it);
+      continue;
     }
+    if (isCodingOf(it->second.bytes, coding, original->second.bytes))
+      original->second.built.*form = std::move(it->second.bytes);
+    else
+      spdlog::warn("the viewer's {} is not {} compressed; build the viewer again", name,
+                   original->first);
+    it = files_.erase(it);
   }
 }
 
-void ViewerFiles::compressText() {
+Variants ViewerFiles::variantsOf(const ViewerFile& file) const {
+  const bool rest = restIsThere_->load(std::memory_order_acquire);
+  const auto form = [&](Bytes CodedFile::* which) {
+    const Bytes& built = file.built.*which;
+    return !built.empty() || !rest ? ByteView(built) : ByteView(file.late.*which);
+  };
+  return {file.bytes, form(&CodedFile::gzip), form(&CodedFile::zstd)};
+}
+
+void ViewerFiles::compressRest(const std::stop_token& stop) {
   for (auto& [name, file] : files_) {
-    const bool text = file.type.starts_with("text/") || file.type == "application/json" ||
-                      file.type == "image/svg+xml" || file.type == "application/wasm" ||
-                      file.type == "application/manifest+json";
-    if (!text || file.bytes.size() < kMinCompressedBytes) continue;
-    if (file.gzip.empty()) file.gzip = compressed(file.bytes, ContentCoding::kGzip);
-    file.zstd = smallestZstd(file.bytes);
+    if (stop.stop_requested()) return;
+    if (!isText(file.type) || file.bytes.size() < kMinCompressedBytes) continue;
+    if (file.built.gzip.empty()) file.late.gzip = compressed(file.bytes, ContentCoding::kGzip);
+    if (!file.built.zstd.empty()) continue;
+    file.late.zstd = compressed(file.bytes, ContentCoding::kZstd);
+    // Clients that take both get this one.
+    if (const Bytes& gzip = file.built.gzip; !gzip.empty() && file.late.zstd.size() >= gzip.size())
+      file.late.zstd.clear();
   }
+  restIsThere_->store(true, std::memory_order_release);
 }
 
 const ViewerFile* ViewerFiles::find(std::string_view path) const {

@@ -88,7 +88,8 @@ Answer routeWriting(const RequestView& request, const RequestTarget& target, con
   if (std::optional<Reply> refusal = authorise(request, id, access)) return std::move(*refusal);
   if (!pathOfMesh("", id))
     return problem(404, "not-found",
-                   "this cannot be the name of a mesh: a file name, not hidden, in UTF-8");
+                   "this cannot be the name of a mesh: a file name, not hidden, in UTF-8, without "
+                   "control characters");
   UploadRequest out{.id = id};
   if (const auto bearer = bearerDigest(request.authorization))
     out.token.assign(bearer->begin(), bearer->end());

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "proto/json_reader.h"
+#include "proto/utf8.h"
 #include "server/store/folder_names.h"
 #include "server/store/store_limits.h"
 
@@ -342,10 +343,8 @@ bool MeshStore::mayHaveLog(std::string_view digest) const {
 }
 
 std::optional<fs::path> pathOfMesh(const fs::path& folder, std::string_view id) {
-  const bool odd = std::ranges::any_of(id, [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F || c == '/' || c == '\\';
-  });
-  if (id.empty() || id.size() > limits::kMaxIdBytes || id.front() == '.' || odd)
+  if (id.empty() || id.size() > limits::kMaxIdBytes || id.front() == '.' ||
+      id.find_first_of("/\\") != std::string_view::npos || hasControl(id))
     return std::nullopt;
   // dumpJson replaces what is not UTF-8, so a name that survives it is.
   if (Json::parse(dumpJson(Json(std::string(id)))).get<std::string>() != id) return std::nullopt;

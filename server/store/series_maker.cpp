@@ -98,9 +98,12 @@ std::string jsonText(const LevelRequest& request, const std::string& name, CellI
 }
 
 /// As RFC 4180 has it: in quotes where a character of it means something else.
+/// A name is a stranger's. Behind an apostrophe no spreadsheet takes it for a formula (OWASP, "CSV
+/// Injection").
 std::string csvCell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
+  const bool looksLikeFormula = text.find_first_of("=+-@\t\r") == 0;
+  if (!looksLikeFormula && text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = looksLikeFormula ? "\"'" : "\"";
   for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
   return out + '"';
 }

@@ -17,8 +17,6 @@ namespace {
 /// Levels at which a level of 100 MB takes two or three seconds: higher ones gain 1-2 % of floats.
 constexpr int kGzipLevel = 6;
 constexpr int kZstdLevel = 6;
-/// Above it windows grow beyond what browsers take.
-constexpr int kSmallestZstdLevel = 19;
 
 bool equalsIgnoringCase(std::string_view a, std::string_view b) {
   return std::ranges::equal(
@@ -51,11 +49,29 @@ Bytes gzipped(ByteView bytes) {
   return out;
 }
 
-Bytes zstandard(ByteView bytes, int level = kZstdLevel) {
+Bytes zstandard(ByteView bytes) {
   Bytes out(ZSTD_compressBound(bytes.size()));
-  const std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
+  const std::size_t size =
+      ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), kZstdLevel);
   out.resize(ZSTD_isError(size) != 0 ? 0 : size);
   return out;
+}
+
+/// Bytes written to `out`; nullopt: they are more, or `coded` is not one whole gzip member.
+std::optional<std::size_t> inflated(ByteView coded, Bytes& out) {
+  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> with(
+      libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+  std::size_t taken = 0, size = 0;
+  const bool sound =
+      with && libdeflate_gzip_decompress_ex(with.get(), coded.data(), coded.size(), out.data(),
+                                            out.size(), &taken, &size) == LIBDEFLATE_SUCCESS;
+  return sound && taken == coded.size() ? std::optional(size) : std::nullopt;
+}
+
+/// The same of whole Zstandard frames.
+std::optional<std::size_t> decodedZstd(ByteView coded, Bytes& out) {
+  const std::size_t size = ZSTD_decompress(out.data(), out.size(), coded.data(), coded.size());
+  return ZSTD_isError(size) != 0 ? std::nullopt : std::optional(size);
 }
 
 }  // namespace
@@ -110,9 +126,12 @@ Bytes compressed(ByteView bytes, ContentCoding coding) {
   return out.size() < bytes.size() ? out : Bytes();
 }
 
-Bytes smallestZstd(ByteView bytes) {
-  Bytes out = zstandard(bytes, kSmallestZstdLevel);
-  return out.size() < bytes.size() ? out : Bytes();
+bool isCodingOf(ByteView coded, ContentCoding coding, ByteView bytes) {
+  assert(coding != ContentCoding::kIdentity);
+  Bytes out(bytes.size() + 1);  // room for a byte too many
+  const std::optional<std::size_t> size =
+      coding == ContentCoding::kGzip ? inflated(coded, out) : decodedZstd(coded, out);
+  return size == bytes.size() && std::equal(bytes.begin(), bytes.end(), out.begin());
 }
 
 }  // namespace qtet

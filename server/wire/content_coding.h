@@ -25,7 +25,8 @@ inline constexpr std::size_t kMinCompressedBytes = 1024;
 [[nodiscard]] Bytes encoded(Bytes bytes, ContentCoding coding);
 /// The same, but empty where that would be no smaller. REQUIRES: not kIdentity.
 [[nodiscard]] Bytes compressed(ByteView bytes, ContentCoding coding);
-/// The same by Zstandard, smaller and far slower: for what is compressed once and sent often.
-[[nodiscard]] Bytes smallestZstd(ByteView bytes);
+/// Whether `coded` is `bytes` in that coding, whole and with nothing behind it. REQUIRES: not
+/// kIdentity.
+[[nodiscard]] bool isCodingOf(ByteView coded, ContentCoding coding, ByteView bytes);
 
 }  // namespace qtet

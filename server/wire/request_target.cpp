@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <set>
 
 namespace qtet {
 namespace {
@@ -14,12 +15,13 @@ int hexValue(char c) {
   return -1;
 }
 
-std::optional<std::string> percentDecode(std::string_view text) {
+/// `space` stands for a space as well.
+std::optional<std::string> percentDecode(std::string_view text, char space = ' ') {
   std::string out;
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '%') {
-      out += text[i];
+      out += text[i] == space ? ' ' : text[i];
       continue;
     }
     const bool whole = text.size() - i > 2;
@@ -30,6 +32,26 @@ std::optional<std::string> percentDecode(std::string_view text) {
     i += 2;
   }
   return out;
+}
+
+/// As forms, URLSearchParams and urllib write a space.
+constexpr char kSpaceOfQuery = '+';
+
+struct Pair {
+  std::string_view name, value;
+};
+
+/// The pair at the front of a query, which moves on behind it.
+Pair takePair(std::string_view& query) {
+  const std::string_view pair = query.substr(0, query.find('&'));
+  query.remove_prefix(std::min(pair.size() + 1, query.size()));
+  const std::size_t equals = std::min(pair.find('='), pair.size());
+  return {pair.substr(0, equals), pair.substr(std::min(equals + 1, pair.size()))};
+}
+
+/// Decoded; as it stands where a code in it is broken.
+std::string nameOf(const Pair& pair) {
+  return percentDecode(pair.name, kSpaceOfQuery).value_or(std::string(pair.name));
 }
 
 bool printable(std::string_view text) {
@@ -52,12 +74,20 @@ std::string_view stripAuthority(std::string_view target) {
 }  // namespace
 
 std::optional<std::string> RequestTarget::parameter(std::string_view name) const {
-  std::string_view rest = query;
-  while (!rest.empty()) {
-    const std::string_view pair = rest.substr(0, rest.find('&'));
-    rest.remove_prefix(std::min(pair.size() + 1, rest.size()));
-    if (pair.substr(0, pair.find('=')) == name)
-      return percentDecode(pair.substr(std::min(name.size() + 1, pair.size())));
+  for (std::string_view rest = query; !rest.empty();) {
+    const Pair pair = takePair(rest);
+    if (nameOf(pair) == name) return percentDecode(pair.value, kSpaceOfQuery);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> RequestTarget::repeatedParameter() const {
+  std::set<std::string> names;
+  for (std::string_view rest = query; !rest.empty();) {
+    const Pair pair = takePair(rest);
+    if (pair.name.empty()) continue;
+    const auto [name, isNew] = names.insert(nameOf(pair));
+    if (!isNew) return *name;
   }
   return std::nullopt;
 }

@@ -14,8 +14,11 @@ struct RequestTarget {
   std::vector<std::string> segments;
   std::string query;  ///< as it stands, without the ?
 
-  /// The decoded value of the first query parameter of that name.
+  /// The decoded value of the first query parameter of that name; a + in it is a space. nullopt:
+  /// there is none, or a percent code in it is broken.
   [[nodiscard]] std::optional<std::string> parameter(std::string_view name) const;
+  /// The decoded name of a query parameter that is given twice; nullopt: there is none.
+  [[nodiscard]] std::optional<std::string> repeatedParameter() const;
 };
 
 /// Reads origin-form ("/path?query") and http absolute-form targets. nullopt: anything else, a

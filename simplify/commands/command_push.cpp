@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "codec/log/log_delta.h"
@@ -60,7 +61,42 @@ std::string reasonOf(const HttpAnswer& answer) {
   const auto json = OrderedJson::parse(answer.body, nullptr, false);
   const bool told = json.is_object() && json.contains("detail") && json["detail"].is_string();
   return std::to_string(answer.status) + ": " +
-         (told ? json["detail"].get<std::string>() : answer.body.substr(0, 200));
+         (told ? json["detail"].get<std::string>() : answer.body.substr(0, 200)) +
+         (answer.status == 412 ? " The name has another log than when this push began; look at it, "
+                                 "then push again."
+                               : "");
+}
+
+/// Whether another attempt may go better: the server had no time or no place, or disagreed about
+/// what is there.
+bool worthAnother(const HttpAnswer& answer) {
+  return answer.status == 408 || answer.status == 409 || answer.status == 429 ||
+         answer.status == 503;
+}
+
+/// The mesh that the server has under the name.
+struct Served {
+  std::string digest;     ///< of its log; empty: there is no such mesh, or the answer is unknown
+  std::string condition;  ///< the header that says so: nobody else's log is replaced; may be empty
+};
+
+/// Errors: exchange's, io (the server cannot say it now).
+Result<Served> askServed(const Push& push) {
+  const Result<HttpAnswer> answer = exchange(push.server, {.method = "GET",
+                                                           .target = push.target,
+                                                           .headers = {push.authorization},
+                                                           .authorities = push.authorities});
+  if (!answer) return std::unexpected(answer.error());
+  if (worthAnother(*answer)) return fail(ErrorCode::kIo, reasonOf(*answer));
+  Served out;
+  if (answer->status == 404) out.condition = "If-None-Match: *";
+  if (answer->status != 200) return out;
+  const auto json = OrderedJson::parse(answer->body, nullptr, false);
+  if (json.is_object() && json.contains("digest") && json["digest"].is_string())
+    out.digest = json["digest"].get<std::string>();
+  // A weak tag, of a proxy that compresses, matches nothing.
+  if (answer->etag.starts_with('"')) out.condition = "If-Match: " + answer->etag;
+  return out;
 }
 
 /// Bytes that the server has of an upload that broke off, perhaps all of them. Errors: exchange's.
@@ -107,13 +143,14 @@ Sending sendingFrom(const Push& push, std::uint64_t first, bool mayUseDelta) {
   return out;
 }
 
-/// Adds the bytes of the body that were sent to `sent`.
-Result<HttpAnswer> send(const Push& push, const Sending& sending, Progress& progress,
-                        std::uint64_t& sent) {
+/// `condition` is a header or empty. Adds the bytes of the body that were sent to `sent`.
+Result<HttpAnswer> send(const Push& push, const Sending& sending, const std::string& condition,
+                        Progress& progress, std::uint64_t& sent) {
   const std::uint64_t size = push.log.bytes().size(), first = sending.first;
   const bool isDelta = !sending.from.empty();
   const ByteView body = isDelta ? ByteView(sending.delta) : push.log.bytes().subspan(first);
   std::vector<std::string> headers{push.authorization};
+  if (!condition.empty()) headers.push_back(condition);
   if (first > 0 || isDelta)
     headers.push_back(
         "Content-Range: bytes " +
@@ -142,13 +179,6 @@ Result<HttpAnswer> send(const Push& push, const Sending& sending, Progress& prog
                                 .waiting = [&] { progress.working(); }});
 }
 
-/// Whether another attempt may go better: the server had no time or no place, or disagreed about
-/// what is there.
-bool worthAnother(const HttpAnswer& answer) {
-  return answer.status == 408 || answer.status == 409 || answer.status == 429 ||
-         answer.status == 503;
-}
-
 /// The last answer to the log, and the bytes of all bodies that were sent for it.
 struct Pushed {
   HttpAnswer answer;
@@ -160,13 +190,21 @@ Result<Pushed> pushLog(const Push& push, Console& console) {
   Progress progress(console);
   std::uint64_t sent = 0;
   bool mayUseDelta = true, usedDelta = false;
+  std::optional<std::string> condition;  // as things stood when this push began
   Result<HttpAnswer> answer = fail(ErrorCode::kIo, "");
   for (int attempt = 1;;) {
-    const Result<std::uint64_t> first = bytesThere(push);
+    const Result<Served> served = askServed(push);
+    if (served && condition && served->digest == push.log.digest()) {
+      // An earlier attempt published it, and the answer was lost.
+      const bool isNew = condition->starts_with("If-None-Match");
+      return Pushed{{.status = isNew ? 201u : 200u, .body = "", .location = ""}, sent};
+    }
+    if (served && !condition) condition = served->condition;
+    const Result<std::uint64_t> first = served ? bytesThere(push) : std::unexpected(served.error());
     if (first) {
       const Sending sending = sendingFrom(push, *first, mayUseDelta);
       usedDelta = usedDelta || !sending.from.empty();
-      answer = send(push, sending, progress, sent);
+      answer = send(push, sending, *condition, progress, sent);
     } else {
       answer = std::unexpected(first.error());
     }
@@ -208,7 +246,8 @@ int runPush(const Words& words, Console& console) {
        "that breaks is taken up again\n"
        "where it broke, also by a later push of the same log. Blocks of the log that the server "
        "has "
-       "under this name are not sent again.",
+       "under this name are not sent again.\n"
+       "A log that somebody else put under the name meanwhile is not replaced.",
        "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
        "  qtet push fin.qtet https://meshes.example.org/v1/meshes/wing --token-file "
        "~/.qtet-token\n"},

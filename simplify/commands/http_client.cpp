@@ -235,6 +235,9 @@ Result<HttpAnswer> exchange(const HttpUrl& server, const HttpRequest& request) {
   curl_easy_getinfo(handle.get(), CURLINFO_REDIRECT_URL, &location);
   transfer.answer.status = static_cast<unsigned>(status);
   if (location != nullptr) transfer.answer.location = location;
+  curl_header* etag = nullptr;
+  if (curl_easy_header(handle.get(), "ETag", 0, CURLH_HEADER, -1, &etag) == CURLHE_OK)
+    transfer.answer.etag = etag->value;
   return std::move(transfer.answer);
 }
 

@@ -54,6 +54,7 @@ struct HttpAnswer {
   unsigned status = 0;
   std::string body;
   std::string location;  ///< the target of a redirection that was not followed; else empty
+  std::string etag{};    ///< as it stands in the header; empty: there is none
 };
 
 /// Sends and reads the answer, at most kMaxAnswerBytes of it. Certificates are checked, TLS is 1.2

@@ -34,7 +34,7 @@ const kTypes = {
 export function makeSite(folder, viewer, log) {
   rmSync(folder, {recursive: true, force: true});
   mkdirSync(folder, {recursive: true});
-  cpSync(viewer, folder, {recursive: true, filter: (name) => !name.endsWith('.gz')});
+  cpSync(viewer, folder, {recursive: true, filter: (name) => !/\.(gz|zst)$/.test(name)});
   cpSync(join(log.folder, `${log.name}.qtet`), join(folder, `${log.name}.qtet`));
   return folder;
 }

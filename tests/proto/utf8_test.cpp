@@ -24,5 +24,15 @@ TEST(Utf8, whatIsNoneIsMarkedByteByByte) {
   EXPECT_EQ(soundUtf8("\xED\xA0\x80\xE2\x82"), "?????");
 }
 
+TEST(Utf8, charactersThatMoveOrEndALineAreControls) {
+  for (const char* control :
+       {"\n", "a\x1F", "\x7F", "\xC2\x80", "a\xC2\x9F", "\xE2\x80\xA8", "a\xE2\x80\xA9"})
+    EXPECT_TRUE(hasControl(control)) << control;
+  for (const char* shown :
+       {"", "a b~", "\xC2\xA0", "\xC3\x85", "\xE2\x80\xA7", "\xE2\x80\xAA", "\xE2\x81\xA8"})
+    EXPECT_FALSE(hasControl(shown)) << shown;
+  EXPECT_TRUE(hasControl(std::string_view("\0", 1)));
+}
+
 }  // namespace
 }  // namespace qtet

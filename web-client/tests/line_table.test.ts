@@ -44,6 +44,14 @@ test('eachRowOverTimeIsAnInstantWithItsComponents', async () => {
   ]);
 });
 
+test('noNameIsAFormulaAndNumbersAreNumbers', async () => {
+  for (const name of ['=1+1', '+a', '-a', '@a', '\ta', '\ra']) {
+    const places = [{at: -1, position: [0, 0, 0], fields: [{field: 0, values: [-1.5]}]}];
+    const text = await tableOf(places as LineValues[], [info(name, 1)]).text();
+    expect(text).toBe(`"distance","x","y","z","'${name}"\r\n-1,0,0,0,-1.5`);
+  }
+});
+
 test('aLineBesideTheMeshHasNoRows', async () => {
   expect(await tableOf([], kFields).text()).toBe('"distance","x","y","z"');
 });

@@ -458,6 +458,29 @@ TEST_F(UploadTest, aDeltaToTheMeshsLogGivesTheNewOne) {
   EXPECT_EQ(leftovers(), 0u);
 }
 
+TEST_F(UploadTest, aDeltaIsNotPublishedWhereItsBaseWasReplaced) {
+  const std::string old = textOf(testing::logBytes(testing::soundMesh(9, 4)));
+  const std::string other = textOf(testing::logBytes(testing::soundMesh(6, 78)));
+  ASSERT_EQ(put("/v1/meshes/new", old).status, 201u);
+  ByteWriter instruction;
+  for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{0}, log_.size()})
+    instruction.write(number);
+  const std::string delta = textOf(instruction.bytes()) + log_;
+  RawClient slow(server_.port());
+  slow.send(head("PUT", "/v1/meshes/new?digest=" + digestOf(log_) + "&from=" + digestOf(old),
+                 delta.size(),
+                 "Content-Range: bytes 0-" + std::to_string(log_.size() - 1) + "/" +
+                     std::to_string(log_.size()) + "\r\n") +
+            delta.substr(0, 100));
+  EXPECT_TRUE(server_.comesTo("uploads_open", 1));
+  EXPECT_EQ(put("/v1/meshes/new", other).status, 200u);
+  slow.send(delta.substr(100));
+  const HttpResponse refused = slow.receive();
+  EXPECT_EQ(refused.status, 409u) << refused.body;
+  EXPECT_NE(refused.body.find("was replaced or removed"), std::string::npos) << refused.body;
+  EXPECT_EQ(get("/v1/logs/" + digestOf(other) + "/log").body, other);
+}
+
 TEST_F(UploadTest, askingForTheCheckOfNothingTakesNothingAway) {
   const auto request = [&](const std::string& range) {
     return put(digested("new"), "", "Content-Range: " + range + "\r\n");

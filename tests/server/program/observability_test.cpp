@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/log/log_versions.h"
 #include "proto/version.h"
 #include "server/wire/http_limits.h"
 #include "server/wire/request_trace.h"
@@ -266,7 +267,10 @@ TEST(Operators, theirPathsAreAnsweredBesideEverythingElse) {
   test::RawClient client(server.port());
   EXPECT_EQ(client.get("/livez").body, "ok\n");
   EXPECT_EQ(client.get("/readyz").status, 200u);
-  EXPECT_EQ(Json::parse(client.get("/version").body)["version"], version());
+  const Json versions = Json::parse(client.get("/version").body);
+  EXPECT_EQ(versions["version"], version());
+  EXPECT_EQ(versions["logFormat"], newestLogVersion());
+  EXPECT_EQ(versions["oldestLogFormat"], oldestLogVersion());
   const std::string metrics = client.get("/metrics").body;
   EXPECT_NE(metrics.find("qtet_http_requests_total{code=\"200\"} 3\n"), std::string::npos)
       << metrics;

@@ -5,6 +5,7 @@
 
 #include "server/routes/viewer_files.h"
 #include "server/store/mesh_store.h"
+#include "server/wire/content_coding.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet::test {
@@ -18,13 +19,18 @@ class ServedFolder {
       "<link rel=\"preload\" as=\"fetch\" crossorigin href=\"assets/codec.wasm\">"
       "<!--mesh-poster--><h1><!--mesh-name--></h1>";
 
+  static constexpr std::string_view kScript = "console.log(1)";
+  static Bytes compressedScript() {
+    return encoded({kScript.begin(), kScript.end()}, ContentCoding::kGzip);
+  }
+
   ServedFolder() {
     logs_.write("noise.qtet", makeLog({.chunks = 12}));
     logs_.write("a b.qtet", makeLog({.chunks = 2, .fields = {}, .seed = 7}));
     logs_.write("readme.txt", "not a log");
     viewer_.write("index.html", kPage);
-    viewer_.write("assets/app-1a2b.js", "console.log(1)");
-    viewer_.write("assets/app-1a2b.js.gz", "(compressed)");
+    viewer_.write("assets/app-1a2b.js", kScript);
+    viewer_.write("assets/app-1a2b.js.gz", compressedScript());
     viewer_.write("assets/alone.gz", "an archive");
     viewer_.write("assets/codec.wasm", std::string_view("\0asm", 4));
     viewer_.write("docs/index.html", "<title>docs</title>");

@@ -151,6 +151,23 @@ TEST_F(RouterTest, theListComesInPages) {
     expectProblem(get("/v1/meshes?limit=" + std::string(wrong)), 400, "bad-request");
 }
 
+TEST_F(RouterTest, aParameterGivenTwiceIsRefusedByName) {
+  for (const char* target : {"/v1/meshes?limit=1&limit=1", "/v1/meshes/noise?x=1&limit&%6Cimit=2",
+                             "/v1/logs/none/log?limit=1&limit=2", "/v1/stream?limit=&limit="}) {
+    const Reply reply = get(target);
+    expectProblem(reply, 400, "bad-request");
+    EXPECT_EQ(json(reply)["detail"], "the parameter 'limit' is given twice; give it once.");
+  }
+  EXPECT_EQ(get("/?mesh=noise&utm=1&utm=2").status, 200u) << "the page's own matter";
+}
+
+TEST_F(RouterTest, aPlusInAQueryIsASpace) {
+  const Json list = json(get("/v1/meshes?after=a+b"));
+  ASSERT_EQ(list["meshes"].size(), 1u);
+  EXPECT_EQ(list["meshes"][0]["id"], "noise");
+  expectProblem(get("/v1/meshes/a+b"), 404, "not-found");
+}
+
 TEST_F(RouterTest, aLevelIsChosenBySizeAndByFields) {
   const auto wanted = [&](const std::string& rest) {
     return levelOf({.method = "GET", .target = folder_.log(rest)});
@@ -331,7 +348,8 @@ TEST_F(RouterTest, aCompressedFileGoesToWhoeverTakesIt) {
       route({.method = "GET", .target = "/assets/app-1a2b.js", .acceptEncoding = "br, gzip"});
   EXPECT_EQ(body(plain), "console.log(1)");
   EXPECT_EQ(header(plain, "Content-Encoding"), "");
-  EXPECT_EQ(body(gzip), "(compressed)");
+  const Bytes compressed = test::ServedFolder::compressedScript();
+  EXPECT_EQ(body(gzip), std::string(compressed.begin(), compressed.end()));
   EXPECT_EQ(header(gzip, "Content-Encoding"), "gzip");
   EXPECT_EQ(header(gzip, "Content-Type"), header(plain, "Content-Type"));
   EXPECT_NE(header(gzip, "ETag"), header(plain, "ETag"));

@@ -129,6 +129,36 @@ TEST_F(PushTest, whatTheServersLogHasIsNotSentAgain) {
   EXPECT_EQ(checks, 3);
 }
 
+TEST_F(PushTest, aLogThatCameMeanwhileIsNotReplaced) {
+  const auto place = [this](std::uint32_t seed) {
+    const Bytes log = testing::logBytes(testing::soundMesh(6, seed));
+    mine_.write("other.qtet", log);
+    std::filesystem::rename(mine_.path() / "other.qtet", folder_.logFolder() / "my wing.qtet");
+    EXPECT_TRUE(store_->rescan());
+    return sha256Hex(log);
+  };
+  for (const bool isNew : {true, false}) {
+    std::string others;
+    check_.hold(true);
+    const Outcome pushed = push(url(), test::kPushToken, [&](const std::string& said) {
+      if (!others.empty() || said.find("the server checks the log") == std::string::npos) return;
+      others = place(isNew ? 71 : 72);
+      check_.hold(false);
+    });
+    EXPECT_EQ(pushed.code, 1) << pushed.text;
+    EXPECT_NE(pushed.text.find("412"), std::string::npos) << pushed.text;
+    EXPECT_NE(served("/v1/meshes/my%20wing").find(others), std::string::npos) << isNew;
+  }
+}
+
+TEST_F(PushTest, anUnsoundFileOfTheNameIsReplaced) {
+  mine_.write("bad.qtet", std::string_view("no log"));
+  std::filesystem::rename(mine_.path() / "bad.qtet", folder_.logFolder() / "my wing.qtet");
+  ASSERT_TRUE(store_->rescan());
+  const Outcome pushed = push(url());
+  EXPECT_EQ(pushed.code, 0) << pushed.text;
+}
+
 TEST_F(PushTest, itSaysThatTheServerChecks) {
   check_.hold(true);
   const Outcome pushed = push(url(), test::kPushToken, [this](const std::string& said) {

@@ -95,6 +95,8 @@ TEST_F(SeriesRoutes, aLevelIsNamedUpToTheLast) {
   EXPECT_EQ(wanted(kPoint + "field=T&level=0").level, 0u);
   EXPECT_EQ(wanted(kPoint + "field=T&level=11").level, 11u);
   expectRefused(404, kPoint + "field=T&level=12", "there is no level 12; this mesh has the levels");
+  for (const char* level : {"00", "01"})
+    expectRefused(404, kPoint + "field=T&level=" + level, "there is no level");
   for (const char* level : {"", "-1", "x", "1.5", "4294967296"})
     expectRefused(400, kPoint + "field=T&level=" + level, "give a whole number");
 }

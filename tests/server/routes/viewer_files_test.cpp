@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "server/http/http_resource.h"
 #include "server/routes/viewer_limits.h"
+#include "server/wire/content_coding.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet {
@@ -69,6 +71,64 @@ TEST(ViewerFiles, whatIsNoViewerIsRefused) {
   EXPECT_TRUE(ViewerFiles::load(folder.path()));
   folder.write("one-more", "x");
   EXPECT_EQ(ViewerFiles::load(folder.path()).error().code, ErrorCode::kLimitExceeded);
+}
+
+class CompressedViewer : public ::testing::Test {
+ protected:
+  static Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+  static Bytes coded(const std::string& text, ContentCoding coding) {
+    return encoded(bytesOf(text), coding);
+  }
+  /// Loads the viewer with these two beside its page.
+  ViewerFiles loaded(const Bytes& gzip, const Bytes& zstd) {
+    folder_.write("index.html", page_);
+    folder_.write("index.html.gz", gzip);
+    folder_.write("index.html.zst", zstd);
+    return std::move(ViewerFiles::load(folder_.path()).value());
+  }
+  static Bytes copyOf(ByteView view) { return {view.begin(), view.end()}; }
+
+  test::TempFolder folder_;
+  const std::string page_ = std::string(5000, 'p');
+  const Bytes gzip_ = coded(page_, ContentCoding::kGzip),
+              zstd_ = coded(page_, ContentCoding::kZstd);
+};
+
+TEST_F(CompressedViewer, whatTheBuildCompressedIsTakenAtOnce) {
+  const ViewerFiles files = loaded(gzip_, zstd_);
+  const Variants variants = files.variantsOf(*files.find(""));
+  EXPECT_EQ(copyOf(variants.gzip), gzip_);
+  EXPECT_EQ(copyOf(variants.zstd), zstd_);
+  EXPECT_EQ(files.find("index.html.gz"), nullptr);
+  EXPECT_EQ(files.find("index.html.zst"), nullptr);
+}
+
+TEST_F(CompressedViewer, whatIsOfAnotherFileIsNotServed) {
+  std::string other = page_;
+  other.back() = 'q';
+  Bytes gzipAndMore = gzip_;
+  gzipAndMore.push_back(0);
+  const Bytes cut(zstd_.begin(), zstd_.end() - 1);
+  for (const auto& [gzip, zstd] :
+       {std::pair(coded(other, ContentCoding::kGzip), coded(other, ContentCoding::kZstd)),
+        std::pair(coded(page_ + "p", ContentCoding::kGzip),
+                  coded(page_ + "p", ContentCoding::kZstd)),
+        std::pair(gzipAndMore, cut), std::pair(bytesOf(page_), Bytes())}) {
+    const ViewerFiles files = loaded(gzip, zstd);
+    const Variants variants = files.variantsOf(*files.find(""));
+    EXPECT_TRUE(variants.gzip.empty() && variants.zstd.empty());
+    EXPECT_EQ(files.find("index.html.gz"), nullptr);
+    EXPECT_EQ(files.find("index.html.zst"), nullptr);
+  }
+}
+
+TEST_F(CompressedViewer, whatIsMissingIsCompressedLater) {
+  ViewerFiles files = loaded(Bytes(), zstd_);
+  EXPECT_TRUE(files.variantsOf(*files.find("")).gzip.empty());
+  files.compressRest({});
+  const Variants variants = files.variantsOf(*files.find(""));
+  EXPECT_EQ(copyOf(variants.gzip), gzip_);
+  EXPECT_EQ(copyOf(variants.zstd), zstd_) << "that of the build";
 }
 
 TEST(ViewerFiles, anEmptyFileIsAFile) {

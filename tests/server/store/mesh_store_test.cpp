@@ -322,7 +322,12 @@ TEST(MeshStore, linksOutOfTheFolderAreNotFollowed) {
 TEST(MeshStore, onlyNamesOfFilesAreMeshes) {
   EXPECT_EQ(pathOfMesh("/d", "a b"), "/d/a b.qtet");
   EXPECT_EQ(pathOfMesh("/d", "\xc3\xa4"), "/d/\xc3\xa4.qtet");
+  EXPECT_EQ(pathOfMesh("/d", "\xc2\xa0\xe2\x80\xa7\xe2\x80\xaa"),
+            "/d/\xc2\xa0\xe2\x80\xa7\xe2\x80\xaa.qtet");
   EXPECT_TRUE(pathOfMesh("/d", std::string(limits::kMaxIdBytes, 'a')));
+  for (const char* control :
+       {"a\xc2\x80", "\xc2\x85z", "\xc2\x9f", "a\xe2\x80\xa8", "\xe2\x80\xa9z", "\x7f"})
+    EXPECT_FALSE(pathOfMesh("/d", control)) << control;
   for (const std::string& id :
        {std::string(), std::string("a/b"), std::string(".."), std::string(".a"), std::string("a\n"),
         std::string("a\0b", 3), std::string("\xc0\xae"), std::string("\xff"), std::string("a\\b"),

@@ -28,6 +28,8 @@ class SeriesTest : public ::testing::Test {
     LatticeMesh out = testing::seriesMesh(4, 3, kInstants);
     out.fields.push_back({"p,\"q", 1, "float64", "point", 12, 0.25, {-3}, {-3, 1020}});
     out.values.emplace_back(out.values.front());
+    out.fields.push_back({"-x@y", 1, "float64", "point", 12, 0.25, {-1024}, {-1024, -1}});
+    out.values.emplace_back(out.values.front());
     return out;
   }
   /// A log whose one field p lacks the value of every seventh point.
@@ -140,6 +142,13 @@ TEST_F(SeriesTest, aFieldWithoutTimeHasOneValue) {
   EXPECT_FALSE(json["values"][0][0].isNull());
   wanted.form = LevelForm::kCsv;
   EXPECT_TRUE(text(wanted).starts_with("time,\"p,\"\"q\"\r\n,")) << text(wanted);
+}
+
+TEST_F(SeriesTest, noNameIsAFormulaAndNumbersAreNumbers) {
+  const LatticeMesh mesh = meshAtLevel(served_->log, last(), fields("-x")).value();
+  LevelRequest wanted = request("-x", last(), middleOf(mesh, 5));
+  wanted.form = LevelForm::kCsv;
+  EXPECT_TRUE(text(wanted).starts_with("time,\"'-x@y\"\r\n,-")) << text(wanted);
 }
 
 TEST_F(SeriesTest, aValueIsMissingWhereThatOfACornerIsThatCounts) {

@@ -37,6 +37,21 @@ TEST(RequestTarget, aParameterIsFoundByItsWholeName) {
   EXPECT_EQ(parseTarget("/log?")->parameter("digest"), std::nullopt);
 }
 
+TEST(RequestTarget, aPlusIsASpaceInTheQueryAlone) {
+  const auto target = parseTarget("/a+b?field=wall+shear%2B&a+b=1");
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->segments, (Segments{"a+b"}));
+  EXPECT_EQ(target->parameter("field"), "wall shear+");
+  EXPECT_EQ(target->parameter("a b"), "1");
+}
+
+TEST(RequestTarget, aParameterGivenTwiceIsNamed) {
+  EXPECT_EQ(parseTarget("/?a=1&b=2&a=1")->repeatedParameter(), "a");
+  EXPECT_EQ(parseTarget("/?a&%61=1")->repeatedParameter(), "a");
+  for (const char* once : {"/", "/?", "/?a=1&b=1", "/?a=1&&&", "/?a=b&b=a", "/?=1&=2"})
+    EXPECT_EQ(parseTarget(once)->repeatedParameter(), std::nullopt) << once;
+}
+
 TEST(RequestTarget, everyByteSurvivesEncodingButNul) {
   std::string all;
   for (int c = 1; c < 256; ++c) all += static_cast<char>(c);

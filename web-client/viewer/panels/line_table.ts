@@ -44,8 +44,12 @@ function csvOf(table: (string | number)[][]): Blob {
   return new Blob([table.map((row) => row.map(cell).join(',')).join('\r\n')], {type: 'text/csv'});
 }
 
-/** A missing value is an empty cell. */
+/**
+ * A missing value is an empty cell. A name is a stranger's: behind an apostrophe no spreadsheet
+ * takes it for a formula (OWASP, "CSV Injection").
+ */
 function cell(value: string | number): string {
-  if (typeof value === 'string') return `"${value.replaceAll('"', '""')}"`;
+  if (typeof value === 'string')
+    return `"${/^[=+\-@\t\r]/.test(value) ? "'" : ''}${value.replaceAll('"', '""')}"`;
   return Number.isNaN(value) ? '' : String(Number(value.toPrecision(kDigits)));
 }

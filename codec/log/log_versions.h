@@ -1,0 +1,20 @@
+// The versions of the log format that this codec reads, as text (FORMAT.md, "Versions").
+#pragma once
+
+#include <string>
+
+#include "codec/log/log_index.h"
+
+namespace qtet {
+
+/// The newest version that it writes, for a log that needs all of it. Newer minor versions are read
+/// as well.
+[[nodiscard]] inline std::string newestLogVersion() {
+  return std::to_string(LogIndex::kVersionOfSeries) + "." +
+         std::to_string(LogIndex::kMinorOfSomeErrors);
+}
+[[nodiscard]] inline std::string oldestLogVersion() {
+  return std::to_string(LogIndex::kVersionMajor) + ".0";
+}
+
+}  // namespace qtet
