@@ -11,14 +11,6 @@
 namespace qtet {
 namespace {
 
-FileField dequantised(const FieldInfo& info, const std::vector<std::int32_t>& integers) {
-  FileField field{info.name, info.type, info.components, {}, info.range};
-  field.values.reserve(integers.size());
-  for (std::size_t i = 0; i < integers.size(); ++i)
-    field.values.push_back(info.value(i % info.components, integers[i]));
-  return field;
-}
-
 bool survivesAsFloat(const Lattice& lattice, const LatticePoint& point) {
   const std::array<double, 3> exact = lattice.position(point);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -31,6 +23,18 @@ bool survivesAsFloat(const Lattice& lattice, const LatticePoint& point) {
 
 }  // namespace
 
+FileField fileField(const FieldInfo& info) {
+  return {info.name, info.type, info.components, {}, info.range};
+}
+
+std::vector<double> dequantised(const FieldInfo& info, std::span<const std::int32_t> integers) {
+  std::vector<double> out;
+  out.reserve(integers.size());
+  for (std::size_t i = 0; i < integers.size(); ++i)
+    out.push_back(info.value(i % info.components, integers[i]));
+  return out;
+}
+
 LatticeFileMesh fileMesh(const LatticeMesh& mesh) {
   LatticeFileMesh out;
   out.points.reserve(mesh.points.size());
@@ -40,9 +44,14 @@ LatticeFileMesh fileMesh(const LatticeMesh& mesh) {
   out.mesh.doublePoints =
       !std::all_of(mesh.points.begin(), mesh.points.end(),
                    [&](const LatticePoint& p) { return survivesAsFloat(mesh.lattice, p); });
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
-    (isCellField(mesh.fields[f]) ? out.mesh.cellFields : out.mesh.pointFields)
-        .push_back(dequantised(mesh.fields[f], mesh.values[f]));
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const FieldInfo& info = mesh.fields[f];
+    const std::vector<std::int32_t>& integers = mesh.values[f];
+    FileField& field = (isCellField(info) ? out.mesh.cellFields : out.mesh.pointFields)
+                           .emplace_back(fileField(info));
+    field.values =
+        FieldNumbers(integers.size(), [&info, &integers] { return dequantised(info, integers); });
+  }
   return out;
 }
 
@@ -63,12 +72,13 @@ FileSurface surfaceOf(const FileMesh& mesh) {
   out.triangles = std::move(triangles);
   for (const VertexId v : used) out.points.push_back(mesh.points[v]);
   for (const FileField& field : mesh.pointFields) {
-    FileField kept{field.name, field.type, field.components, {}, field.range};
-    kept.values.reserve(used.size() * field.components);
+    const FieldNumbers::Held all = field.values.get();
+    std::vector<double> kept;
+    kept.reserve(used.size() * field.components);
     for (const VertexId v : used)
       for (std::uint32_t c = 0; c < field.components; ++c)
-        kept.values.push_back(field.values[std::size_t{v} * field.components + c]);
-    out.fields.push_back(std::move(kept));
+        kept.push_back((*all)[std::size_t{v} * field.components + c]);
+    out.fields.push_back({field.name, field.type, field.components, std::move(kept), field.range});
   }
   return out;
 }

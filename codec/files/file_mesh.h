@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "codec/files/field_numbers.h"
 #include "codec/mesh/mesh.h"
 #include "proto/error.h"
 
@@ -19,7 +20,7 @@ struct FileField {
   /// Float32, float64, int8 ... uint64; other names are written as float64.
   std::string type = "float32";
   std::uint32_t components = 1;
-  std::vector<double> values;  ///< rounded and clamped to the type
+  FieldNumbers values;  ///< rounded and clamped to the type
   /// For colours: of vectors that of the magnitude; without it that of the values.
   std::optional<std::array<double, 2>> range{};
 };
@@ -41,8 +42,14 @@ struct LatticeFileMesh {
 
 /// Fields keep their types; a missing value is NaN. Coordinates are float32 if each of them still
 /// rounds to its lattice point, round((x - origin) / step). Else they are float64, which always
-/// does. So the lattice survives exactly. `mesh` must outlive the answer.
+/// does. So the lattice survives exactly. `mesh` must outlive the answer, whose fields are made of
+/// its integers when they are written.
 [[nodiscard]] LatticeFileMesh fileMesh(const LatticeMesh& mesh);
+/// The field without its numbers.
+[[nodiscard]] FileField fileField(const FieldInfo& info);
+/// The numbers of a field's integers.
+[[nodiscard]] std::vector<double> dequantised(const FieldInfo& info,
+                                              std::span<const std::int32_t> integers);
 
 /// Errors: bad-input (a coordinate that float32 does not hold, for formats of nothing else;
 /// `format` is ".glb").

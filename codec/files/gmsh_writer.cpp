@@ -1,8 +1,10 @@
 #include <string>
+#include <utility>
 
 #include "codec/coding/number_type.h"
 #include "codec/files/field_limits.h"
 #include "codec/files/mesh_file.h"
+#include "codec/files/pieces.h"
 
 namespace qtet {
 namespace {
@@ -22,6 +24,7 @@ std::string gmshQuoted(const std::string& name) {
 }
 
 void appendData(Bytes& out, const std::string& section, const FileField& field) {
+  const FieldNumbers::Held values = field.values.get();
   const std::uint32_t shown = gmshComponents(field.components);
   const std::size_t tuples = field.values.size() / field.components;
   // One string tag (the name), one real tag (the time), three integer tags: step, components,
@@ -31,19 +34,19 @@ void appendData(Bytes& out, const std::string& section, const FileField& field) 
   for (std::size_t i = 0; i < tuples; ++i) {
     appendNumber(out, static_cast<std::int32_t>(i + 1));
     for (std::uint32_t c = 0; c < shown; ++c)
-      appendNumber(out, c < field.components ? field.values[i * field.components + c] : 0.0);
+      appendNumber(out, c < field.components ? (*values)[i * field.components + c] : 0.0);
   }
   appendText(out, "\n$End" + section + "\n");
 }
 
 }  // namespace
 
-Result<Bytes> gmshBytes(const FileMesh& mesh) {
+Status writeGmsh(const FileMesh& mesh, const ByteSink& sink) {
   if (mesh.points.size() > kMaxEntities || mesh.tetrahedra.size() > kMaxEntities)
     return fail(ErrorCode::kBadInput,
                 "the mesh has more points or cells than a .msh file can number; write .vtu");
-  if (Status checked = canHold(".msh", outlinesOf(mesh)); !checked)
-    return std::unexpected(checked.error());
+  if (Status checked = canHold(".msh", outlinesOf(mesh)); !checked) return checked;
+  Pieces pieces(sink);
   Bytes out;
   appendText(out, "$MeshFormat\n2.2 1 8\n");
   appendNumber(out, std::int32_t{1});  // tells the order of bytes
@@ -65,9 +68,12 @@ Result<Bytes> gmshBytes(const FileMesh& mesh) {
     for (const VertexId v : mesh.tetrahedra[i]) appendNumber(out, static_cast<std::int32_t>(v + 1));
   }
   appendText(out, "\n$EndElements\n");
-  for (const FileField& field : mesh.pointFields) appendData(out, "NodeData", field);
-  for (const FileField& field : mesh.cellFields) appendData(out, "ElementData", field);
-  return out;
+  pieces.bytes(std::exchange(out, {}));
+  for (const FileField& field : mesh.pointFields)
+    pieces.piece(0, [&](Bytes& bytes) { appendData(bytes, "NodeData", field); });
+  for (const FileField& field : mesh.cellFields)
+    pieces.piece(0, [&](Bytes& bytes) { appendData(bytes, "ElementData", field); });
+  return pieces.status();
 }
 
 }  // namespace qtet

@@ -16,13 +16,20 @@ bool holdsFields(std::string_view ending, std::string_view association) {
   return association != "cell" || !needsLattice(ending);
 }
 
-Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending) {
-  if (ending == ".vtu") return vtuBytes(mesh);
-  if (ending == ".vtk") return legacyVtkBytes(mesh);
-  if (ending == ".msh") return gmshBytes(mesh);
-  if (ending == ".obj") return objBytes(surfaceOf(mesh));
+Status writeMeshFile(const FileMesh& mesh, std::string_view ending, const ByteSink& sink) {
+  if (ending == ".vtu") return writeVtu(mesh, sink);
+  if (ending == ".vtk") return writeLegacyVtk(mesh, sink);
+  if (ending == ".msh") return writeGmsh(mesh, sink);
+  if (ending == ".obj") return sink(objBytes(surfaceOf(mesh)));
   assert(ending == ".usda");
-  return usdaBytes(mesh);
+  return writeUsda(mesh, sink);
+}
+
+Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending) {
+  Bytes out;
+  if (Status written = writeMeshFile(mesh, ending, appendTo(out)); !written)
+    return std::unexpected(written.error());
+  return out;
 }
 
 Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending,

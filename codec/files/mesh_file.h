@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "codec/files/file_mesh.h"
-#include "proto/bytes.h"
+#include "proto/byte_sink.h"
 #include "proto/error.h"
 
 namespace qtet {
@@ -28,19 +28,22 @@ struct MeshFileOptions {
 /// The mesh as a file of the kind that the ending names. REQUIRES: one of kWrittenEndings, and none
 /// that needs the lattice of a mesh in floats. Errors: the writers'.
 [[nodiscard]] Result<Bytes> meshFileBytes(const FileMesh& mesh, std::string_view ending);
+/// The same into a sink, with one field at a time in memory. Errors: also the sink's.
+[[nodiscard]] Status writeMeshFile(const FileMesh& mesh, std::string_view ending,
+                                   const ByteSink& sink);
 [[nodiscard]] Result<Bytes> meshFileBytes(const LatticeMesh& mesh, std::string_view ending,
                                           const MeshFileOptions& options = {});
 
 /// VTK's legacy format 3.0, binary: an unstructured grid with every field, as VTK, ParaView, meshio
 /// and VisIt read it. Errors: bad-input (a name that VTK does not read whole; more than 2^31 - 1
 /// points).
-[[nodiscard]] Result<Bytes> legacyVtkBytes(const FileMesh& mesh);
+[[nodiscard]] Status writeLegacyVtk(const FileMesh& mesh, const ByteSink& sink);
 
 /// Gmsh's MSH 2.2, binary: nodes and tetrahedra numbered from 1 in their order, fields as $NodeData
 /// and $ElementData. Gmsh knows 1, 3 and 9 components: others are filled up with zeros to the next
 /// of them. Errors: bad-input (a field of more than 9 components; a name that Gmsh does not read
 /// whole; more than 2^31 - 1 nodes or cells).
-[[nodiscard]] Result<Bytes> gmshBytes(const FileMesh& mesh);
+[[nodiscard]] Status writeGmsh(const FileMesh& mesh, const ByteSink& sink);
 
 /// The boundary's triangles as text, without fields.
 [[nodiscard]] Bytes objBytes(const FileSurface& surface);
@@ -52,6 +55,6 @@ struct MeshFileOptions {
 /// become USD identifiers (letters, digits and _ stay, everything else becomes _); displayName has
 /// them in full. Errors: bad-input (coordinates
 /// that its floats do not hold).
-[[nodiscard]] Result<Bytes> usdaBytes(const FileMesh& mesh);
+[[nodiscard]] Status writeUsda(const FileMesh& mesh, const ByteSink& sink);
 
 }  // namespace qtet

@@ -7,6 +7,7 @@
 #include "codec/files/field_colours.h"
 #include "codec/files/file_names.h"
 #include "codec/files/mesh_file.h"
+#include "codec/files/pieces.h"
 #include "codec/mesh/boundary.h"
 
 namespace qtet {
@@ -61,10 +62,11 @@ std::string primvarText(const FileField& field, const char* interpolation,
   const bool tuple = field.components <= 4;
   const std::string type = std::string(isDouble ? "double" : "float") +
                            (tuple && field.components > 1 ? std::to_string(field.components) : "");
+  const FieldNumbers::Held values = field.values.get();
   std::vector<std::span<const double>> tuples;
   const std::size_t width = tuple ? field.components : 1;
-  for (std::size_t i = 0; i < field.values.size(); i += width)
-    tuples.push_back(std::span(field.values).subspan(i, width));
+  for (std::size_t i = 0; i < values->size(); i += width)
+    tuples.push_back(std::span(*values).subspan(i, width));
   std::string out = kIndent + type + "[] primvars:" + newIdentifier(field.name, names) + " = " +
                     (isDouble ? arrayText(tuples, kDouble) : arrayText(tuples, kFloat)) + " (\n" +
                     kIndent + "    displayName = " + usdQuoted(field.name) + "\n" + kIndent +
@@ -91,32 +93,34 @@ std::string shapeText(std::span<const std::array<double, 3>> points) {
          attribute("point3f[] points", arrayText(points, kFloat));
 }
 
-std::string cellsText(const FileMesh& mesh) {
+void writeCells(Pieces& out, const FileMesh& mesh) {
   // Its faces [123] [032] [013] [021] of a right-handed tetrahedron are those of
   // codec/mesh/boundary.h. Guides are not drawn unless somebody asks: the other prim is.
-  std::string out = "    def TetMesh \"tetrahedra\"\n    {\n" +
-                    attribute("uniform token purpose", "\"guide\"") + shapeText(mesh.points) +
-                    attribute("int4[] tetVertexIndices", arrayText(mesh.tetrahedra, kInteger)) +
-                    attribute("int3[] surfaceFaceVertexIndices",
-                              arrayText(boundaryOf(mesh.tetrahedra), kInteger));
+  out.text("    def TetMesh \"tetrahedra\"\n    {\n" +
+           attribute("uniform token purpose", "\"guide\"") + shapeText(mesh.points) +
+           attribute("int4[] tetVertexIndices", arrayText(mesh.tetrahedra, kInteger)) +
+           attribute("int3[] surfaceFaceVertexIndices",
+                     arrayText(boundaryOf(mesh.tetrahedra), kInteger)));
   std::set<std::string> names;
-  for (const FileField& field : mesh.pointFields) out += primvarText(field, "vertex", names);
-  for (const FileField& field : mesh.cellFields) out += primvarText(field, "uniform", names);
-  return out + "    }\n";
+  for (const FileField& field : mesh.pointFields) out.text(primvarText(field, "vertex", names));
+  for (const FileField& field : mesh.cellFields) out.text(primvarText(field, "uniform", names));
+  out.text("    }\n");
 }
 
-std::span<const double> valueOf(const FileField& field, std::size_t point) {
-  return std::span(field.values).subspan(point * field.components, field.components);
+/// The values of a point.
+std::span<const double> valueOf(const FileField& field, const std::vector<double>& values,
+                                std::size_t point) {
+  return std::span(values).subspan(point * field.components, field.components);
 }
 
 /// The range of the values, or of their magnitude if components > 1. Missing values do not count.
-std::array<double, 2> rangeOf(const FileField& field) {
+std::array<double, 2> rangeOf(const FileField& field, const std::vector<double>& values) {
   if (field.range) return *field.range;
   std::array<double, 2> range{std::numeric_limits<double>::max(),
                               std::numeric_limits<double>::lowest()};
-  for (std::size_t i = 0; i * field.components < field.values.size(); ++i) {
+  for (std::size_t i = 0; i * field.components < values.size(); ++i) {
     // in a range from 0 to 1 the fraction is the value
-    const double value = rangeFraction(valueOf(field, i), {0, 1});
+    const double value = rangeFraction(valueOf(field, values, i), {0, 1});
     if (!std::isfinite(value)) continue;
     range[0] = std::min(range[0], value), range[1] = std::max(range[1], value);
   }
@@ -127,10 +131,11 @@ std::array<double, 2> rangeOf(const FileField& field) {
 std::string coloursText(const FileSurface& surface) {
   if (surface.fields.empty()) return {};
   const FileField& field = surface.fields.front();
-  const std::array<double, 2> range = rangeOf(field);
+  const FieldNumbers::Held values = field.values.get();
+  const std::array<double, 2> range = rangeOf(field, *values);
   std::vector<Colour> colours;
   for (std::size_t i = 0; i < surface.points.size(); ++i)
-    colours.push_back(linearLight(viridis(rangeFraction(valueOf(field, i), range))));
+    colours.push_back(linearLight(viridis(rangeFraction(valueOf(field, *values, i), range))));
   constexpr auto kShort = [](std::string& out, double x) {
     appendShortest(out, std::round(1000 * x) / 1000);
   };
@@ -138,31 +143,34 @@ std::string coloursText(const FileSurface& surface) {
          "    interpolation = \"vertex\"\n" + kIndent + ")\n";
 }
 
-std::string boundaryText(const FileSurface& surface) {
+void writeBoundary(Pieces& out, const FileSurface& surface) {
   std::vector<std::array<VertexId, 1>> counts(surface.triangles.size(), {3}), corners;
   for (const Triangle& triangle : surface.triangles)
     for (const VertexId v : triangle) corners.push_back({v});
-  std::string out = "    def Mesh \"boundary\"\n    {\n" +
-                    attribute("uniform token subdivisionScheme", "\"none\"") +
-                    attribute("uniform bool doubleSided", "1") + shapeText(surface.points) +
-                    attribute("int[] faceVertexCounts", arrayText(counts, kInteger)) +
-                    attribute("int[] faceVertexIndices", arrayText(corners, kInteger)) +
-                    coloursText(surface);
+  out.text("    def Mesh \"boundary\"\n    {\n" +
+           attribute("uniform token subdivisionScheme", "\"none\"") +
+           attribute("uniform bool doubleSided", "1") + shapeText(surface.points) +
+           attribute("int[] faceVertexCounts", arrayText(counts, kInteger)) +
+           attribute("int[] faceVertexIndices", arrayText(corners, kInteger)) +
+           coloursText(surface));
   std::set<std::string> names{"displayColor"};
-  for (const FileField& field : surface.fields) out += primvarText(field, "vertex", names);
-  return out + "    }\n";
+  for (const FileField& field : surface.fields) out.text(primvarText(field, "vertex", names));
+  out.text("    }\n");
 }
 
 }  // namespace
 
-Result<Bytes> usdaBytes(const FileMesh& mesh) {
-  if (Status checked = fitsFloats(mesh.points, ".usda"); !checked)
-    return std::unexpected(checked.error());
-  const std::string text =
+Status writeUsda(const FileMesh& mesh, const ByteSink& sink) {
+  if (Status checked = fitsFloats(mesh.points, ".usda"); !checked) return checked;
+  Pieces out(sink);
+  out.text(
       "#usda 1.0\n(\n    defaultPrim = \"mesh\"\n    doc = \"written by qtet\"\n    metersPerUnit "
-      "= 1\n    upAxis = \"Z\"\n)\n\ndef Xform \"mesh\"\n{\n" +
-      cellsText(mesh) + "\n" + boundaryText(surfaceOf(mesh)) + "}\n";
-  return Bytes(text.begin(), text.end());
+      "= 1\n    upAxis = \"Z\"\n)\n\ndef Xform \"mesh\"\n{\n");
+  writeCells(out, mesh);
+  out.text("\n");
+  writeBoundary(out, surfaceOf(mesh));
+  out.text("}\n");
+  return out.status();
 }
 
 }  // namespace qtet

@@ -6,6 +6,7 @@
 
 #include "codec/coding/number_type.h"
 #include "codec/files/file_names.h"
+#include "codec/files/pieces.h"
 
 namespace qtet {
 namespace {
@@ -101,12 +102,13 @@ std::string headerText(const FileMesh& mesh, const Sizes& sizes, Arrays& arrays)
 }
 
 template <class Id>
-void appendCells(Bytes& out, const FileMesh& mesh, const Sizes& sizes, const Arrays& arrays) {
-  arrays.appendSize(out, sizes.connectivity);
-  for (const Tetrahedron& cell : mesh.tetrahedra) {
+void appendConnectivity(Bytes& out, const FileMesh& mesh) {
+  for (const Tetrahedron& cell : mesh.tetrahedra)
     for (const VertexId v : cell) appendNumber(out, static_cast<Id>(v));
-  }
-  arrays.appendSize(out, sizes.offsets);
+}
+
+template <class Id>
+void appendOffsets(Bytes& out, const FileMesh& mesh) {
   for (std::size_t i = 1; i <= mesh.tetrahedra.size(); ++i)
     appendNumber(out, static_cast<Id>(4 * i));
 }
@@ -125,28 +127,41 @@ void appendPoints(Bytes& out, const FileMesh& mesh) {
 
 }  // namespace
 
-Bytes vtuBytes(const FileMesh& mesh) {
+Status writeVtu(const FileMesh& mesh, const ByteSink& sink) {
   const Sizes sizes(mesh);
   Arrays arrays(sizes.largest > std::numeric_limits<std::uint32_t>::max());
   const std::string header = headerText(mesh, sizes, arrays);
   constexpr std::string_view kFooter = "\n  </AppendedData>\n</VTKFile>\n";
+  Pieces out(sink);
+  out.text(header);
+  const auto array = [&](std::uint64_t sizeBytes, const auto& append) {
+    out.piece(sizeBytes + sizeof(std::uint64_t), [&](Bytes& bytes) {
+      arrays.appendSize(bytes, sizeBytes);
+      append(bytes);
+    });
+  };
+  for (const auto* fields : {&mesh.pointFields, &mesh.cellFields})
+    for (const FileField& field : *fields)
+      array(Sizes::sizeOf(field),
+            [&](Bytes& bytes) { numberType(field.type).append(bytes, *field.values.get()); });
+  array(sizes.points, [&](Bytes& bytes) { appendPoints(bytes, mesh); });
+  array(sizes.connectivity, [&](Bytes& bytes) {
+    sizes.wideIds ? appendConnectivity<std::int64_t>(bytes, mesh)
+                  : appendConnectivity<std::int32_t>(bytes, mesh);
+  });
+  array(sizes.offsets, [&](Bytes& bytes) {
+    sizes.wideIds ? appendOffsets<std::int64_t>(bytes, mesh)
+                  : appendOffsets<std::int32_t>(bytes, mesh);
+  });
+  array(sizes.types,
+        [&](Bytes& bytes) { bytes.insert(bytes.end(), mesh.tetrahedra.size(), kVtkTetra); });
+  out.text(kFooter);
+  return out.status();
+}
 
+Bytes vtuBytes(const FileMesh& mesh) {
   Bytes out;
-  out.reserve(header.size() + arrays.totalBytes() + kFooter.size());
-  out.insert(out.end(), header.begin(), header.end());
-  for (const auto* fields : {&mesh.pointFields, &mesh.cellFields}) {
-    for (const FileField& field : *fields) {
-      arrays.appendSize(out, Sizes::sizeOf(field));
-      numberType(field.type).append(out, field.values);
-    }
-  }
-  arrays.appendSize(out, sizes.points);
-  appendPoints(out, mesh);
-  sizes.wideIds ? appendCells<std::int64_t>(out, mesh, sizes, arrays)
-                : appendCells<std::int32_t>(out, mesh, sizes, arrays);
-  arrays.appendSize(out, sizes.types);
-  out.insert(out.end(), mesh.tetrahedra.size(), kVtkTetra);
-  out.insert(out.end(), kFooter.begin(), kFooter.end());
+  (void)writeVtu(mesh, appendTo(out));  // such a sink takes everything
   return out;
 }
 

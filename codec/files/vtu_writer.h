@@ -2,14 +2,15 @@
 #pragma once
 
 #include "codec/files/file_mesh.h"
-#include "proto/bytes.h"
+#include "proto/byte_sink.h"
 
 namespace qtet {
 
 /// One UnstructuredGrid piece of tetrahedra: appended raw, little-endian, ids as Int32 (Int64 where
 /// they do not fit), array sizes as UInt32 (UInt64 where an array has 4 GiB or more). The first
-/// scalar field of the
-/// points and that of the cells are the active ones. Deterministic: no dates, no names of machines.
+/// scalar field of the points and that of the cells are the active ones. Deterministic: no dates,
+/// no names of machines. One array at a time is in memory. Errors: the sink's.
+[[nodiscard]] Status writeVtu(const FileMesh& mesh, const ByteSink& sink);
 [[nodiscard]] Bytes vtuBytes(const FileMesh& mesh);
 
 /// A mesh on the lattice, as fileMesh() has it.

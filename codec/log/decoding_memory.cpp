@@ -1,7 +1,11 @@
 #include "codec/log/decoding_memory.h"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
+#include <vector>
 
+#include "codec/log/last_uses.h"
 #include "codec/log/log_index.h"
 #include "codec/mesh/growing_mesh.h"
 #include "codec/record/point_values.h"
@@ -28,7 +32,8 @@ struct Totals {
   std::uint64_t records = 0, structureBytes = 0, blockIntegers = 0;
 };
 
-Totals totalsOf(const LogIndex& index) {
+/// Sums over the chunks up to the one that completes the level.
+Totals totalsOf(const LogIndex& index, std::uint32_t level, std::span<const std::uint32_t> fields) {
   Totals out;
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
     const ChunkEntry& entry = index.chunks[chunk];
@@ -39,23 +44,45 @@ Totals totalsOf(const LogIndex& index) {
     out.structureBytes += entry.blocks[kStructurePart].size;
     const std::uint64_t positions = std::uint64_t{3} * index.tuples(chunk, kPositionsPart);
     std::uint64_t largest = 0;
-    for (std::uint32_t part = kFirstFieldPart; part < index.parts(); ++part)
-      largest =
-          std::max(largest, std::uint64_t{index.components(part)} * index.tuples(chunk, part));
+    for (const std::uint32_t field : fields)
+      largest = std::max(largest, std::uint64_t{index.fields[field].components} *
+                                      index.tuples(chunk, kFirstFieldPart + field));
     out.blockIntegers = std::max(out.blockIntegers, positions + largest);
+    if (entry.lastLevel >= level) break;
   }
   return out;
 }
 
-std::uint64_t fieldBytes(const LogIndex& index, const Slots& slots) {
+/// One field's values, and its differences.
+std::uint64_t bytesOf(const FieldShape& field, const Slots& slots) {
+  const std::uint64_t values =
+      sizeof(std::int32_t) * std::uint64_t{field.components} *
+      (field.association == Association::kPoint ? slots.vertices : slots.tetrahedra);
+  return field.prediction.isNone() ? values : 2 * values;
+}
+
+/// The most of them at a time, one after the other.
+std::uint64_t mostAtATime(const LogIndex& index, const Slots& slots,
+                          std::span<const std::uint32_t> fields) {
+  const std::vector<std::vector<std::uint32_t>> uses = lastUses(index.fields, fields);
+  std::uint64_t now = 0, most = 0;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    now += bytesOf(index.fields[fields[i]], slots);
+    most = std::max(most, now);
+    for (const std::uint32_t ended : uses[i]) now -= bytesOf(index.fields[ended], slots);
+  }
+  return most;
+}
+
+std::uint64_t fieldBytes(const LogIndex& index, const Slots& slots,
+                         std::span<const std::uint32_t> fields, FieldsHeld held) {
   std::uint64_t sum = 0, largest = 0;
-  for (const FieldShape& field : index.fields) {
-    const std::uint64_t bytes =
-        sizeof(std::int32_t) * std::uint64_t{field.components} *
-        (field.association == Association::kPoint ? slots.vertices : slots.tetrahedra);
-    sum += field.prediction.isNone() ? bytes : 2 * bytes;
+  for (const std::uint32_t field : fields) {
+    const std::uint64_t bytes = bytesOf(index.fields[field], slots);
+    sum += bytes;
     largest = std::max(largest, bytes);
   }
+  if (held == FieldsHeld::kOneByOne) sum = mostAtATime(index, slots, fields);
   const std::uint64_t ancestry =
       index.hasCellField() ? sizeof(std::array<CellId, 4>) * std::uint64_t{slots.tetrahedra} : 0;
   return (kDoubling - 1) * sum + largest + kDoubling * ancestry;
@@ -64,21 +91,31 @@ std::uint64_t fieldBytes(const LogIndex& index, const Slots& slots) {
 }  // namespace
 
 std::uint64_t decodingBytes(const LogIndex& index) {
-  const Totals all = totalsOf(index);
+  std::vector<std::uint32_t> all(index.fields.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return decodingBytes(index, index.chunks.back().lastLevel, all, FieldsHeld::kAll);
+}
+
+std::uint64_t decodingBytes(const LogIndex& index, std::uint32_t level,
+                            std::span<const std::uint32_t> fields, FieldsHeld held) {
+  const std::vector<std::uint32_t> needed =
+      withParents(index.fields, {fields.begin(), fields.end()});
+  const Totals all = totalsOf(index, level, needed);
   const bool withPointField = std::ranges::any_of(
       index.fields, [](const FieldShape& f) { return f.association == Association::kPoint; });
   const std::uint64_t mesh = GrowingMesh::roomFor(all.slots) +
                              PointAncestry(withPointField).roomFor(all.records, all.slots.vertices);
-  // A refiner reserves room for all elements at once if their number is credible for so few bytes.
-  // Otherwise it lets its arrays grow.
-  const bool roomy = std::max({all.slots.vertices, all.slots.tetrahedra, all.slots.triangles}) <=
-                     kMaxElementsPerByte * all.structureBytes;
+  // A refiner that goes to the end reserves room for all elements at once if their number is
+  // credible for so few bytes. Otherwise it lets its arrays grow.
+  const bool roomy = level >= index.chunks.back().lastLevel &&
+                     std::max({all.slots.vertices, all.slots.tetrahedra, all.slots.triangles}) <=
+                         kMaxElementsPerByte * all.structureBytes;
   const std::uint64_t table =
       index.chunks.size() * (sizeof(ChunkEntry) + kChunk + index.parts() * sizeof(BlockEntry)) +
       index.manifest.size() + index.laterManifest.size();
   return kFixed + table + (roomy ? 1 : kDoubling) * mesh +
-         kBaseTetrahedron * index.chunks.front().newTetrahedra + fieldBytes(index, all.slots) +
-         kBlockInteger * all.blockIntegers;
+         kBaseTetrahedron * index.chunks.front().newTetrahedra +
+         fieldBytes(index, all.slots, needed, held) + kBlockInteger * all.blockIntegers;
 }
 
 }  // namespace qtet

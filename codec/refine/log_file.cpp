@@ -232,15 +232,27 @@ LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner,
   return mesh;
 }
 
+Status refineToLevel(const LogFile& log, Refiner& refiner, std::uint32_t level,
+                     std::span<const std::uint32_t> fields, const std::stop_token& stop) {
+  const std::uint32_t last = log.index().chunks.back().lastLevel;
+  if (level > last)
+    return fail(ErrorCode::kNotFound, "there is no level " + std::to_string(level) +
+                                          "; the last is " + std::to_string(last));
+  refiner.stopAtLevel(level);
+  for (std::uint32_t chunk = 0;
+       chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
+    if (stop.stop_requested())
+      return fail(ErrorCode::kIo, "stopped, because nobody waits for the level any more");
+    if (Status s = applyChunk(log, refiner, chunk, fields); !s) return s;
+  }
+  return {};
+}
+
 Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
                                 const std::optional<std::vector<std::uint32_t>>& fields,
                                 const std::stop_token& stop) {
   const Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
-  const std::uint32_t last = log.index().chunks.back().lastLevel;
-  if (level > last)
-    return fail(ErrorCode::kNotFound, "there is no level " + std::to_string(level) +
-                                          "; the last is " + std::to_string(last));
   std::vector<std::uint32_t> wanted;
   if (fields)
     wanted = *fields;
@@ -249,13 +261,8 @@ Result<LatticeMesh> meshAtLevel(const LogFile& log, std::uint32_t level,
   const std::vector<std::uint32_t> needed = withParents(log.fields(), wanted);
 
   Refiner refiner(log.index());
-  refiner.stopAtLevel(level);
-  for (std::uint32_t chunk = 0;
-       chunk < log.index().chunks.size() && (chunk == 0 || refiner.level() < level); ++chunk) {
-    if (stop.stop_requested())
-      return fail(ErrorCode::kIo, "stopped, because nobody waits for the level any more");
-    if (Status s = applyChunk(log, refiner, chunk, needed); !s) return std::unexpected(s.error());
-  }
+  if (Status s = refineToLevel(log, refiner, level, needed, stop); !s)
+    return std::unexpected(s.error());
   return latticeMesh(*manifest, refiner, wanted);
 }
 

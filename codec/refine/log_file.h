@@ -88,6 +88,12 @@ Status applyChunk(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
 Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk,
                        std::uint32_t field);
 
+/// Decodes the mesh up to level `level` with the named fields, which the refiner does not have.
+/// Errors: applyChunk's, not-found (no such level), io (`stop` was requested; looked at before
+/// every chunk). REQUIRES: a refiner without a chunk.
+Status refineToLevel(const LogFile& log, Refiner& refiner, std::uint32_t level,
+                     std::span<const std::uint32_t> fields, const std::stop_token& stop);
+
 /// The mesh that `refiner` holds, with the fields of these numbers.
 [[nodiscard]] LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner,
                                       std::span<const std::uint32_t> fields);

@@ -1,4 +1,4 @@
-// What a process that decodes for strangers may ask of the system.
+// The system calls that are left to a process that decodes for strangers.
 #pragma once
 
 namespace qtet {

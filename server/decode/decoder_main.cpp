@@ -119,9 +119,9 @@ class Tasks {
       mesh_ = *opened, digest_ = task.digest;
     }
     task.request.mesh = mesh_;
-    const Result<Bytes> made = makeLevel(task.request, work.stop, series_);
-    if (!made) return std::unexpected(made.error());
-    return writeAll(work.files.back()->number, *made);
+    const int file = work.files.back()->number;
+    return writeLevel(
+        task.request, [file](ByteView bytes) { return writeAll(file, bytes); }, work.stop, series_);
   }
 
   std::string digest_;

@@ -69,6 +69,8 @@ std::vector<po::options_description> settingGroups() {
   group("Limits")("max-connections", text(), "at a time, in all (default: 4000)")(
       "max-connections-per-address", text(),
       "at a time; 0 = no bound, as behind a proxy (default: 256)")(
+      "max-level-bytes", text(),
+      "memory that making one level may take; more is 413 (default: a quarter of the memory)")(
       "max-levels-per-address", text(),
       "made or waiting at a time; 0 = no bound, as behind a proxy (default: 6)")(
       "max-requests-per-second", text(),
@@ -233,6 +235,7 @@ Result<CommandLine> toCommandLine(const po::variables_map& values) {
   reader.path("ticket-key", out.ticketKey);
   reader.number("max-connections", out.maxConnections, 1, 1'000'000);
   reader.number("max-connections-per-address", out.maxConnectionsPerAddress, 0, 1'000'000);
+  reader.number("max-level-bytes", out.maxLevelBytes, 1, kAny);
   reader.number("max-levels-per-address", out.maxLevelsPerAddress, 0, 1'000'000);
   reader.number("max-requests-per-second", out.maxRequestsPerSecond, 0, 1'000'000'000);
   reader.flag("watch", out.watch);
@@ -354,6 +357,7 @@ std::string configText(const CommandLine& options) {
       << "\ndrain-seconds = " << options.drainTime.count()
       << "\nmax-connections = " << options.maxConnections
       << "\nmax-connections-per-address = " << options.maxConnectionsPerAddress
+      << "\nmax-level-bytes = " << options.maxLevelBytes
       << "\nmax-levels-per-address = " << options.maxLevelsPerAddress
       << "\nmax-requests-per-second = " << options.maxRequestsPerSecond << "\n";
   for (std::size_t i = 0; i < options.allowedOrigins.size(); ++i)

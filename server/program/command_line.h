@@ -12,6 +12,7 @@
 #include "proto/error.h"
 #include "server/http/upload_limits.h"
 #include "server/store/free_disk.h"
+#include "server/store/level_memory.h"
 #include "server/store/log_check.h"
 #include "server/store/store_limits.h"
 #include "server/wire/connection_limits.h"
@@ -20,7 +21,8 @@
 namespace qtet {
 
 namespace limits {
-/// The longest time of draining: a day. deploy/qtet-server.service waits for longer.
+/// The longest time of draining: an hour, far above the time in which load balancers notice.
+/// deploy/qtet-server.service waits for longer.
 inline constexpr std::chrono::seconds kMaxDrainTime{3'600};
 }  // namespace limits
 
@@ -43,6 +45,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> tlsCertificate;  ///< with tlsKey, or neither
   std::optional<std::filesystem::path> tlsKey;
   std::uintmax_t maxUploadBytes = limits::kMaxUploadBytes;
+  std::uint64_t maxLevelBytes = ownMemory() / limits::kLevelPartOfMemory;
   std::uintmax_t maxCheckBytes = limits::kMaxCheckBytes;
   std::chrono::seconds maxCheckTime = limits::kCheckTime;
   std::uintmax_t diskReserve = limits::kDiskReserve;

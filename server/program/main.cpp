@@ -196,6 +196,7 @@ ServerOptions serverOptions(const CommandLine& options, LevelCache* cache, Acces
           .maxConnectionsPerAddress = options.maxConnectionsPerAddress,
           .maxRequestsPerSecond = options.maxRequestsPerSecond,
           .maxLevelsPerAddress = options.maxLevelsPerAddress,
+          .maxLevelBytes = options.maxLevelBytes,
           .adminHost = options.adminHost,
           .adminPort = options.adminPort,
           .readyEarly = options.readyEarly,
@@ -246,7 +247,7 @@ int serve(const CommandLine& options) {
 
   Decoders decoders(
       {.processes = limits::kLevelThreads + limits::kPointThreads + limits::kCheckThreads,
-       .levelBytes = limits::kMaxCheckBytes});
+       .levelBytes = options.maxLevelBytes});
   ServerOptions wired = serverOptions(options, cache->get(), accessLog->get(), *secrets);
   wired.decoders = &decoders;
   wired.uploads.check = [&decoders](const ServedMesh& mesh, const CheckLimits& limits,

@@ -14,6 +14,7 @@
 #include "server/routes/viewer_files.h"
 #include "server/session/services.h"
 #include "server/store/level_maker.h"
+#include "server/store/level_memory.h"
 #include "server/store/store_limits.h"
 #include "server/wire/access.h"
 #include "server/wire/connection_limits.h"
@@ -33,6 +34,8 @@ struct ServerOptions {
   std::chrono::nanoseconds maxOwedTime = limits::kMaxOwedTime;  ///< processor time of one address
   /// For one address, being made or waiting; 0: no bound.
   std::size_t maxLevelsPerAddress = limits::kMaxLevelJobsPerAddress;
+  /// Memory that making one level may take, as memoryOf() predicts it.
+  std::uint64_t maxLevelBytes = ownMemory() / limits::kLevelPartOfMemory;
   std::size_t maxHandshakes = limits::kMaxHandshakes;
   std::size_t maxHandshakesPerAddress = limits::kMaxHandshakesPerAddress;
   Timeouts timeouts{};

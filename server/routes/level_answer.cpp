@@ -4,6 +4,7 @@
 
 #include "server/http/content_disposition.h"
 #include "server/http/http_resource.h"
+#include "server/store/level_memory.h"
 
 namespace qtet {
 namespace {
@@ -59,7 +60,7 @@ Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
 }
 
 void chooseCodingOf(LevelRequest& wanted, Resource& resource, const RequestView& request) {
-  if (isCompressed(wanted.form)) return;
+  if (isCompressed(wanted.form) || fileBytesOf(wanted) > limits::kMaxCodedLevelBytes) return;
   wanted.coding = chooseCoding(request.acceptEncoding.value_or(""), true, true);
   becomeVariant(resource, wanted.coding);
 }

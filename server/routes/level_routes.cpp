@@ -16,17 +16,6 @@
 namespace qtet {
 namespace {
 
-/// Whether it has an address of its own.
-bool isMeshFile(LevelForm form) {
-  switch (form) {
-    case LevelForm::kPng:
-    case LevelForm::kWebp:
-    case LevelForm::kJson:
-    case LevelForm::kCsv: return false;
-    default: return true;
-  }
-}
-
 Result<std::uint32_t> levelOf(const ServedMesh& mesh, const Target& target) {
   return levelFor(target, mesh.manifest, mesh.log.index());
 }

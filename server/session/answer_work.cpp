@@ -16,6 +16,7 @@
 #include "server/http/level_wait.h"
 #include "server/http/unwritable_level.h"
 #include "server/session/http_output.h"
+#include "server/store/level_memory.h"
 #include "server/wire/connection_limits.h"
 #include "server/wire/http_limits.h"
 
@@ -52,11 +53,27 @@ Reply failedLevel(const Error& error) {
   return problem(500, "internal", why + error.text());
 }
 
+/// 413 where making the level would take more memory than there is for it.
+std::optional<Reply> tooLarge(const LevelRequest& level, std::uint64_t most) {
+  const std::uint64_t needed = memoryOf(level);
+  if (needed <= most) return std::nullopt;
+  return problem(413, "content-too-large",
+                 "making this takes " + std::to_string(needed) +
+                     " bytes of memory, more than the " + std::to_string(most) +
+                     " that this server has for it (its option --max-level-bytes); choose time= or "
+                     "fields=, or a coarser level");
+}
+
 /// The level's bytes behind `head`, or the range of them that is asked for.
 asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const RequestView& request,
-                                 Peer& peer, LevelJobs& jobs) {
+                                 Peer& peer, const Services& services) {
+  LevelJobs& jobs = level.point ? services.pointJobs : services.jobs;
   KeptAnswer answer = jobs.find(level);
-  if (!answer && (head.sendBody || jobs.keeps(level))) {
+  const bool isKept = !answer && jobs.keeps(level);
+  if (!answer && !isKept && head.sendBody)
+    if (std::optional<Reply> refusal = tooLarge(level, services.maxLevelBytes))
+      co_return std::move(*refusal);
+  if (!answer && (head.sendBody || isKept)) {
     LevelAnswer answered = co_await waitForLevel(peer.socket, jobs, level, peer.address());
     if (const auto* refusal = std::get_if<LevelRefusal>(&answered))
       co_return *refusal == LevelRefusal::kGone ? clientGone(std::move(head))
@@ -165,8 +182,7 @@ asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& r
                                              HttpInput& input, const Services& services) {
   std::optional<Reply> out;
   if (const auto* level = std::get_if<LevelRequest>(&answer.work)) {
-    LevelJobs& jobs = level->point ? services.pointJobs : services.jobs;
-    out = co_await makeReply(std::move(answer.reply), *level, request, peer, jobs);
+    out = co_await makeReply(std::move(answer.reply), *level, request, peer, services);
   } else if (const auto* upload = std::get_if<UploadRequest>(&answer.work)) {
     if (upload->kind == UploadRequest::Kind::kDelete)
       out = co_await runOn<Reply>(*services.writers,

@@ -53,6 +53,8 @@ struct Services {
   bool streams = true;  ///< WebSockets are answered
   LevelJobs& jobs;
   LevelJobs& pointJobs;
+  /// Memory that making one level may take, as memoryOf() predicts it.
+  std::uint64_t maxLevelBytes;
   Metrics& metrics;
   AccessLog* accessLog = nullptr;
   Timeouts timeouts{};

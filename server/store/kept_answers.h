@@ -29,7 +29,7 @@ class KeptAnswers {
   [[nodiscard]] virtual KeptAnswer find(const std::string& key) = 0;
   /// Takes the answer that a job has made, and returns it from where it is kept, if it is.
   [[nodiscard]] virtual Result<LevelFile> put(const std::string& key, Result<LevelFile> made) = 0;
-  /// Of everything that is kept.
+  /// Everything that is kept.
   [[nodiscard]] virtual std::uintmax_t bytes() const = 0;
 };
 

@@ -3,7 +3,7 @@
 
 #include <stop_token>
 
-#include "proto/bytes.h"
+#include "proto/byte_sink.h"
 #include "proto/error.h"
 #include "server/store/level_file.h"
 #include "server/store/level_request.h"
@@ -12,14 +12,14 @@ namespace qtet {
 
 class SeriesMaker;
 
-/// The whole file, or the values of a series where the request has a point: `series` keeps what
-/// the next point needs. Looks at `stop` after every chunk; if it was requested, the result is
-/// useless. Errors: those of applyChunk, of the writers and of SeriesMaker; io when there is not
-/// enough memory.
-[[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop,
-                                      SeriesMaker& series);
+/// The file into a sink, or the values of a series where the request has a point: `series` keeps
+/// what the next point needs. Looks at `stop` after every chunk; if it was requested, the result is
+/// useless. Errors: those of applyChunk, of the writers, of SeriesMaker and of the sink; io when
+/// there is not enough memory.
+[[nodiscard]] Status writeLevel(const LevelRequest& request, const ByteSink& sink,
+                                const std::stop_token& stop, SeriesMaker& series);
+/// The whole file.
 [[nodiscard]] Result<Bytes> makeLevel(const LevelRequest& request, const std::stop_token& stop);
-
 /// The same in memory of this process.
 [[nodiscard]] Result<LevelFile> makeLevelHere(const LevelRequest& request,
                                               const std::stop_token& stop);

@@ -46,4 +46,14 @@ std::optional<LevelForm> formOfName(std::string_view name) {
   return it == kForms.end() ? std::nullopt : std::optional(it->first);
 }
 
+bool isMeshFile(LevelForm form) {
+  switch (form) {
+    case LevelForm::kPng:
+    case LevelForm::kWebp:
+    case LevelForm::kJson:
+    case LevelForm::kCsv: return false;
+    default: return true;
+  }
+}
+
 }  // namespace qtet

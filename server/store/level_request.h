@@ -46,5 +46,7 @@ struct LevelRequest {
 /// The ending without its dot.
 [[nodiscard]] std::string_view formName(LevelForm form);
 [[nodiscard]] std::optional<LevelForm> formOfName(std::string_view name);
+/// Whether it is one of codec/files/mesh_file.h.
+[[nodiscard]] bool isMeshFile(LevelForm form);
 
 }  // namespace qtet

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/log/last_uses.h"
 #include "codec/mesh/mesh.h"
+#include "codec/refine/level_fields.h"
 #include "codec/refine/refiner.h"
 #include "proto/field_key.h"
 #include "proto/number_text.h"
@@ -131,7 +131,6 @@ struct SeriesMaker::Kept {
   Kept(MeshPointer of, std::uint32_t at) : mesh(std::move(of)), level(at) {}
 
   [[nodiscard]] const LogFile& log() const { return mesh->log; }
-  Status refine(const std::stop_token& stop);
   Status decode(std::uint32_t field, const std::stop_token& stop);
   /// Bytes of the values of these fields, and of the differences that they are made from.
   [[nodiscard]] std::uint64_t bytesOf(std::span<const std::uint32_t> fields) const;
@@ -150,16 +149,6 @@ struct SeriesMaker::Kept {
   std::vector<std::uint32_t> whole;  // ascending
   bool onlyAt = false;               // the refiner decodes no whole field any more
 };
-
-Status SeriesMaker::Kept::refine(const std::stop_token& stop) {
-  refiner.stopAtLevel(level);
-  for (std::uint32_t chunk = 0;
-       chunk < log().chunks().size() && (chunk == 0 || refiner.level() < level); ++chunk) {
-    if (stop.stop_requested()) return stopped();
-    if (Status s = applyChunk(log(), refiner, chunk, {}); !s) return s;
-  }
-  return {};
-}
 
 Status SeriesMaker::Kept::decode(std::uint32_t field, const std::stop_token& stop) {
   for (std::uint32_t chunk = 0; chunk < refiner.chunksApplied(); ++chunk) {
@@ -200,13 +189,10 @@ Status SeriesMaker::Kept::decodeOnlyAt(std::span<const std::uint32_t> elements,
   onlyAt = true;
   for (const std::uint32_t f : std::exchange(whole, {})) refiner.forgetField(f);
   refiner.fieldsOnlyAt(log().fields()[fields.back()].association, elements);
-  const std::vector<std::vector<std::uint32_t>> uses = lastUses(log().fields(), fields);
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (Status s = decode(fields[i], stop); !s) return s;
-    take(fields[i]);
-    for (const std::uint32_t used : uses[i]) refiner.forgetField(used);
-  }
-  return {};
+  LevelFields decoded(log(), refiner, fields, stop);
+  for (const std::uint32_t f : fields)
+    if (!decoded.integers(f).empty()) take(f);
+  return decoded.status();
 }
 
 SeriesMaker::SeriesMaker(std::uint64_t keptValueBytes) : keptValueBytes_(keptValueBytes) {}
@@ -227,7 +213,8 @@ Result<Bytes> SeriesMaker::make(const LevelRequest& request, const std::stop_tok
   if (isOther() || (kept->onlyAt && kept->bytesOf(fields) <= keptValueBytes_)) {
     kept = nullptr;  // before there are two
     kept = std::make_unique<Kept>(request.mesh, request.level);
-    if (Status s = kept->refine(stop); !s) return std::unexpected(s.error());
+    if (Status s = refineToLevel(request.mesh->log, kept->refiner, request.level, {}, stop); !s)
+      return std::unexpected(s.error());
   }
   const Refiner& refiner = kept->refiner;
   std::array<double, 3> point{};

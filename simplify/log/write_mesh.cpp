@@ -24,7 +24,8 @@ FileMesh fileMesh(const TetMesh& mesh) {
                      });
   for (const MeshField& field : mesh.fields)
     (isCellField(field) ? out.cellFields : out.pointFields)
-        .push_back({field.name, field.type, field.components, field.values});
+        .push_back({field.name, field.type, field.components,
+                    FieldNumbers(field.values.size(), [&field] { return field.values; })});
   return out;
 }
 

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "simplify/read/options/xml_place.h"
+
 namespace qtet {
 namespace {
 
@@ -40,8 +42,7 @@ class Builder {
           XML_STATUS_OK)
         continue;
       return fail(ErrorCode::kBadInput,
-                  path.string() + ", line " +
-                      std::to_string(XML_GetCurrentLineNumber(parser_.get())) + ": " +
+                  path.string() + ", line " + std::to_string(xmlLine(parser_.get())) + ": " +
                       (wrong_ ? wrong_ : XML_ErrorString(XML_GetErrorCode(parser_.get()))) +
                       "; export the mesh again");
     }

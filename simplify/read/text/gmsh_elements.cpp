@@ -159,7 +159,8 @@ std::vector<NodePlace> gmshPlaces(std::uint8_t type, int n) {
 GmshElement higherElement(std::uint8_t type, int degree) {
   static std::map<std::pair<std::uint8_t, int>, std::vector<std::uint16_t>> orders;
   std::vector<std::uint16_t>& nodeOf = orders[{type, degree}];
-  const HigherCell& cell = higherCell(type, {degree, degree, degree});
+  const Degrees degrees = {degree, degree, degree};
+  const HigherCell& cell = higherCell(type, degrees);
   if (nodeOf.empty()) {
     const std::vector<NodePlace> places = gmshPlaces(type, degree);
     for (const NodePlace& place : cell.places)

@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "simplify/read/options/xml_place.h"
+
 namespace qtet {
 namespace {
 
@@ -131,15 +133,10 @@ class DocumentParser {
     return {};
   }
 
-  [[nodiscard]] std::uint64_t line() const { return XML_GetCurrentLineNumber(parser_.get()); }
+  [[nodiscard]] std::uint64_t line() const { return xmlLine(parser_.get()); }
   /// Where the present event begins; 0 before the first.
-  [[nodiscard]] std::uint64_t byte() const {
-    return static_cast<std::uint64_t>(
-        std::max<XML_Index>(0, XML_GetCurrentByteIndex(parser_.get())));
-  }
-  [[nodiscard]] std::uint64_t byteBehind() const {
-    return byte() + static_cast<std::uint64_t>(XML_GetCurrentByteCount(parser_.get()));
-  }
+  [[nodiscard]] std::uint64_t byte() const { return xmlByte(parser_.get()); }
+  [[nodiscard]] std::uint64_t byteBehind() const { return byte() + xmlBytes(parser_.get()); }
 
   void refuse(const std::string& what, ErrorCode code = ErrorCode::kBadInput) {
     if (error_) return;

@@ -101,7 +101,8 @@ TEST(VtuWriter, everyNumberTypeKeepsItsExtremes) {
   ASSERT_EQ(read.mesh.fields.size(), mesh.pointFields.size());
   for (std::size_t f = 0; f < mesh.pointFields.size(); ++f) {
     EXPECT_EQ(read.mesh.fields[f].type, mesh.pointFields[f].type);
-    EXPECT_EQ(read.mesh.fields[f].values, mesh.pointFields[f].values) << mesh.pointFields[f].name;
+    EXPECT_EQ(read.mesh.fields[f].values, *mesh.pointFields[f].values.get())
+        << mesh.pointFields[f].name;
   }
 }
 

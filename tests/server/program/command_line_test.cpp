@@ -66,6 +66,8 @@ TEST(CommandLine, everyOptionIsUnderstood) {
                            "0",
                            "--max-levels-per-address",
                            "3",
+                           "--max-level-bytes",
+                           "6",
                            "--max-requests-per-second",
                            "9",
                            "--allow-origins",
@@ -92,6 +94,7 @@ TEST(CommandLine, everyOptionIsUnderstood) {
   EXPECT_EQ(line->maxConnections, 7u);
   EXPECT_EQ(line->maxConnectionsPerAddress, 0u);
   EXPECT_EQ(line->maxLevelsPerAddress, 3u);
+  EXPECT_EQ(line->maxLevelBytes, 6u);
   EXPECT_EQ(line->maxRequestsPerSecond, 9u);
 }
 
@@ -161,6 +164,7 @@ TEST(CommandLine, wrongUsageIsExplained) {
                           {"a", "--admin", "h:65536"},
                           {"a", "--max-connections", "0"},
                           {"a", "--max-check-bytes", "0"},
+                          {"a", "--max-level-bytes", "0"},
                           {"a", "--max-check-seconds", "0"},
                           {"a", "--max-check-seconds", "1000001"},
                           {"a", "--cache-bytes", "99999999999999999999"}}) {

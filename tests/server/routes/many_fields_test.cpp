@@ -8,6 +8,7 @@
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
 #include "proto/limits.h"
+#include "server/store/level_memory.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/store/synthetic_log.h"
 #include "tests/support/forged_log.h"
@@ -98,6 +99,21 @@ TEST_F(ManyFields, asManyAsDracoTakesAreServed) {
   EXPECT_EQ(get("0.glb?fields=" + instants(128)).status, 422u);
   EXPECT_EQ(get("0.drc?fields=" + instants(128)).status, 200u);
   EXPECT_EQ(get("0.drc?fields=" + instants(129)).status, 422u);
+}
+
+TEST_F(ManyFields, aLevelThatTakesTooMuchMemoryIsRefusedBeforeAJobBegins) {
+  const MeshPointer mesh = store_.find("many");
+  const LevelRequest few{mesh, 0, LevelForm::kVtu, {7, 299}};  // the last field has no time
+  for (const std::uint64_t room : {memoryOf(few) - 1, memoryOf(few), memoryOf(few) + 1}) {
+    server_.emplace(store_, viewer_, ServerOptions{.maxLevelBytes = room});
+    client_.emplace(server_->port());
+    const test::HttpResponse all = get("0.vtu"), one = get("0.vtu?time=7");
+    EXPECT_EQ(all.status, 413u);
+    for (const char* says : {"content-too-large", "--max-level-bytes", "time=", "fields="})
+      EXPECT_NE(all.body.find(says), std::string::npos) << says << " in " << all.body;
+    EXPECT_EQ(one.status, room >= memoryOf(few) ? 200u : 413u) << one.body;
+    EXPECT_TRUE(server_->comesTo("levels_failed_total", 0));
+  }
 }
 
 TEST_F(ManyFields, aNameThatIsTooLongForAKindOfFileIsRefused) {

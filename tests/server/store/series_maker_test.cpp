@@ -194,7 +194,7 @@ TEST_F(SeriesTest, pointsAfterTheFirstHaveTheSameValues) {
           const auto point =
               cell < mesh.tetrahedra.size() ? middleOf(mesh, cell) : std::array{1e9, 0.0, 0.0};
           LevelRequest wanted = request(field, level, point);
-          const Result<Bytes> fresh = makeLevel(wanted, {}), next = makeLevel(wanted, {}, series);
+          const Result<Bytes> fresh = makeLevel(wanted, {}), next = series.make(wanted, {});
           ASSERT_EQ(next.has_value(), fresh.has_value()) << field << kept;
           if (fresh) EXPECT_EQ(*next, *fresh) << field << kept;
           if (!fresh) EXPECT_EQ(next.error().text(), fresh.error().text());
@@ -202,8 +202,8 @@ TEST_F(SeriesTest, pointsAfterTheFirstHaveTheSameValues) {
     std::stop_source stop;
     stop.request_stop();
     series.forget();
-    EXPECT_FALSE(makeLevel(request("T@", last(), middleOf(mesh, 0)), stop.get_token(), series));
-    EXPECT_TRUE(makeLevel(request("T@", last(), middleOf(mesh, 0)), {}, series));
+    EXPECT_FALSE(series.make(request("T@", last(), middleOf(mesh, 0)), stop.get_token()));
+    EXPECT_TRUE(series.make(request("T@", last(), middleOf(mesh, 0)), {}));
   }
 }
 
