@@ -13,9 +13,9 @@ namespace qtet {
 
 class Refiner;
 
-/// Fields of one association. While they are asked for in ascending order, each is decoded once,
-/// and in memory are the present one and those that later ones are predicted from. In another order
-/// they are decoded again.
+/// Fields of one association. While they are asked for in ascending order, each is decoded once. In
+/// memory are the present one and those that later ones are predicted from. In another order they
+/// are decoded again.
 class LevelFields {
  public:
   /// `log` and `refiner`, which has decoded none of these fields, must outlive it. `wanted` ascends.

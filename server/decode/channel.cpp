@@ -1,6 +1,7 @@
 #include "server/decode/channel.h"
 
 #include <sys/socket.h>
+#include <sys/time.h>
 
 #include <array>
 #include <cerrno>
@@ -82,17 +83,23 @@ Result<std::array<std::unique_ptr<Descriptor>, 2>> connectedEnds() {
   return std::array{std::make_unique<Descriptor>(ends[0]), std::make_unique<Descriptor>(ends[1])};
 }
 
+void Channel::setPatience(std::chrono::seconds most) const {
+  const timeval time{most.count(), 0};
+  for (const int direction : {SO_RCVTIMEO, SO_SNDTIMEO})
+    (void)::setsockopt(end_->number, SOL_SOCKET, direction, &time, sizeof time);
+}
+
 Status Channel::send(ByteView bytes, std::span<const int> files) const {
-  ByteWriter writer;
-  writer.write(static_cast<std::uint32_t>(bytes.size()));
-  writer.append(bytes);
-  for (ByteView rest = writer.bytes(); !rest.empty();) {
-    const ssize_t count = sendSome(end_->number, rest, files);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return lost(errno);
-    files = {};
-    rest = rest.subspan(static_cast<std::size_t>(count));
-  }
+  ByteWriter length;
+  length.write(static_cast<std::uint32_t>(bytes.size()));
+  for (ByteView rest : {ByteView(length.bytes()), bytes})
+    while (!rest.empty()) {
+      const ssize_t count = sendSome(end_->number, rest, files);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) return lost(errno);
+      files = {};
+      rest = rest.subspan(static_cast<std::size_t>(count));
+    }
   return {};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -39,6 +40,9 @@ class Channel {
   /// Waits for a message. Errors: io (nobody is there any more), limit-exceeded (a message, or its
   /// files, beyond the limits above).
   [[nodiscard]] Result<DecodeMessage> receive() const;
+  /// From now on a message that takes longer than `most` on its way, once it has begun, is an error
+  /// of send() and receive().
+  void setPatience(std::chrono::seconds most) const;
   [[nodiscard]] int number() const { return end_->number; }
 
  private:

@@ -116,6 +116,7 @@ Decoder::Decoder(Channel channel, pid_t process)
     : channel_(std::move(channel)),
       process_(process),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  channel_.setPatience(limits::kDecoderMessageTime);
   setLimit(process_, RLIMIT_CORE, 0);
   setLimit(process_, RLIMIT_NOFILE, limits::kDecoderFiles);
 }
@@ -153,8 +154,8 @@ void Decoder::bound(const TaskLimits& bounds) const {
 
 std::unexpected<Error> Decoder::lost() {
   int status = 0;
-  // It is about to end by itself, or it does not answer: then this ends it.
-  if (alive()) ::kill(process_, SIGKILL);
+  // One that is about to end by itself keeps its own reason.
+  ::kill(process_, SIGKILL);
   while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }
   process_ = -1;

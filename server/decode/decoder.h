@@ -18,6 +18,8 @@ namespace qtet {
 namespace limits {
 /// From a stop to the end of a process that does not heed it: far above the time of one chunk.
 inline constexpr std::chrono::seconds kDecoderStopTime{2};
+/// A message on its way: far above what a machine that is busy with other things makes of it.
+inline constexpr std::chrono::seconds kDecoderMessageTime{10};
 /// Open files: the channel, standard error, two of a task, and room.
 inline constexpr std::uint64_t kDecoderFiles = 16;
 }  // namespace limits

@@ -98,6 +98,7 @@ class Tasks {
   DecodeAnswer operator()(Work work) {
     if (auto* level = std::get_if<LevelTask>(&work.task))
       return LevelEnd{write(std::move(*level), work)};
+    forget();
     const Result<MeshPointer> mesh = meshOf(*work.files.front());
     if (!mesh) return CheckVerdict{CheckVerdict::End::kUnsound, mesh.error().text()};
     return checkLog(**mesh, std::get<CheckTask>(work.task).limits, work.stop);
@@ -118,6 +119,7 @@ class Tasks {
       if (!opened) return std::unexpected(opened.error());
       mesh_ = *opened, digest_ = task.digest;
     }
+    if (!task.request.point) series_.forget();  // its memory is the level's now
     task.request.mesh = mesh_;
     const int file = work.files.back()->number;
     return writeLevel(

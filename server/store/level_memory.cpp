@@ -23,8 +23,8 @@ constexpr std::uint64_t kTextNumber = 26, kMeanTextNumber = 14;
 constexpr std::uint64_t kPictureBytes = 48u << 20;
 /// Draco's tables of a boundary's triangle, and of one of its values; a plain copy is among them.
 constexpr std::uint64_t kDracoTriangle = 600, kDracoValue = 48;
-/// Copies of the mesh that the writers take: points and corners as integers and as coordinates, and
-/// the largest array on its way into the file.
+/// Copies of the mesh that the writers take: points and corners as integers, as coordinates, and as
+/// the largest array of the file.
 constexpr std::uint64_t kVertexCopies = 12 + 24 + 24, kCellCopies = 16 + 16 + 48,
                         kTriangleCopies = 2 * 12;
 

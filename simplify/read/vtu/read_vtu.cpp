@@ -42,8 +42,9 @@ struct Association {
   VtuFields VtuPiece::* fields;
   std::uint64_t VtuPiece::* tuples;
 };
-constexpr Association kPointData{"point", "<PointData>", &VtuPiece::pointFields, &VtuPiece::points};
-constexpr Association kCellData{"cell", "<CellData>", &VtuPiece::cellFields, &VtuPiece::cells};
+constexpr Association kPointSection{"point", "<PointData>", &VtuPiece::pointFields,
+                                    &VtuPiece::points};
+constexpr Association kCellSection{"cell", "<CellData>", &VtuPiece::cellFields, &VtuPiece::cells};
 
 /// The array of one piece.
 struct Part {
@@ -115,7 +116,7 @@ class VtuReader {
     for (const char* name : kGlobalIdNames)
       if (!ids) ids = find(name);
     if (!ids || ids->components != 1 || (isFloat(*ids) && !ids->isIdType)) return {};
-    const auto parts = partsOf(*ids, kPointData);
+    const auto parts = partsOf(*ids, kPointSection);
     if (!parts) return std::unexpected(parts.error());
     out_.pointIds.reserve(out_.points.size());
     for (const Part& part : *parts) {
@@ -141,7 +142,7 @@ class VtuReader {
   }
 
   Status readFields() {
-    for (const Association& of : {kPointData, kCellData})
+    for (const Association& of : {kPointSection, kCellSection})
       if (Status done = readFieldsOf(of); !done) return done;
     return {};
   }

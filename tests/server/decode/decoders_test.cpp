@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "server/decode/confinement.h"
+#include "server/decode/decode_task.h"
 #include "server/store/level_maker.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/store/synthetic_log.h"
@@ -24,6 +25,8 @@
 
 namespace qtet {
 namespace {
+
+constexpr std::chrono::milliseconds kEnoughTime{9};
 
 class DecodersTest : public ::testing::Test {
  protected:
@@ -103,6 +106,53 @@ TEST_F(DecodersTest, aProcessThatDiesIsAnErrorOfItsOwnTaskAlone) {
   ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(idle), &end, WEXITED | WNOWAIT), 0);
   EXPECT_TRUE(decoders.level(finest(), {})) << "one that died idle is replaced before the task";
   EXPECT_EQ(decoders.counts().running, 0u);
+}
+
+TEST_F(DecodersTest, aProcessThatAnswersNonsenseIsEnded) {
+  // /bin/cat is no decoder: it sends nothing, and ends.
+  DecoderOptions given = options(1);
+  given.program = "/bin/cat";
+  Decoders decoders(given);
+  const Result<LevelFile> made = decoders.level(finest(), {});
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("ended with code"), std::string::npos);
+  EXPECT_EQ(decoders.check(*mesh_, enough_, {}).end, CheckVerdict::End::kFailed);
+}
+
+TEST(DecodeTask, messagesComeBackAndNoOthersAreUnderstood) {
+  LevelTask level{"d", {nullptr, 7, LevelForm::kCsv, {1, 300}, ContentCoding::kZstd, {"a", ""}}};
+  level.request.point = {1.5, -2, 1e300};
+  for (const DecodeTask& task :
+       {DecodeTask(level), DecodeTask(CheckTask{{5, kEnoughTime}}), DecodeTask(StopTask())}) {
+    const Bytes message = messageOf(task);
+    const Result<DecodeTask> back = taskOf(message);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(messageOf(*back), message);
+    EXPECT_FALSE(answerOf(message));
+  }
+  const Error error{ErrorCode::kNotFound, "outside", 12};
+  for (const DecodeAnswer& answer :
+       {DecodeAnswer(DecoderReady{true}), DecodeAnswer(LevelEnd{}),
+        DecodeAnswer(LevelEnd{std::unexpected(error)}),
+        DecodeAnswer(CheckVerdict{CheckVerdict::End::kFailed, "why"})}) {
+    const Bytes message = messageOf(answer);
+    const Result<DecodeAnswer> back = answerOf(message);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(messageOf(*back), message);
+    EXPECT_FALSE(taskOf(message));
+    // A process that was taken over may say anything.
+    for (std::size_t size = 0; size < message.size(); ++size)
+      EXPECT_FALSE(answerOf(ByteView(message).first(size)));
+    for (std::size_t at = 0; at < message.size(); ++at)
+      for (int bit = 0; bit < 8; ++bit) {
+        Bytes other = message;
+        other[at] ^= static_cast<std::uint8_t>(1 << bit);
+        (void)answerOf(other);
+      }
+    Bytes longer = message;
+    longer.push_back(0);
+    EXPECT_FALSE(answerOf(longer));
+  }
 }
 
 TEST_F(DecodersTest, aStopEndsAProcessThatDoesNotHeedIt) {

@@ -25,7 +25,7 @@ class LevelMemory : public ::testing::Test {
     for (std::uint32_t f = 0; f < mesh_->manifest.fields.size(); ++f) out.fields.push_back(f);
     return out;
   }
-  /// Of writing it into a file, as the processes do.
+  /// Bytes of memory while it is written into a file, as the processes do.
   static std::size_t taken(const LevelRequest& request) {
     return testing::peakBytesOf([&] {
       SeriesMaker series;
