@@ -18,7 +18,8 @@ class Refiner;
 /// are decoded again.
 class LevelFields {
  public:
-  /// `log` and `refiner`, which has decoded none of these fields, must outlive it. `wanted` ascends.
+  /// `log` and `refiner`, which has decoded none of these fields, must outlive it. `wanted`
+  /// ascends.
   LevelFields(const LogFile& log, Refiner& refiner, std::vector<std::uint32_t> wanted,
               std::stop_token stop);
   ~LevelFields();
