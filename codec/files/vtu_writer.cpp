@@ -12,6 +12,7 @@ namespace qtet {
 namespace {
 
 constexpr std::uint8_t kVtkTetra = 10;
+constexpr std::string_view kFooter = "\n  </AppendedData>\n</VTKFile>\n";
 
 /// Header lines that name arrays, and the offsets that follow from the arrays' sizes.
 class Arrays {
@@ -131,7 +132,6 @@ Status writeVtu(const FileMesh& mesh, const ByteSink& sink) {
   const Sizes sizes(mesh);
   Arrays arrays(sizes.largest > std::numeric_limits<std::uint32_t>::max());
   const std::string header = headerText(mesh, sizes, arrays);
-  constexpr std::string_view kFooter = "\n  </AppendedData>\n</VTKFile>\n";
   Pieces out(sink);
   out.text(header);
   const auto array = [&](std::uint64_t sizeBytes, const auto& append) {
@@ -160,7 +160,11 @@ Status writeVtu(const FileMesh& mesh, const ByteSink& sink) {
 }
 
 Bytes vtuBytes(const FileMesh& mesh) {
+  const Sizes sizes(mesh);
+  Arrays arrays(sizes.largest > std::numeric_limits<std::uint32_t>::max());
+  const std::size_t headerBytes = headerText(mesh, sizes, arrays).size();
   Bytes out;
+  out.reserve(headerBytes + arrays.totalBytes() + kFooter.size());
   (void)writeVtu(mesh, appendTo(out));  // such a sink takes everything
   return out;
 }
