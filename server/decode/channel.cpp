@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -85,8 +86,12 @@ Result<std::array<std::unique_ptr<Descriptor>, 2>> connectedEnds() {
 Status Channel::send(ByteView bytes, std::span<const int> files) const {
   ByteWriter writer;
   writer.write(static_cast<std::uint32_t>(bytes.size()));
-  writer.append(bytes);
-  for (ByteView rest = writer.bytes(); !rest.empty();) {
+  Bytes message = writer.take();
+  const std::size_t head = message.size();
+  // resized, and not appended to: GCC 12 warns of an overflow there that cannot be
+  message.resize(head + bytes.size());
+  std::ranges::copy(bytes, message.begin() + static_cast<std::ptrdiff_t>(head));
+  for (ByteView rest = message; !rest.empty();) {
     const ssize_t count = sendSome(end_->number, rest, files);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return lost(errno);

@@ -55,7 +55,7 @@ Reply chunkReply(const RequestView& request, const MeshPointer& mesh, std::strin
 
 Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path) {
   if (path.size() != 3 || path[1] != "chunks") return missingReply("a field has chunks/{n}");
-  const auto field = fieldOfKey(mesh->manifest, path[0]);
+  const auto field = mesh->keys().fieldOfKey(path[0]);
   return field ? chunkReply(request, mesh, path[2], *field)
                : missingReply("this mesh has no field '" + path[0] + "'");
 }

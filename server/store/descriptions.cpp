@@ -32,12 +32,13 @@ Json identity(const ServedMesh& mesh) {
 /// Every field with what it costs.
 Json fields(const ServedMesh& mesh) {
   Json out = Json::array();
+  const FieldKeys& keys = mesh.keys();
   for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) {
     const ManifestField& field = mesh.manifest.fields[f];
     std::uint64_t bytes = 0;
     for (const ChunkEntry& chunk : mesh.log.chunks())
       bytes += chunk.blocks[kFirstFieldPart + f].size;
-    out.push_back({{"key", fieldKey(mesh.manifest, f)},
+    out.push_back({{"key", keys.keyOf(f)},
                    {"name", field.name},
                    {"components", field.components},
                    {"type", field.type},
@@ -57,7 +58,7 @@ std::string describeEntry(const ServedMesh& mesh) {
   out["vertices"] = finest.vertices;
   out["fields"] = Json::array();
   for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f)
-    out["fields"].push_back(fieldKey(mesh.manifest, f));
+    out["fields"].push_back(mesh.keys().keyOf(f));
   out["firstField"] = firstField(mesh.manifest);
   out["links"] = links(mesh);
   return dumpJson(out);

@@ -31,8 +31,9 @@ std::uint64_t ServedMesh::prefixBytes(std::uint32_t level) const {
 }
 
 struct ServedMesh::Texts {
-  std::once_flag describedOnce, manifestOnce;
+  std::once_flag describedOnce, manifestOnce, keysOnce;
   Document description, manifest;
+  std::optional<FieldKeys> keys;
 };
 
 std::shared_ptr<ServedMesh::Texts> ServedMesh::makeTexts() { return std::make_shared<Texts>(); }
@@ -51,6 +52,11 @@ const Document& ServedMesh::manifestText() const {
         Document(manifestToJson(manifest), {{"", modified}, "application/json", kForEver});
   });
   return texts->manifest;
+}
+
+const FieldKeys& ServedMesh::keys() const {
+  std::call_once(texts->keysOnce, [this] { texts->keys.emplace(manifest.fields, series); });
+  return *texts->keys;
 }
 
 std::optional<FileIdentity> identityOf(const std::filesystem::path& path) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "codec/refine/log_file.h"
+#include "proto/field_keys.h"
 #include "proto/manifest.h"
 #include "proto/series.h"
 #include "server/wire/document.h"
@@ -59,6 +60,9 @@ struct ServedMesh {
   [[nodiscard]] const Document& description() const;
   /// `GET /v1/logs/{sha256}/manifest`
   [[nodiscard]] const Document& manifestText() const;
+  /// The keys of the manifest's fields and of `series`. Made when it is first asked for;
+  /// thread-safe, as the texts.
+  [[nodiscard]] const FieldKeys& keys() const;
   struct Texts;
   std::shared_ptr<Texts> texts = makeTexts();
 

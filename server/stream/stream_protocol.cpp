@@ -31,10 +31,10 @@ std::expected<ClientBlocks, StreamRefusal> blocksOf(const Have& have, FieldTurns
   out.addLeading(have.chunks, kStructurePart);
   out.addLeading(have.chunks, kPositionsPart);
   for (const auto& [name, held] : have.fields) {
-    const auto field = fieldOfKey(mesh.manifest, name);
+    const auto field = mesh.keys().fieldOfKey(name);
     if (!field) return std::unexpected(unknownField(mesh, name));
-    const auto at = std::ranges::find(out.fields(), *field);
-    if (at != out.fields().end())
+    const auto at = std::ranges::lower_bound(out.fields(), *field);
+    if (at != out.fields().end() && *at == *field)
       out.addLeading(held, static_cast<std::size_t>(kFirstFieldPart + (at - out.fields().begin())));
   }
   return out;
@@ -96,7 +96,7 @@ void StreamProtocol::handle(const OpenMessage& message) {
     return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " +
                                    mesh->log.digest() + " by now");
   auto turns =
-      fieldTurns(message.fields, message.time, mesh->manifest, mesh->series, mesh->log.fields());
+      fieldTurns(message.fields, message.time, mesh->keys(), mesh->series, mesh->log.fields());
   if (!turns) {
     StreamRefusal unknown = unknownField(*mesh, turns.error());
     return refuse(unknown.code, std::move(unknown.detail));
