@@ -3,6 +3,7 @@
 #include "codec/log/log_levels.h"
 #include "proto/json_reader.h"
 #include "server/store/served_mesh.h"
+#include "server/store/store_limits.h"
 #include "server/wire/request_target.h"
 
 namespace qtet {
@@ -49,6 +50,22 @@ Json fields(const ServedMesh& mesh) {
   return out;
 }
 
+/// The fields as a list of meshes names them, each series once.
+void listFields(const FieldKeys& keys, Json& out) {
+  const std::vector<ListedKey> all = keys.listed();
+  Json fields = Json::array(), series = Json::array();
+  std::size_t bytes = 0;
+  for (const auto& [key, isSeries] : all) {
+    bytes += key.size();
+    if (fields.size() == limits::kMaxListedKeys || bytes > limits::kMaxListedKeyBytes) break;
+    fields.push_back(key);
+    if (isSeries) series.push_back(key);
+  }
+  if (fields.size() < all.size()) out["moreFields"] = all.size() - fields.size();
+  if (!series.empty()) out["series"] = std::move(series);
+  out["fields"] = std::move(fields);
+}
+
 }  // namespace
 
 std::string describeEntry(const ServedMesh& mesh) {
@@ -56,9 +73,7 @@ std::string describeEntry(const ServedMesh& mesh) {
   const ManifestLevel& finest = mesh.manifest.levels.back();
   out["tetrahedra"] = finest.tetrahedra;
   out["vertices"] = finest.vertices;
-  out["fields"] = Json::array();
-  for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f)
-    out["fields"].push_back(mesh.keys().keyOf(f));
+  listFields(mesh.keys(), out);
   out["firstField"] = firstField(mesh.manifest);
   out["links"] = links(mesh);
   return dumpJson(out);

@@ -82,6 +82,35 @@ TEST_F(FieldNames, describingEveryFieldWalksTheFieldsOnce) {
   expectFew(before);
 }
 
+TEST_F(FieldNames, aListNamesASeriesOnceAndNotAllOfManyFields) {
+  const std::uint64_t before = compared();
+  const test::Json series = test::Json::parse(describeEntry(*store_->find("series")));
+  EXPECT_EQ(series["fields"], test::Json::parse(R"(["p","velocity","T"])"));
+  EXPECT_EQ(series["series"], test::Json::parse(R"(["T"])"));
+  EXPECT_FALSE(series.contains("moreFields"));
+  const std::string text = describeEntry(*store_->find("singles"));
+  const test::Json singles = test::Json::parse(text);
+  EXPECT_EQ(singles["fields"].size(), limits::kMaxListedKeys);
+  EXPECT_EQ(singles["moreFields"], kMaxFields - limits::kMaxListedKeys);
+  EXPECT_FALSE(singles.contains("series"));
+  EXPECT_LT(text.size(), limits::kMaxListedKeyBytes);
+  expectFew(before);
+}
+
+TEST_F(FieldNames, theKeysOfAListHaveABoundOfBytes) {
+  const std::string name(kMaxNameBytes - 1, 'n');
+  std::vector<std::string> names;
+  for (char c = 'A'; names.size() < limits::kMaxListedKeyBytes / kMaxNameBytes + 1; ++c)
+    names.push_back(name + c);
+  test::TempFolder folder;
+  const auto entryOf = [&](std::size_t fields) {
+    folder.write("long.qtet", test::makeLog({.fields = {names.begin(), names.begin() + fields}}));
+    return test::Json::parse(describeEntry(**openMesh(folder.path() / "long.qtet", "long")));
+  };
+  EXPECT_FALSE(entryOf(names.size() - 1).contains("moreFields"));
+  EXPECT_EQ(entryOf(names.size())["moreFields"], 1);
+}
+
 TEST_F(FieldNames, aLevelWithManyOfThemWalksTheFieldsOnce) {
   std::string names = "p";
   for (std::uint32_t f = 2; f < kMaxRequestFields + 1; ++f) names += ",T@" + std::to_string(f);
