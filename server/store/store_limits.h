@@ -24,9 +24,6 @@ inline constexpr std::size_t kMaxListPage = 1000;
 /// and a page stays below 10 MB.
 inline constexpr std::size_t kMaxListedKeys = 256;
 inline constexpr std::size_t kMaxListedKeyBytes = 8u << 10;
-/// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems
-/// allow.
-inline constexpr std::size_t kMaxIdBytes = 150;
 /// Bytes of one log that is served from a nameless copy, and of all of them. People overwrite files
 /// in place, which changes a mapping under its digest. Most logs are smaller; larger ones are
 /// replaced by renaming (`qtet`, uploads).
