@@ -150,7 +150,7 @@ struct Server::State {
   KeptPoints points;
   LevelJobs pointJobs{{limits::kPointThreads, limits::kMaxPointJobs, &points, maker(),
                        options.maxLevelsPerAddress}};
-  asio::thread_pool writers{1}, checkers{limits::kCheckThreads};
+  asio::thread_pool writers{limits::kWriteThreads}, checkers{limits::kCheckThreads};
   Services services{store,
                     [this](const RequestView& request) { return router.route(request); },
                     true,

@@ -58,8 +58,9 @@ struct Services {
   Metrics& metrics;
   AccessLog* accessLog = nullptr;
   Timeouts timeouts{};
-  Uploads* uploads = nullptr;                   ///< where the router knows of uploads
-  boost::asio::thread_pool* writers = nullptr;  ///< where meshes are removed
+  Uploads* uploads = nullptr;  ///< where the router knows of uploads
+  /// Where uploads are begun and written, and meshes removed.
+  boost::asio::thread_pool* writers = nullptr;
   /// Where uploads are checked and published, one after the other.
   boost::asio::thread_pool* checkers = nullptr;
   /// Who may read what; nullptr: everybody everything.
