@@ -233,7 +233,7 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
 asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, const RequestView& view,
                                           bool keepAlive) {
   Answer answer = [&] {
-    const Charge charge(peer_.client.get());
+    const Charge charge(peer_.client.get(), &services_.metrics, report_.route());
     return services_.route(view);
   }();
   answerForOrigin(answer.reply, request, services_.allowedOrigins);
