@@ -62,6 +62,11 @@ Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path)
 
 }  // namespace
 
+Answer textAnswer(const RequestView& request, const MeshPointer& mesh, ServedMesh::Text which) {
+  if (!mesh->isQuick(which)) return Answer(TextRequest{mesh, which});
+  return documentReply(request, mesh->text(which), mesh);
+}
+
 Answer routeLog(const RequestView& request, const RequestTarget& target, const NamedLog& log) {
   assert(target.segments.size() >= 3);
   const MeshPointer& mesh = log.mesh;
@@ -72,7 +77,7 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   if (path.size() == 1 && what == "base")
     return part(request, mesh, "base", 0, endOf(mesh->log.chunks().front().blocks[kPositionsPart]));
   if (path.size() == 1 && what == "manifest")
-    return documentReply(request, mesh->manifestText(), mesh);
+    return textAnswer(request, mesh, ServedMesh::Text::kManifest);
   if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
   if (path.size() == 1 && what == "poster.webp") return routePoster(request, log);
   if (path.size() == 1 && what == "series") return routeSeries(request, target, log);

@@ -19,6 +19,7 @@
 #include "server/http/level_wait.h"
 #include "server/http/unwritable_level.h"
 #include "server/http/upload_limits.h"
+#include "server/routes/access_routes.h"
 #include "server/session/http_output.h"
 #include "server/store/level_memory.h"
 #include "server/wire/connection_limits.h"
@@ -196,6 +197,16 @@ asio::awaitable<std::optional<Reply>> takeUpload(const UploadRequest& upload, bo
   co_return out;
 }
 
+asio::awaitable<Reply> describe(const TextRequest& wanted, bool sendBody,
+                                const RequestView& request, const Services& services) {
+  const auto make = [&] { return &wanted.mesh->text(wanted.which); };
+  const Document* const text = co_await runOn<const Document*>(*services.describers, make);
+  Reply out = documentReply(request, *text, wanted.mesh);
+  if (wanted.isPrivate) keepPrivate(out);
+  out.sendBody = sendBody;
+  co_return out;
+}
+
 }  // namespace
 
 asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& request, Peer& peer,
@@ -209,6 +220,8 @@ asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& r
                                   [&] { return services.uploads->remove(*upload); });
     else
       out = co_await takeUpload(*upload, request.expect.has_value(), peer, input, services);
+  } else if (const auto* text = std::get_if<TextRequest>(&answer.work)) {
+    out = co_await describe(*text, answer.reply.sendBody, request, services);
   } else {
     out = std::move(answer.reply);
   }

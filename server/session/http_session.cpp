@@ -239,10 +239,11 @@ asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, const Re
   answerForOrigin(answer.reply, request, services_.allowedOrigins);
   if (std::holds_alternative<std::monostate>(answer.work))
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
+  const bool readsBody = std::holds_alternative<UploadRequest>(answer.work);
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);
   report_.received(input_.takeBodyBytes());
   if (!reply) reply = Reply{.status = kClientGone, .headers = {}, .body = {}};
-  co_return co_await send(std::move(*reply), keepAlive);
+  co_return co_await send(std::move(*reply), keepAlive && (readsBody || !hasBody(view)));
 }
 
 std::string HttpSession::headOf(const Reply& reply, bool keepAlive, ByteView body) const {

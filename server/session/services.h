@@ -63,6 +63,8 @@ struct Services {
   boost::asio::thread_pool* writers = nullptr;
   /// Where uploads are checked and published, one after the other.
   boost::asio::thread_pool* checkers = nullptr;
+  /// Where long texts are made and compressed.
+  boost::asio::thread_pool* describers = nullptr;
   /// Who may read what; nullptr: everybody everything.
   Access* access = nullptr;
   /// Origins of pages that may open streams; nullptr or empty: any.

@@ -11,6 +11,7 @@
 #include "server/store/descriptions.h"
 #include "server/store/store_limits.h"
 #include "server/stream/stream_protocol.h"
+#include "tests/server/program/loopback.h"
 #include "tests/server/store/synthetic_log.h"
 #include "tests/server/support/json.h"
 
@@ -80,6 +81,32 @@ TEST_F(FieldNames, describingEveryFieldWalksTheFieldsOnce) {
   EXPECT_EQ(mesh["fields"][std::size_t{kMaxFields} - 1]["key"],
             "T@" + std::to_string(kMaxFields - 1));
   expectFew(before);
+}
+
+TEST_F(FieldNames, longTextsAreMadeOnAnotherThread) {
+  const std::string description = "/v1/meshes/series", manifest = pathOf("series") + "/manifest";
+  const auto route = [&](const std::string& target) {
+    return router_.route({.method = "GET", .target = target}).work;
+  };
+  for (const std::string& target : {description, manifest})
+    EXPECT_TRUE(std::holds_alternative<TextRequest>(route(target))) << target;
+  const test::RunningServer server(*store_, viewer_);
+  test::RawClient client(server.port());
+  for (const std::string& target : {description, manifest}) {
+    const test::HttpResponse made = client.get(target);
+    EXPECT_EQ(made.status, 200u);
+    EXPECT_NE(made.body.find("\"T@" + std::to_string(kMaxFields - 1) + '"'), std::string::npos);
+    EXPECT_FALSE(made.header("etag").empty());
+    EXPECT_TRUE(std::holds_alternative<std::monostate>(route(target))) << "it is made";
+  }
+}
+
+TEST_F(FieldNames, aShortTextIsMadeAtOnce) {
+  test::TempFolder folder;
+  folder.write("noise.qtet", test::makeLog({}));
+  const MeshPointer mesh = *openMesh(folder.path() / "noise.qtet", "noise");
+  for (const auto which : {ServedMesh::Text::kDescription, ServedMesh::Text::kManifest})
+    EXPECT_TRUE(mesh->isQuick(which));
 }
 
 TEST_F(FieldNames, aListNamesASeriesOnceAndNotAllOfManyFields) {
