@@ -1,30 +1,22 @@
 #include "proto/instants.h"
 
 #include <algorithm>
-#include <span>
-
-#include "proto/series.h"
 
 namespace qtet {
 
 Instants::Instants(const std::vector<ManifestField>& fields,
-                   const std::vector<std::uint32_t>& wanted, std::size_t fewest)
+                   const std::vector<std::uint32_t>& wanted, std::span<const Series> all)
     : fields_(fields), wanted_(wanted) {
-  for (const Series& series : seriesOf(std::span(fields), fewest))
+  for (const Series& series : all)
     for (std::size_t i = 0; i < series.fields.size(); ++i)
       if (std::ranges::binary_search(wanted, series.fields[i])) {
         instants_[static_cast<std::uint32_t>(series.fields[i])] = {series.times[i], series.name};
         times_.push_back(series.times[i]);
       }
+  for (const std::uint32_t f : wanted)
+    if (!instants_.contains(f)) taken_.emplace(fields[f].name, fields[f].association);
   std::ranges::sort(times_);
   times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
-}
-
-bool Instants::isTaken(const std::string& name, const std::string& association) const {
-  return std::ranges::any_of(wanted_, [&](std::uint32_t f) {
-    return !instants_.contains(f) && fields_[f].name == name &&
-           fields_[f].association == association;
-  });
 }
 
 InstantFile Instants::fileAt(std::optional<double> time) const {
@@ -35,8 +27,8 @@ InstantFile Instants::fileAt(std::optional<double> time) const {
       out.fields.push_back({f, fields_[f].name, false});
     } else if (instant->second.first == time) {
       const std::string& series = instant->second.second;
-      out.fields.push_back(
-          {f, isTaken(series, fields_[f].association) ? fields_[f].name : series, true});
+      const bool isTaken = taken_.contains({series, fields_[f].association});
+      out.fields.push_back({f, isTaken ? fields_[f].name : series, true});
     }
   }
   return out;

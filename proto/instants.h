@@ -5,11 +5,15 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "proto/manifest.h"
+#include "proto/series.h"
 
 namespace qtet {
 
@@ -32,7 +36,11 @@ class Instants {
   /// `wanted`: ascending numbers of `fields`, which outlive the object, as `wanted` does. A series
   /// has `fewest` instants at least: in a log of a list (SEGMENT_LIST.md) 1.
   Instants(const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
-           std::size_t fewest = 2);
+           std::size_t fewest = 2)
+      : Instants(fields, wanted, seriesOf(std::span(fields), fewest)) {}
+  /// `series` are those of all the fields.
+  Instants(const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
+           std::span<const Series> series);
 
   /// Ascending, each once.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
@@ -41,11 +49,10 @@ class Instants {
   [[nodiscard]] InstantFile fileAt(std::optional<double> time) const;
 
  private:
-  [[nodiscard]] bool isTaken(const std::string& name, const std::string& association) const;
-
   const std::vector<ManifestField>& fields_;
   const std::vector<std::uint32_t>& wanted_;
   std::map<std::uint32_t, std::pair<double, std::string>> instants_;  // time and series' name
+  std::set<std::pair<std::string_view, std::string_view>> taken_;     // name, association of others
   std::vector<double> times_;
 };
 

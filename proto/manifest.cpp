@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "proto/field_key.h"
+#include "proto/field_keys.h"
 #include "proto/field_list.h"
 #include "proto/json_reader.h"
 #include "proto/level_error_json.h"
@@ -25,8 +26,9 @@ std::optional<std::uint32_t> fieldOfKey(const Manifest& manifest, std::string_vi
 }
 
 Error noSuchField(const Manifest& manifest, std::string_view key) {
+  const FieldKeys all(manifest.fields);
   std::vector<std::string> keys;
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f) keys.push_back(fieldKey(manifest, f));
+  for (std::size_t f = 0; f < all.size(); ++f) keys.push_back(all.keyOf(f));
   return {ErrorCode::kNotFound,
           "the log has no field '" + std::string(key) + "'; it has: " + fieldList(keys)};
 }

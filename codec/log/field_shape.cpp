@@ -1,19 +1,27 @@
 #include "codec/log/field_shape.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace qtet {
 
 std::vector<std::uint32_t> withParents(std::span<const FieldShape> fields,
                                        std::span<const std::uint32_t> wanted) {
-  std::vector<bool> needed(fields.size());
-  for (const std::uint32_t f : wanted) needed[f] = true;
+  // A heap, and no mark for each field: many calls may each want a few of thousands.
+  std::vector<std::uint32_t> needed(wanted.begin(), wanted.end());
+  std::ranges::make_heap(needed);
   std::vector<std::uint32_t> out;
-  for (auto f = static_cast<std::uint32_t>(fields.size()); f-- > 0;) {
-    if (!needed[f]) continue;
+  while (!needed.empty()) {
+    std::ranges::pop_heap(needed);
+    const std::uint32_t f = needed.back();
+    needed.pop_back();
+    if (!out.empty() && out.back() == f) continue;
     out.push_back(f);
-    for (const TimePrediction::Parent& parent : fields[f].prediction.all())
-      needed[parent.field] = true;
+    for (const TimePrediction::Parent& parent : fields[f].prediction.all()) {
+      assert(parent.field < f);
+      needed.push_back(parent.field);
+      std::ranges::push_heap(needed);
+    }
   }
   std::ranges::reverse(out);
   return out;

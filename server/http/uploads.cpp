@@ -107,7 +107,7 @@ std::optional<Reply> Upload::append(ByteView bytes) {
 
 std::optional<Reply> Upload::write(ByteView bytes) {
   while (!bytes.empty()) {
-    const ssize_t n = ::write(file_, bytes.data(), bytes.size());
+    const ssize_t n = uploads_.options_.write(file_, bytes);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return diskTrouble("the upload cannot be written", errno);
     bytes = bytes.subspan(static_cast<std::size_t>(n));

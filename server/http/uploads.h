@@ -3,11 +3,14 @@
 // meanwhile (PROTOCOL.md, "Uploads").
 #pragma once
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <expected>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -34,8 +37,9 @@ class Upload {
   /// Keeps the received bytes for resuming if the request named its digest; else removes them.
   ~Upload();
 
-  /// nullopt: the bytes are written. Else the answer that ends the upload: 507 (the disk is full;
-  /// the received bytes are removed) or 500.
+  /// Waits for the disk, so not for a thread that serves others. nullopt: the bytes are written.
+  /// Else the answer that ends the upload: 507 (the disk is full; the received bytes are removed)
+  /// or 500.
   /// So that no call takes long, a part of a delta may be left: see isBusy(). The answer to bytes
   /// that are no delta is 400.
   [[nodiscard]] std::optional<Reply> append(ByteView bytes);
@@ -82,11 +86,17 @@ class Upload {
   std::optional<DeltaReader> delta_{};
 };
 
+[[nodiscard]] inline ssize_t writeTo(int file, ByteView bytes) {
+  return ::write(file, bytes.data(), bytes.size());
+}
+
 struct UploadOptions {
   std::uintmax_t maxBytes = limits::kMaxUploadBytes;  ///< of a log
   std::size_t deltaPiece = limits::kDeltaPiece;       ///< bytes of one call of Upload::append
   CheckLimits checkLimits{};
   LogCheck check = checkLog;
+  /// write(2), or what stands for it. Waits for the disk.
+  std::function<ssize_t(int file, ByteView bytes)> write = writeTo;
   PartQuota parts{};  ///< of those that are kept
 };
 

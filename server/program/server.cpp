@@ -150,7 +150,7 @@ struct Server::State {
   KeptPoints points;
   LevelJobs pointJobs{{limits::kPointThreads, limits::kMaxPointJobs, &points, maker(),
                        options.maxLevelsPerAddress}};
-  asio::thread_pool writers{1}, checkers{limits::kCheckThreads};
+  asio::thread_pool writers{limits::kWriteThreads}, checkers{limits::kCheckThreads}, describers{1};
   Services services{store,
                     [this](const RequestView& request) { return router.route(request); },
                     true,
@@ -163,6 +163,7 @@ struct Server::State {
                     &uploads,
                     &writers,
                     &checkers,
+                    &describers,
                     options.access,
                     &options.allowedOrigins,
                     &handshakes};
@@ -175,6 +176,7 @@ struct Server::State {
                          metrics,
                          options.accessLog,
                          options.timeouts,
+                         nullptr,
                          nullptr,
                          nullptr,
                          nullptr,

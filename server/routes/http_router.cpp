@@ -220,10 +220,11 @@ Answer Router::logs(const RequestView& request, const RequestTarget& target) con
                    "the list is at /v1/meshes");
   Answer out = routeLog(request, target, {mesh, *name});
   if (!open) keepPrivate(out.reply);
+  if (auto* text = std::get_if<TextRequest>(&out.work)) text->isPrivate = !open;
   return out;
 }
 
-Reply Router::meshes(const RequestView& request, const RequestTarget& target) const {
+Answer Router::meshes(const RequestView& request, const RequestTarget& target) const {
   const auto& path = target.segments;
   if (writing_ && path.size() == 4 && path[3] == "upload")
     return partialReply(request, target, *writing_);
@@ -240,7 +241,7 @@ Reply Router::meshes(const RequestView& request, const RequestTarget& target) co
     return busyReply("this log cannot be opened now, or the folder is still being read; try again");
   if (!mesh) return missingReply("there is no mesh of that name; the list is at /v1/meshes");
   if (path.size() > 3) return toLog(target, *mesh);
-  return documentReply(request, mesh->description(), mesh);
+  return textAnswer(request, mesh, ServedMesh::Text::kDescription);
 }
 
 Reply Router::viewerReply(const RequestView& request, const RequestTarget& target) const {

@@ -41,7 +41,7 @@ class Router {
   [[nodiscard]] Answer logs(const RequestView& request, const RequestTarget& target) const;
   [[nodiscard]] std::optional<Answer> routeWithTokens(const RequestView& request,
                                                       const RequestTarget& target) const;
-  [[nodiscard]] Reply meshes(const RequestView& request, const RequestTarget& target) const;
+  [[nodiscard]] Answer meshes(const RequestView& request, const RequestTarget& target) const;
   [[nodiscard]] Reply viewerReply(const RequestView& request, const RequestTarget& target) const;
 
   const MeshStore& store_;

@@ -7,7 +7,6 @@
 #include "codec/files/field_limits.h"
 #include "codec/log/target_choice.h"
 #include "codec/picture/poster.h"
-#include "proto/field_key.h"
 #include "server/http/unwritable_level.h"
 #include "server/routes/level_answer.h"
 #include "server/routes/level_time.h"
@@ -32,7 +31,7 @@ OrRefusal<std::uint32_t> levelOfError(const ServedMesh& mesh, const std::string&
         "error is NAME:E, a field or 'boundary' and a fraction of its range or of the diagonal, "
         "like error=boundary:0.01");
   const std::string name = text.substr(0, colon);
-  const bool isField = fieldOfKey(mesh.manifest, name).has_value();
+  const bool isField = mesh.keys().fieldOfKey(name).has_value();
   if (!isField && name != "boundary") return notFound("this mesh has no field '" + name + "'");
   const auto level = isField ? levelOf(mesh, FieldErrorTarget{*bound, name})
                              : levelOf(mesh, BoundaryErrorTarget{*bound});
@@ -62,9 +61,9 @@ OrRefusal<std::uint32_t> levelOfName(std::string_view name, const RequestTarget&
 }
 
 /// The one field of that name, else every instant of the series.
-std::vector<std::uint32_t> fieldsNamed(const Manifest& manifest, std::string_view name) {
-  const auto one = fieldOfKey(manifest, name);
-  return one ? std::vector{*one} : fieldsOfKey(manifest.fields, name);
+std::vector<std::uint32_t> fieldsNamed(const FieldKeys& keys, std::string_view name) {
+  const auto one = keys.fieldOfKey(name);
+  return one ? std::vector{*one} : keys.fieldsOfKey(name);
 }
 
 /// `fields=A,B` as indices; absent means all, empty none.
@@ -81,8 +80,8 @@ OrRefusal<std::vector<std::uint32_t>> wantedFields(const RequestTarget& target,
   for (std::string_view rest = *text; !rest.empty();) {
     const std::string_view name = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(name.size() + 1, rest.size()));
-    if (!names.insert(name).second) continue;  // looking a name up again and again would take long
-    const std::vector<std::uint32_t> meant = fieldsNamed(mesh.manifest, name);
+    if (!names.insert(name).second) continue;  // a series again and again would be a long list
+    const std::vector<std::uint32_t> meant = fieldsNamed(mesh.keys(), name);
     if (meant.empty()) return notFound("this mesh has no field '" + std::string(name) + "'");
     out.insert(out.end(), meant.begin(), meant.end());
   }
@@ -149,7 +148,7 @@ Answer routePreview(const RequestView& request, const RequestTarget& target, con
   const auto finest = std::find_if(manifest.levels.rbegin(), manifest.levels.rend(), small);
   LevelRequest wanted{mesh, finest == manifest.levels.rend() ? 0 : finest->level, LevelForm::kPng};
   if (const std::optional<std::string> name = target.parameter("field"); name && !name->empty()) {
-    const auto field = fieldOfKey(manifest, *name);
+    const auto field = mesh->keys().fieldOfKey(*name);
     if (!field || manifest.fields[*field].association != "point")
       return problem(404, "not-found", "this mesh has no field of points '" + *name + "'");
     wanted.fields = {*field};

@@ -55,12 +55,17 @@ Reply chunkReply(const RequestView& request, const MeshPointer& mesh, std::strin
 
 Reply fieldReply(const RequestView& request, const MeshPointer& mesh, Path path) {
   if (path.size() != 3 || path[1] != "chunks") return missingReply("a field has chunks/{n}");
-  const auto field = fieldOfKey(mesh->manifest, path[0]);
+  const auto field = mesh->keys().fieldOfKey(path[0]);
   return field ? chunkReply(request, mesh, path[2], *field)
                : missingReply("this mesh has no field '" + path[0] + "'");
 }
 
 }  // namespace
+
+Answer textAnswer(const RequestView& request, const MeshPointer& mesh, ServedMesh::Text which) {
+  if (!mesh->isQuick(which)) return Answer(TextRequest{mesh, which});
+  return documentReply(request, mesh->text(which), mesh);
+}
 
 Answer routeLog(const RequestView& request, const RequestTarget& target, const NamedLog& log) {
   assert(target.segments.size() >= 3);
@@ -72,7 +77,7 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   if (path.size() == 1 && what == "base")
     return part(request, mesh, "base", 0, endOf(mesh->log.chunks().front().blocks[kPositionsPart]));
   if (path.size() == 1 && what == "manifest")
-    return documentReply(request, mesh->manifestText(), mesh);
+    return textAnswer(request, mesh, ServedMesh::Text::kManifest);
   if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
   if (path.size() == 1 && what == "poster.webp") return routePoster(request, log);
   if (path.size() == 1 && what == "series") return routeSeries(request, target, log);

@@ -12,4 +12,8 @@ namespace qtet {
 [[nodiscard]] Answer routeLog(const RequestView& request, const RequestTarget& target,
                               const NamedLog& log);
 
+/// A text of the mesh: the reply, or the work of making it where that takes long.
+[[nodiscard]] Answer textAnswer(const RequestView& request, const MeshPointer& mesh,
+                                ServedMesh::Text which);
+
 }  // namespace qtet

@@ -14,15 +14,15 @@ namespace {
 /// Numbers of the fields that `key` means, ascending: a series, of points before of cells; else the
 /// one field; else an instant that is alone.
 std::vector<std::uint32_t> fieldsOfSeries(const ServedMesh& mesh, std::string_view key) {
-  const std::span<const ManifestField> all = mesh.manifest.fields;
-  const Series* found = seriesOfKey(std::span<const Series>(mesh.series), all, key);
+  const FieldKeys& keys = mesh.keys();
   std::vector<std::uint32_t> out;
-  if (found != nullptr) {
-    for (const std::size_t f : found->fields) out.push_back(static_cast<std::uint32_t>(f));
+  if (const auto series = keys.seriesOfKey(key)) {
+    for (const std::size_t f : mesh.series[*series].fields)
+      out.push_back(static_cast<std::uint32_t>(f));
     std::ranges::sort(out);
-  } else if (const auto one = fieldOfKey(mesh.manifest, key)) {
+  } else if (const auto one = keys.fieldOfKey(key)) {
     out = {*one};
-  } else if (const auto meant = fieldsOfKey(all, key); !meant.empty()) {
+  } else if (const auto meant = keys.fieldsOfKey(key); !meant.empty()) {
     out = {meant.front()};
   }
   return out;

@@ -8,13 +8,18 @@
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <expected>
+#include <memory>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "server/http/client_watch.h"
 #include "server/http/http_resource.h"
 #include "server/http/level_wait.h"
 #include "server/http/unwritable_level.h"
+#include "server/http/upload_limits.h"
+#include "server/routes/access_routes.h"
 #include "server/session/http_output.h"
 #include "server/store/level_memory.h"
 #include "server/wire/connection_limits.h"
@@ -115,21 +120,35 @@ asio::awaitable<Outcome> runOn(asio::thread_pool& pool, Work work) {
       std::move(start), use_awaitable);
 }
 
+/// Fills `piece`, of which each limits::kBodyPiece has its time to arrive. Returns the bytes that
+/// came: fewer if the rest did not come in time.
+asio::awaitable<std::size_t> readPiece(HttpInput& input, std::span<std::uint8_t> piece) {
+  std::size_t have = 0;
+  while (have < piece.size()) {
+    const auto next = piece.subspan(have, std::min(piece.size() - have, limits::kBodyPiece));
+    const std::size_t count = co_await input.readBody(next);
+    have += count;
+    if (count < next.size()) break;
+  }
+  co_return have;
+}
+
 /// Reads the body into the upload; the answer, if it ends before its time.
 asio::awaitable<std::optional<Reply>> receiveBody(HttpInput& input, Upload& upload,
                                                   std::uint64_t bytes, const Peer& peer,
                                                   const Services& services) {
-  Bytes piece(limits::kBodyPiece);
+  Bytes piece(std::min<std::uint64_t>(bytes, limits::kUploadPiece));
   while (bytes > 0) {
     const std::size_t wanted = std::min<std::uint64_t>(bytes, piece.size());
-    const std::size_t have = co_await input.readBody(std::span(piece).first(wanted));
-    if (std::optional<Reply> trouble = upload.append(ByteView(piece).first(have)))
+    const std::size_t have = co_await readPiece(input, std::span(piece).first(wanted));
+    ByteView rest = ByteView(piece).first(have);
+    const auto append = [&] { return upload.append(std::exchange(rest, {})); };
+    if (auto trouble = co_await runOn<std::optional<Reply>>(*services.writers, append))
       co_return trouble;
     while (upload.isBusy()) {
       if (peer.connection->ending())
         co_return busyReply("the server ends; go on with the next one");
-      const auto goOn = [&upload] { return upload.append({}); };
-      if (auto trouble = co_await runOn<std::optional<Reply>>(*services.writers, goOn))
+      if (auto trouble = co_await runOn<std::optional<Reply>>(*services.writers, append))
         co_return trouble;
     }
     if (have < wanted)
@@ -156,7 +175,9 @@ asio::awaitable<Reply> finish(Upload& upload, ClientSocket& socket, const Servic
 asio::awaitable<std::optional<Reply>> takeUpload(const UploadRequest& upload, bool awaitsContinue,
                                                  Peer& peer, HttpInput& input,
                                                  const Services& services) {
-  auto begun = services.uploads->begin(upload);
+  using Begun = std::expected<std::unique_ptr<Upload>, Reply>;
+  const auto begin = [&] { return services.uploads->begin(upload); };
+  Begun begun = co_await runOn<Begun>(*services.writers, begin);
   if (!begun) {
     begun.error().close = true;  // the body is not read
     co_return std::move(begun.error());
@@ -176,6 +197,16 @@ asio::awaitable<std::optional<Reply>> takeUpload(const UploadRequest& upload, bo
   co_return out;
 }
 
+asio::awaitable<Reply> describe(const TextRequest& wanted, bool sendBody,
+                                const RequestView& request, const Services& services) {
+  const auto make = [&] { return &wanted.mesh->text(wanted.which); };
+  const Document* const text = co_await runOn<const Document*>(*services.describers, make);
+  Reply out = documentReply(request, *text, wanted.mesh);
+  if (wanted.isPrivate) keepPrivate(out);
+  out.sendBody = sendBody;
+  co_return out;
+}
+
 }  // namespace
 
 asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& request, Peer& peer,
@@ -189,6 +220,8 @@ asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& r
                                   [&] { return services.uploads->remove(*upload); });
     else
       out = co_await takeUpload(*upload, request.expect.has_value(), peer, input, services);
+  } else if (const auto* text = std::get_if<TextRequest>(&answer.work)) {
+    out = co_await describe(*text, answer.reply.sendBody, request, services);
   } else {
     out = std::move(answer.reply);
   }

@@ -233,16 +233,17 @@ asio::awaitable<bool> HttpSession::becomeStream(Parser& parser) {
 asio::awaitable<bool> HttpSession::answer(const RequestHeader& request, const RequestView& view,
                                           bool keepAlive) {
   Answer answer = [&] {
-    const Charge charge(peer_.client.get());
+    const Charge charge(peer_.client.get(), &services_.metrics, report_.route());
     return services_.route(view);
   }();
   answerForOrigin(answer.reply, request, services_.allowedOrigins);
   if (std::holds_alternative<std::monostate>(answer.work))
     co_return co_await send(std::move(answer.reply), keepAlive && !hasBody(view));
+  const bool readsBody = std::holds_alternative<UploadRequest>(answer.work);
   std::optional<Reply> reply = co_await workOn(std::move(answer), view, peer_, input_, services_);
   report_.received(input_.takeBodyBytes());
   if (!reply) reply = Reply{.status = kClientGone, .headers = {}, .body = {}};
-  co_return co_await send(std::move(*reply), keepAlive);
+  co_return co_await send(std::move(*reply), keepAlive && (readsBody || !hasBody(view)));
 }
 
 std::string HttpSession::headOf(const Reply& reply, bool keepAlive, ByteView body) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "server/http/http_message.h"
 #include "server/stream/stream_report.h"
@@ -32,6 +33,10 @@ class RequestReport {
   void begin();
   /// Its head has come.
   void identify(const RequestView& request);
+  /// Its label, once its head has come.
+  [[nodiscard]] std::string_view route() const {
+    return kRouteLabels[static_cast<std::size_t>(kind_.route)];
+  }
   /// Bytes of the request's body that have come.
   void received(std::uint64_t bytes) { received_ += bytes; }
   /// X-Request-Id if the client has sent one or the access log has a line of that id; traceparent

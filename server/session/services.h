@@ -58,10 +58,13 @@ struct Services {
   Metrics& metrics;
   AccessLog* accessLog = nullptr;
   Timeouts timeouts{};
-  Uploads* uploads = nullptr;                   ///< where the router knows of uploads
-  boost::asio::thread_pool* writers = nullptr;  ///< where meshes are removed
+  Uploads* uploads = nullptr;  ///< where the router knows of uploads
+  /// Where uploads are begun and written, and meshes removed.
+  boost::asio::thread_pool* writers = nullptr;
   /// Where uploads are checked and published, one after the other.
   boost::asio::thread_pool* checkers = nullptr;
+  /// Where long texts are made and compressed.
+  boost::asio::thread_pool* describers = nullptr;
   /// Who may read what; nullptr: everybody everything.
   Access* access = nullptr;
   /// Origins of pages that may open streams; nullptr or empty: any.

@@ -3,6 +3,7 @@
 #include "codec/log/log_levels.h"
 #include "proto/json_reader.h"
 #include "server/store/served_mesh.h"
+#include "server/store/store_limits.h"
 #include "server/wire/request_target.h"
 
 namespace qtet {
@@ -32,12 +33,13 @@ Json identity(const ServedMesh& mesh) {
 /// Every field with what it costs.
 Json fields(const ServedMesh& mesh) {
   Json out = Json::array();
+  const FieldKeys& keys = mesh.keys();
   for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f) {
     const ManifestField& field = mesh.manifest.fields[f];
     std::uint64_t bytes = 0;
     for (const ChunkEntry& chunk : mesh.log.chunks())
       bytes += chunk.blocks[kFirstFieldPart + f].size;
-    out.push_back({{"key", fieldKey(mesh.manifest, f)},
+    out.push_back({{"key", keys.keyOf(f)},
                    {"name", field.name},
                    {"components", field.components},
                    {"type", field.type},
@@ -48,6 +50,22 @@ Json fields(const ServedMesh& mesh) {
   return out;
 }
 
+/// The fields as a list of meshes names them, each series once.
+void listFields(const FieldKeys& keys, Json& out) {
+  const std::vector<ListedKey> all = keys.listed();
+  Json fields = Json::array(), series = Json::array();
+  std::size_t bytes = 0;
+  for (const auto& [key, isSeries] : all) {
+    bytes += key.size();
+    if (fields.size() == limits::kMaxListedKeys || bytes > limits::kMaxListedKeyBytes) break;
+    fields.push_back(key);
+    if (isSeries) series.push_back(key);
+  }
+  if (fields.size() < all.size()) out["moreFields"] = all.size() - fields.size();
+  if (!series.empty()) out["series"] = std::move(series);
+  out["fields"] = std::move(fields);
+}
+
 }  // namespace
 
 std::string describeEntry(const ServedMesh& mesh) {
@@ -55,9 +73,7 @@ std::string describeEntry(const ServedMesh& mesh) {
   const ManifestLevel& finest = mesh.manifest.levels.back();
   out["tetrahedra"] = finest.tetrahedra;
   out["vertices"] = finest.vertices;
-  out["fields"] = Json::array();
-  for (std::size_t f = 0; f < mesh.manifest.fields.size(); ++f)
-    out["fields"].push_back(fieldKey(mesh.manifest, f));
+  listFields(mesh.keys(), out);
   out["firstField"] = firstField(mesh.manifest);
   out["links"] = links(mesh);
   return dumpJson(out);

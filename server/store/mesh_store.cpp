@@ -11,6 +11,7 @@
 #include "proto/utf8.h"
 #include "server/store/folder_names.h"
 #include "server/store/store_limits.h"
+#include "server/wire/id_limits.h"
 
 namespace qtet {
 namespace {

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cerrno>
@@ -31,26 +32,42 @@ std::uint64_t ServedMesh::prefixBytes(std::uint32_t level) const {
 }
 
 struct ServedMesh::Texts {
-  std::once_flag describedOnce, manifestOnce;
-  Document description, manifest;
+  struct Made {
+    std::once_flag once;
+    std::atomic<bool> isMade = false;
+    Document document;
+  };
+  std::array<Made, 2> byKind;  // by Text
+  std::once_flag keysOnce;
+  std::optional<FieldKeys> keys;
 };
 
 std::shared_ptr<ServedMesh::Texts> ServedMesh::makeTexts() { return std::make_shared<Texts>(); }
 
-const Document& ServedMesh::description() const {
-  std::call_once(texts->describedOnce, [this] {
-    texts->description =
-        Document(describeMesh(*this), {{"", modified}, "application/json", kRevalidate});
+const Document& ServedMesh::text(Text which) const {
+  Texts::Made& made = texts->byKind[static_cast<std::size_t>(which)];
+  std::call_once(made.once, [&] {
+    made.document =
+        which == Text::kDescription
+            ? Document(describeMesh(*this), {{"", modified}, "application/json", kRevalidate})
+            : Document(manifestToJson(manifest), {{"", modified}, "application/json", kForEver});
+    made.isMade = true;
   });
-  return texts->description;
+  return made.document;
 }
 
-const Document& ServedMesh::manifestText() const {
-  std::call_once(texts->manifestOnce, [this] {
-    texts->manifest =
-        Document(manifestToJson(manifest), {{"", modified}, "application/json", kForEver});
-  });
-  return texts->manifest;
+bool ServedMesh::isQuick(Text which) const {
+  if (texts->byKind[static_cast<std::size_t>(which)].isMade) return true;
+  // Bytes of JSON. The description holds the manifest, and sums the blocks of each field.
+  constexpr std::uint64_t kField = 400, kLevel = 300, kErrorOfField = 80, kMost = 64u << 10;
+  const std::uint64_t fields = manifest.fields.size(), levels = manifest.levels.size();
+  const std::uint64_t errors = manifest.levels.back().error ? fields * kErrorOfField : 0;
+  return fields * kField + levels * (kLevel + errors) + fields * log.chunks().size() <= kMost;
+}
+
+const FieldKeys& ServedMesh::keys() const {
+  std::call_once(texts->keysOnce, [this] { texts->keys.emplace(manifest.fields, series); });
+  return *texts->keys;
 }
 
 std::optional<FileIdentity> identityOf(const std::filesystem::path& path) {

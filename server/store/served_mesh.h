@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "codec/refine/log_file.h"
+#include "proto/field_keys.h"
 #include "proto/manifest.h"
 #include "proto/series.h"
 #include "server/wire/document.h"
@@ -54,11 +55,17 @@ struct ServedMesh {
   std::shared_ptr<void> copied{};
   std::vector<Series> series = seriesOf(std::span<const ManifestField>(manifest.fields));
 
-  /// `GET /v1/meshes/{id}`, made when it is first asked for, since compressing it takes ten times
-  /// as long as opening a small log. Thread-safe, as the next one.
-  [[nodiscard]] const Document& description() const;
-  /// `GET /v1/logs/{sha256}/manifest`
-  [[nodiscard]] const Document& manifestText() const;
+  /// `GET /v1/meshes/{id}`, and `GET /v1/logs/{sha256}/manifest`
+  enum class Text : std::uint8_t { kDescription, kManifest };
+  /// Made when it is first asked for, since compressing it takes ten times as long as opening a
+  /// small log. Thread-safe.
+  [[nodiscard]] const Document& text(Text which) const;
+  /// It is made already, or making it takes no longer than a turn may (limits::kLongTurn).
+  [[nodiscard]] bool isQuick(Text which) const;
+  [[nodiscard]] const Document& description() const { return text(Text::kDescription); }
+  /// The keys of the manifest's fields and of `series`. Made when it is first asked for;
+  /// thread-safe, as the texts.
+  [[nodiscard]] const FieldKeys& keys() const;
   struct Texts;
   std::shared_ptr<Texts> texts = makeTexts();
 

@@ -20,9 +20,10 @@ inline constexpr int kReadingNiceness = 10;
 inline constexpr std::size_t kMaxLoggedMeshes = 20;
 /// Meshes of one page of the list: about 1 KB each.
 inline constexpr std::size_t kMaxListPage = 1000;
-/// Bytes of a mesh's name: with `.qtet` and what an upload appends, below the 255 that file systems
-/// allow.
-inline constexpr std::size_t kMaxIdBytes = 150;
+/// Keys of fields that the list names of one mesh, and their bytes. Nobody reads more in a list,
+/// and a page stays below 10 MB.
+inline constexpr std::size_t kMaxListedKeys = 256;
+inline constexpr std::size_t kMaxListedKeyBytes = 8u << 10;
 /// Bytes of one log that is served from a nameless copy, and of all of them. People overwrite files
 /// in place, which changes a mapping under its digest. Most logs are smaller; larger ones are
 /// replaced by renaming (`qtet`, uploads).

@@ -5,9 +5,8 @@
 #include <string_view>
 #include <utility>
 
-#include "proto/field_key.h"
+#include "proto/field_keys.h"
 #include "proto/limits.h"
-#include "proto/manifest.h"
 #include "proto/series.h"
 
 namespace qtet {
@@ -53,22 +52,21 @@ FieldTurns inOneTurn(const FieldTurns& turns) {
 
 std::expected<FieldTurns, std::string> fieldTurns(std::span<const std::string> names,
                                                   const std::optional<StreamTime>& time,
-                                                  const Manifest& manifest,
+                                                  const FieldKeys& keys,
                                                   std::span<const Series> series,
                                                   std::span<const FieldShape> shapes) {
-  const std::span<const ManifestField> fields = manifest.fields;
   FieldTurns turns(1);
   std::set<std::string_view> known;
-  std::set<const Series*> taken;
+  std::set<std::uint32_t> taken;
   for (const std::string& name : names) {
     if (!known.insert(name).second) continue;
-    if (const auto field = fieldOfKey(fields, name)) {
+    if (const auto field = keys.fieldOfKey(name)) {
       turns.front().push_back(*field);
       continue;
     }
-    const Series* meant = time ? seriesOfKey(series, fields, name) : nullptr;
-    if (meant == nullptr) return std::unexpected(name);
-    if (taken.insert(meant).second) addInstants(*meant, *time, turns);
+    const auto meant = time ? keys.seriesOfKey(name) : std::nullopt;
+    if (!meant) return std::unexpected(name);
+    if (taken.insert(*meant).second) addInstants(series[*meant], *time, turns);
   }
   if (!time) {
     std::ranges::sort(turns.front());

@@ -13,7 +13,7 @@
 
 namespace qtet {
 
-struct Manifest;
+class FieldKeys;
 struct Series;
 
 /// The blocks of one turn's fields come before those of the next turn's. Each turn is ascending,
@@ -23,10 +23,10 @@ using FieldTurns = std::vector<std::vector<std::uint32_t>>;
 /// One turn at least; the first has all fields that are no wished instants. With a time a name that
 /// no field has means a series (seriesOfKey). Then fields come with those that they are predicted
 /// from, and instants ahead that would make more than kMaxRequestFields fields are left out.
-/// Returns the first name that means nothing instead. REQUIRES: `series` and `shapes` are those of
-/// the manifest's fields.
+/// Returns the first name that means nothing instead. REQUIRES: `keys`, `series` and `shapes` are
+/// those of one log.
 [[nodiscard]] std::expected<FieldTurns, std::string> fieldTurns(
     std::span<const std::string> names, const std::optional<StreamTime>& time,
-    const Manifest& manifest, std::span<const Series> series, std::span<const FieldShape> shapes);
+    const FieldKeys& keys, std::span<const Series> series, std::span<const FieldShape> shapes);
 
 }  // namespace qtet

@@ -1,56 +1,51 @@
 #include "server/stream/planner.h"
 
 #include <cassert>
-#include <utility>
 
 #include "codec/log/log_index.h"
 #include "proto/messages.h"
 #include "server/stream/client_blocks.h"
 
 namespace qtet {
-namespace {
 
-/// Collects blocks, in order, into runs.
-class Runs {
- public:
-  Runs(const LogIndex& index, std::uint32_t payloadBytes)
-      : index_(index), payloadBytes_(payloadBytes) {}
-
-  void add(std::uint32_t chunk, std::uint32_t part) {
-    const std::uint32_t size = index_.block(chunk, part).size;
-    const bool neighbour = !out_.empty() && out_.back().chunk == chunk &&
-                           out_.back().firstPart + out_.back().parts == part;
-    if (neighbour && bytes_ + size <= payloadBytes_) {
-      ++out_.back().parts;
-      bytes_ += size;
-      return;
-    }
-    out_.push_back({chunk, static_cast<std::uint16_t>(part), 1});
-    bytes_ = size;
-  }
-
-  [[nodiscard]] std::vector<BlockRun> take() { return std::move(out_); }
-
- private:
-  const LogIndex& index_;
-  std::uint32_t payloadBytes_;
-  std::uint64_t bytes_ = 0;  // in the last run
-  std::vector<BlockRun> out_;
-};
-
-}  // namespace
-
-std::vector<BlockRun> planStream(const LogIndex& index, const ClientBlocks& blocks,
-                                 std::uint32_t lastChunk, std::uint32_t payloadBytes) {
+StreamPlan::StreamPlan(const LogIndex& index, std::uint32_t lastChunk, std::uint32_t payloadBytes)
+    : index_(&index), lastChunk_(lastChunk), payloadBytes_(payloadBytes) {
   assert(lastChunk < index.chunks.size());
-  Runs runs(index, payloadBytes);
-  for (std::size_t turn = 0; turn < blocks.turns().size(); ++turn) {
-    const std::vector<std::size_t> columns = blocks.columnsOf(turn);
-    for (std::uint32_t chunk = 0; chunk <= lastChunk; ++chunk)
-      for (const std::size_t column : columns)
-        if (!blocks.has(chunk, column)) runs.add(chunk, blocks.partOf(column));
+}
+
+bool StreamPlan::seek(const ClientBlocks& blocks) {
+  for (; turn_ < blocks.turns().size(); ++turn_, chunk_ = 0, columns_.clear()) {
+    if (columns_.empty()) columns_ = blocks.columnsOf(turn_);
+    for (; chunk_ <= lastChunk_; ++chunk_, column_ = 0)
+      for (; column_ < columns_.size(); ++column_)
+        if (!blocks.has(chunk_, columns_[column_])) return true;
   }
-  return runs.take();
+  return false;
+}
+
+std::optional<BlockRun> StreamPlan::next(const ClientBlocks& blocks) {
+  assert(index_ != nullptr);
+  if (!seek(blocks)) return std::nullopt;
+  const auto partHere = [&] { return blocks.partOf(columns_[column_]); };
+  BlockRun out{chunk_, static_cast<std::uint16_t>(partHere()), 1};
+  std::uint64_t bytes = index_->block(chunk_, partHere()).size;
+  for (++column_; seek(blocks); ++column_, ++out.parts) {
+    bytes += index_->block(chunk_, partHere()).size;
+    if (chunk_ != out.chunk || partHere() != std::uint32_t{out.firstPart} + out.parts ||
+        bytes > payloadBytes_)
+      break;
+  }
+  return out;
+}
+
+std::uint64_t lackingBytes(const LogIndex& index, const ClientBlocks& blocks,
+                           std::uint32_t lastChunk) {
+  assert(lastChunk < index.chunks.size());
+  std::uint64_t out = 0;
+  for (std::uint32_t chunk = 0; chunk <= lastChunk; ++chunk)
+    for (std::size_t column = 0; column < blocks.columns(); ++column)
+      if (!blocks.has(chunk, column)) out += index.block(chunk, blocks.partOf(column)).size;
+  return out;
 }
 
 FileSlice sliceOf(const LogIndex& index, const BlockRun& run) {

@@ -31,10 +31,10 @@ std::expected<ClientBlocks, StreamRefusal> blocksOf(const Have& have, FieldTurns
   out.addLeading(have.chunks, kStructurePart);
   out.addLeading(have.chunks, kPositionsPart);
   for (const auto& [name, held] : have.fields) {
-    const auto field = fieldOfKey(mesh.manifest, name);
+    const auto field = mesh.keys().fieldOfKey(name);
     if (!field) return std::unexpected(unknownField(mesh, name));
-    const auto at = std::ranges::find(out.fields(), *field);
-    if (at != out.fields().end())
+    const auto at = std::ranges::lower_bound(out.fields(), *field);
+    if (at != out.fields().end() && *at == *field)
       out.addLeading(held, static_cast<std::size_t>(kFirstFieldPart + (at - out.fields().begin())));
   }
   return out;
@@ -96,7 +96,7 @@ void StreamProtocol::handle(const OpenMessage& message) {
     return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " +
                                    mesh->log.digest() + " by now");
   auto turns =
-      fieldTurns(message.fields, message.time, mesh->manifest, mesh->series, mesh->log.fields());
+      fieldTurns(message.fields, message.time, mesh->keys(), mesh->series, mesh->log.fields());
   if (!turns) {
     StreamRefusal unknown = unknownField(*mesh, turns.error());
     return refuse(unknown.code, std::move(unknown.detail));
@@ -114,16 +114,14 @@ void StreamProtocol::handle(const OpenMessage& message) {
 
 std::uint64_t StreamProtocol::plan(Stream& stream) {
   const LogIndex& index = stream.mesh->log.index();
-  stream.plan = planStream(index, stream.blocks, stream.lastChunk, limits::kFramePayload);
-  if (!stream.hasHead) stream.plan.insert(stream.plan.begin(), {0, FrameHeader::kHead, 0});
-  stream.nextRun = 0;
+  const BlockRun head{0, FrameHeader::kHead, 0};
+  stream.plan = StreamPlan(index, stream.lastChunk, limits::kFramePayload);
+  stream.nextRun = stream.hasHead ? stream.plan.next(stream.blocks) : head;
   stream.planState = Stream::PlanState::kCurrent;
-  std::uint64_t planned = 0;
-  for (const BlockRun& run : stream.plan) {
-    planned += sliceOf(index, run).size;
-    for (std::uint16_t i = 0; i < run.parts; ++i)
-      planned -= stream.sentOf(run.chunk, std::uint32_t{run.firstPart} + i);
-  }
+  std::uint64_t planned = lackingBytes(index, stream.blocks, stream.lastChunk);
+  if (!stream.hasHead) planned += sliceOf(index, head).size;
+  for (const auto& [place, sent] : stream.begun)
+    if (place.first <= stream.lastChunk) planned -= sent;
   return planned;
 }
 
@@ -195,7 +193,7 @@ std::optional<Outgoing> StreamProtocol::next(std::size_t room, std::size_t piece
   }
   if (closing_) return CloseCode::kPolicy;
   if (!stream_) return std::nullopt;
-  if (stream_->nextRun < stream_->plan.size()) {
+  if (stream_->nextRun) {
     if (stream_->paused || stream_->credit <= 0 || room == 0) return std::nullopt;
     return nextFrame(*stream_, room, piece);
   }
@@ -205,7 +203,7 @@ std::optional<Outgoing> StreamProtocol::next(std::size_t room, std::size_t piece
 }
 
 OutgoingFrame StreamProtocol::nextFrame(Stream& stream, std::size_t room, std::size_t piece) const {
-  BlockRun run = stream.plan[stream.nextRun];
+  BlockRun run = *stream.nextRun;
   const bool head = run.firstPart == FrameHeader::kHead;
   const bool whole = head || stream.rest(run) <= piece;
   const FileSlice slice = whole ? takeBlocks(stream, run, room) : takePiece(stream, run, piece);
@@ -230,16 +228,15 @@ FileSlice StreamProtocol::takeBlocks(Stream& stream, BlockRun& run, std::size_t 
   for (std::uint16_t i = 1; i < run.parts; ++i)
     if (stream.sentOf(run.chunk, std::uint32_t{run.firstPart} + i) > 0) run.parts = i;
   while (run.parts > 1 && sliceOf(index, run).size - sent > room) --run.parts;
-  BlockRun& planned = stream.plan[stream.nextRun];
-  planned.firstPart += run.parts;
-  planned.parts -= run.parts;
-  if (planned.parts == 0) ++stream.nextRun;
+  stream.nextRun->firstPart += run.parts;
+  stream.nextRun->parts -= run.parts;
   if (run.firstPart == FrameHeader::kHead) {
     stream.hasHead = true;
   } else {
     stream.blocks.addRun(run.chunk, run.firstPart, run.parts);
     stream.begun.erase({run.chunk, run.firstPart});
   }
+  if (stream.nextRun->parts == 0) stream.nextRun = stream.plan.next(stream.blocks);
   const FileSlice slice = sliceOf(index, run);
   return {slice.offset + sent, slice.size - sent};
 }

@@ -81,8 +81,8 @@ class StreamProtocol {
       kStale,  ///< the request has changed since it was made
     };
     PlanState planState = PlanState::kCurrent;
-    std::vector<BlockRun> plan{};
-    std::size_t nextRun = 0;
+    StreamPlan plan{};
+    std::optional<BlockRun> nextRun{};  ///< the next one, or the rest of it; nullopt: all were sent
     /// Bytes of blocks that were sent in part, by chunk and part. The client keeps them.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> begun{};
 
@@ -101,9 +101,7 @@ class StreamProtocol {
   /// Makes a new plan if the request has changed, and announces it.
   void catchUp();
   /// There is more to send, credit or not.
-  [[nodiscard]] bool hasRun() const {
-    return stream_ && stream_->nextRun < stream_->plan.size() && !stream_->paused;
-  }
+  [[nodiscard]] bool hasRun() const { return stream_ && stream_->nextRun && !stream_->paused; }
   OutgoingFrame nextFrame(Stream& stream, std::size_t room, std::size_t piece) const;
   /// Take the bytes of the next frame off the plan, and say in `run` which blocks they are.
   static FileSlice takePiece(Stream& stream, BlockRun& run, std::size_t piece);

@@ -44,6 +44,8 @@ constexpr std::size_t kReadBytes = 4096;
 constexpr int kUnsentBytes = 80 << 10;
 /// The close reason that a silent client receives.
 constexpr std::string_view kSilenceReason = "no message and no pong came for too long";
+/// The label of its turns.
+constexpr std::string_view kRoute = kRouteLabels[static_cast<std::size_t>(RouteLabel::kStream)];
 /// Before other connections of the thread have their turn.
 constexpr int kReadsInARow = 8;
 
@@ -95,6 +97,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
         patience_(handshake.silence, handshake.write, Clock::now()),
         cork_(peer_.socket, handshake.unpaced),
         bounded_(!handshake.unpaced),
+        metrics_(metrics),
         report_(metrics, log, handshake.request, Clock::now()) {}
   ~StreamSession() {
     if (const auto code = control_.ownCode())
@@ -141,6 +144,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   Cork cork_;
   const bool bounded_;  // by line_; a client of this machine has no line
   LineRoom line_;
+  Metrics& metrics_;
   StreamReport report_;
 };
 
@@ -152,7 +156,7 @@ std::string handshakeAnswer(const std::string& key) {
 }
 
 void StreamSession::hear(std::string_view bytes) {
-  const Charge charge(peer_.client.get());
+  const Charge charge(peer_.client.get(), &metrics_, kRoute);
   const auto now = Clock::now();
   if (input_.listens()) patience_.heard(now);
   const std::uint32_t opens = protocol_.opens();
@@ -206,7 +210,7 @@ std::size_t StreamSession::room() {
 }
 
 void StreamSession::collect(FrameGather& gather) {
-  const Charge charge(peer_.client.get());
+  const Charge charge(peer_.client.get(), &metrics_, kRoute);
   std::size_t left = protocol_.hasFrame() ? room() : LineRoom::kUnbounded;
   while (std::optional<ControlFrame> sign = control_.takeSign())
     gather.add(sign->kind, std::move(sign->payload));

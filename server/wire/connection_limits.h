@@ -26,6 +26,9 @@ inline constexpr auto kProcessorTimePerSecond = 200ms;
 inline constexpr auto kMaxOwedTime = 30s;
 /// An address that owes more than this waits for its turn behind those that owe less.
 inline constexpr auto kMaxFreeTime = 1ms;
+/// A turn that takes more processor time than this is counted (qtet_long_turns_total): all other
+/// clients of the thread have waited for it.
+inline constexpr auto kLongTurn = 5ms;
 /// How much later it counts as come for each second that it owes. Its own requests at a time cost
 /// more than it owes, so this is above one.
 inline constexpr int kTurnsBehind = 8;

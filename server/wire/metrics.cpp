@@ -1,5 +1,9 @@
 #include "server/wire/metrics.h"
 
+#ifndef NDEBUG
+#include <spdlog/spdlog.h>
+#endif
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -72,6 +76,16 @@ void Metrics::countRequest(const RequestKind& kind, unsigned status, std::uint64
   requests_[static_cast<std::size_t>(kind.route)][kind.method].count(time);
 }
 
+void Metrics::countLongTurn(std::string_view route, std::chrono::nanoseconds time) {
+  longTurns_.fetch_add(1, std::memory_order_relaxed);
+#ifndef NDEBUG
+  spdlog::warn("{}: a turn of {:.1f} ms", route,
+               std::chrono::duration<double, std::milli>(time).count());
+#else
+  (void)route, (void)time;
+#endif
+}
+
 std::string Metrics::refusalText() const {
   std::string out = head("refusals_total", "Requests refused, by reason.", "counter");
   for (std::size_t i = 1; i < kRefusalLabels.size(); ++i)
@@ -121,6 +135,9 @@ std::string Metrics::text(const std::vector<Figure>& figures) const {
   counter("uploads_failed_total",
           "PUT of meshes with a status of 400 or more, or whose client left before the answer.",
           failedUploads_);
+  counter("long_turns_total",
+          "Pieces of work on a thread of connections that took more than 5 ms of the processor.",
+          longTurns_);
   counter("streams_total", "WebSocket streams that were begun.", streams_);
   counter("stream_bytes_total", "Bytes of streams that the network took.", streamBytes_);
   counter("stream_credit_waits_total", "Times that a stream had more to send than its credit.",

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/wire/refusal.h"
@@ -22,6 +23,10 @@ class Metrics {
   void countFailedHandshake() { failedHandshakes_.fetch_add(1, std::memory_order_relaxed); }
   void countConnection() { connections_.fetch_add(1, std::memory_order_relaxed); }
   void countRefusedConnection() { refused_.fetch_add(1, std::memory_order_relaxed); }
+
+  /// Work for a request of this route (kRouteLabels) held a thread of all clients for `time`.
+  /// Logged in builds with assertions.
+  void countLongTurn(std::string_view route, std::chrono::nanoseconds time);
 
   void beginStream() {
     streams_.fetch_add(1, std::memory_order_relaxed);
@@ -77,7 +82,7 @@ class Metrics {
   /// By Refusal; the first one counts what was not refused.
   std::array<std::atomic<std::uint64_t>, kRefusalLabels.size()> refusals_{};
   std::atomic<std::uint64_t> bytes_ = 0, connections_ = 0, refused_ = 0, failedHandshakes_ = 0,
-                             failedUploads_ = 0;
+                             failedUploads_ = 0, longTurns_ = 0;
   std::atomic<std::uint64_t> streams_ = 0, openStreams_ = 0, streamBytes_ = 0, stalled_ = 0,
                              creditWaits_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "proto/checksum.h"
+#include "server/wire/id_limits.h"
 #include "server/wire/token_limits.h"
 
 namespace qtet {
@@ -40,8 +41,10 @@ bool isName(std::string_view text) {
          });
 }
 
+/// A name that no mesh can have is matched by no pattern: fnmatch() takes a square of its length,
+/// and clients send 16 KB.
 bool matches(const std::string& pattern, const std::string& mesh) {
-  return ::fnmatch(pattern.c_str(), mesh.c_str(), 0) == 0;
+  return mesh.size() <= limits::kMaxIdBytes && ::fnmatch(pattern.c_str(), mesh.c_str(), 0) == 0;
 }
 
 }  // namespace

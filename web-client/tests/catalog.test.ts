@@ -11,7 +11,8 @@ const answerText = (text: string): void => {
 afterEach(() => vi.unstubAllGlobals());
 
 test('aPublishedListHasTheAddressesOfItsFiles', async () => {
-  const entry = {id: 'a b', tetrahedra: 7, fields: ['T'], firstField: 'T', firstBytes: 9300};
+  const fields = {fields: ['T', 'p'], series: ['T'], firstField: 'T@0'};
+  const entry = {id: 'a b', tetrahedra: 7, ...fields, firstBytes: 9300};
   answer([{...entry, links: {log: 'a%20b.qtet'}}]);
   const list = new URL('https://a.org/meshes/index.json');
   expect(isMeshList(list)).toBe(true);
@@ -19,8 +20,7 @@ test('aPublishedListHasTheAddressesOfItsFiles', async () => {
     {
       id: 'a b',
       tetrahedra: 7,
-      fields: ['T'],
-      firstField: 'T',
+      ...fields,
       log: 'https://a.org/meshes/a%20b.qtet',
       firstBytes: 9300,
     },
@@ -33,7 +33,7 @@ test('aServersListHasNoneBecauseItsAddressesAreKnown', async () => {
   const server = new URL('https://a.org/');
   expect(isMeshList(server)).toBe(false);
   expect(await fetchCatalog(server)).toEqual([
-    {id: 'fin', tetrahedra: 7, fields: [], firstField: ''},
+    {id: 'fin', tetrahedra: 7, fields: [], series: [], firstField: ''},
   ]);
   expect(vi.mocked(fetch).mock.calls[0]![0]).toBe('https://a.org/v1/meshes');
 });

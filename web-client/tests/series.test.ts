@@ -1,7 +1,9 @@
 import {describe, expect, test} from 'vitest';
 import {parseScalar, scalarText} from '../core/layers/field_values';
 import {kMagnitude} from '../core/picture/field_scale';
+import type {Assembler} from '../core/decode/assembler';
 import type {FieldInfo} from '../core/protocol/fields';
+import {kFull} from '../core/protocol/limit';
 import {
   instantKey,
   instantName,
@@ -11,7 +13,8 @@ import {
   showTime,
   timesOf,
 } from '../core/protocol/series';
-import {keyToAsk} from '../viewer/stream_control';
+import {RequestedPart} from '../core/session/requested_part';
+import {keyToAsk, keyToBegin} from '../viewer/stream_control';
 
 function field(name: string, high = 1, association: 'point' | 'cell' = 'point'): FieldInfo {
   return {name, components: 1, association, step: 1, minimum: [0], range: [0, high]};
@@ -181,6 +184,25 @@ describe('instants', () => {
     ]);
     expect(fields[1]!.instant!.own.ranges[1]).toEqual([2, 16]);
   });
+});
+
+test('aListThatNamesASeriesOnceLeavesItsInstantsToTheHead', () => {
+  const listed = {fields: ['T', 'p'], series: ['T'], firstField: 'T@0.5'};
+  expect(keyToBegin(listed, null)).toBe('T@0.5');
+  expect(keyToBegin(listed, 2)).toBe('T');
+  expect(keyToBegin({fields: ['T@0', 'T@0.5'], series: [], firstField: 'T@0.5'}, 0)).toBe('T@0');
+  expect(keyToBegin({fields: ['p'], series: [], firstField: 'p'}, 2)).toBe('p');
+  expect(keyToAsk('T[1]', listed.fields, 2)).toBe('T');
+});
+
+test('noSeriesIsAskedForBeforeTheHeadSaysWhichInstantsItHas', () => {
+  const requested = new RequestedPart({manifest: null} as unknown as Assembler);
+  const address = {mesh: 'fin', url: '', log: '', transport: 'auto' as const};
+  const source = {...address, fields: ['T'], limit: kFull};
+  requested.begin(source);
+  expect([requested.needsHead, requested.keys]).toEqual([false, ['T']]);
+  requested.begin({...source, hasSeries: true});
+  expect([requested.needsHead, requested.keys]).toEqual([true, []]);
 });
 
 test('theInstantNearestToTheTimeIsAskedFor', () => {

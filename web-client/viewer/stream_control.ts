@@ -164,7 +164,8 @@ export class StreamControl {
 
   private async list(): Promise<MeshEntry[]> {
     const {base} = this;
-    if (isLogFile(base)) return [{id: meshOfLog(base), tetrahedra: 0, fields: [], firstField: ''}];
+    if (isLogFile(base))
+      return [{id: meshOfLog(base), tetrahedra: 0, fields: [], series: [], firstField: ''}];
     return fetchCatalog(base, this.page.token);
   }
 
@@ -214,6 +215,7 @@ export class StreamControl {
       transport: kTransportKinds.find((kind) => kind === transport) ?? 'auto',
       mesh,
       fields,
+      hasSeries: fields?.some((key) => entry?.series.includes(key)) === true,
       time: instant?.time ?? listeners.time(),
       isSegment: instant !== undefined,
       limit: listeners.limit(),
@@ -242,11 +244,10 @@ export class StreamControl {
       const text = page.read(layer.name);
       return text === null ? null : layer.fieldOf(text);
     });
-    const {fields: keys, firstField} = entry ?? {fields: [], firstField: ''};
+    const keys = entry?.fields ?? [];
     const time = this.listeners.time();
-    const series = instantName(firstField)?.series;
-    const first =
-      (series && instantKey(keys, series, time)) ?? (firstField || this.listeners.keptField());
+    const listed = entry ? keyToBegin(entry, time) : '';
+    const first = listed === '' ? this.listeners.keptField() : listed;
     const named = [page.read('field') ?? first, page.read('warp'), ...ofLayers]
       .filter((text) => text !== null && text !== '')
       .map((text) => keyToAsk(text!, keys, time));
@@ -258,6 +259,17 @@ export class StreamControl {
     if (this.page.read('quality') !== null) this.page.write('quality', null);
     else this.client.setLimit(kFull);
   }
+}
+
+/** The key of the first view at that time: the field's, or that of its series. */
+export function keyToBegin(
+  {fields, series, firstField}: Pick<MeshEntry, 'fields' | 'series' | 'firstField'>,
+  time: number | null,
+): string {
+  const own = instantName(firstField)?.series;
+  if (own === undefined) return firstField;
+  if (time !== null && series.includes(own)) return own;
+  return instantKey(fields, own, time) ?? firstField;
 }
 
 /** The key of the field that the text means in a mesh with these keys. It may have a component. */

@@ -776,6 +776,31 @@ TEST(Uploads, ofTwoServersOnOneFolderOneMakesANewMesh) {
   EXPECT_EQ(fourth->finish({}).status, 412u) << "the other server has changed it meanwhile";
 }
 
+TEST(Uploads, aDiskThatKeepsAWriterWaitingHoldsUpNoOtherClient) {
+  const test::ServedFolder folder;
+  const MeshStore store = *MeshStore::open(folder.logFolder());
+  Access access(*Tokens::parse(std::string("write * ") + kToken));
+  std::atomic<bool> isWriting = false, goesOn = false;
+  UploadOptions options;
+  options.write = [&](int file, ByteView bytes) {
+    isWriting = true;
+    goesOn.wait(false);
+    return writeTo(file, bytes);
+  };
+  const test::RunningServer server(
+      store, folder.viewer(), {.threads = 1, .access = &access, .uploads = std::move(options)});
+  const Bytes log = testing::logBytes(testing::soundMesh(8, 77));
+  RawClient sender(server.port()), other(server.port());
+  sender.send("PUT /v1/meshes/wing HTTP/1.1\r\nHost: a\r\nAuthorization: Bearer " +
+              std::string(kToken) + "\r\nContent-Length: " + std::to_string(log.size()) +
+              "\r\n\r\n" + std::string(log.begin(), log.end()));
+  EXPECT_TRUE(test::eventually([&] { return isWriting.load(); }));
+  EXPECT_EQ(other.get("/livez").status, 200u);
+  goesOn = true;
+  goesOn.notify_all();
+  EXPECT_EQ(sender.receive().status, 201u);
+}
+
 TEST(Uploads, anotherServersPartsAreLetAlone) {
   const test::ServedFolder folder;
   const auto old =

@@ -10,6 +10,7 @@
 
 #include "server/store/bus_guard.h"
 #include "server/store/store_limits.h"
+#include "server/wire/id_limits.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "proto/field_keys.h"
 #include "proto/limits.h"
 #include "proto/manifest.h"
 #include "proto/series.h"
@@ -41,9 +42,14 @@ struct Log {
     }
   }
   [[nodiscard]] std::vector<Series> series() const { return seriesOf(std::span(manifest.fields)); }
+  [[nodiscard]] std::expected<FieldTurns, std::string> found(
+      const std::vector<std::string>& names, const std::optional<StreamTime>& time) const {
+    const std::vector<Series> all = series();
+    return fieldTurns(names, time, FieldKeys(manifest.fields, all), all, shapes);
+  }
   [[nodiscard]] FieldTurns turns(const std::vector<std::string>& names,
                                  const std::optional<StreamTime>& time) const {
-    return fieldTurns(names, time, manifest, series(), shapes).value_or(FieldTurns{});
+    return found(names, time).value_or(FieldTurns{});
   }
 
   Manifest manifest;
@@ -54,10 +60,7 @@ TEST(FieldTurns, withoutATimeNamesMeanFieldsAlone) {
   const Log log;
   EXPECT_EQ(log.turns({"p", "T@2", "p"}, {}), (FieldTurns{{2, 7}}));
   EXPECT_EQ(log.turns({}, {}), FieldTurns{{}});
-  EXPECT_EQ(
-      fieldTurns(std::vector<std::string>{"p", "T"}, {}, log.manifest, log.series(), log.shapes)
-          .error(),
-      "T");
+  EXPECT_EQ(log.found({"p", "T"}, {}).error(), "T");
 }
 
 TEST(FieldTurns, theNearestInstantComesWithItsParentsBeforeTheOnesAhead) {
@@ -114,10 +117,7 @@ TEST(FieldTurns, aSeriesOfCellsHasItsKey) {
   const Log log;
   EXPECT_EQ(log.turns({"cell:T"}, StreamTime{1, 1, First::kSpace}), (FieldTurns{{6}, {5}}));
   EXPECT_EQ(log.turns({"point:T"}, StreamTime{0, 0, First::kSpace}), FieldTurns{{0}});
-  EXPECT_EQ(fieldTurns(std::vector<std::string>{"cell:U"}, StreamTime{}, log.manifest, log.series(),
-                       log.shapes)
-                .error(),
-            "cell:U");
+  EXPECT_EQ(log.found({"cell:U"}, StreamTime{}).error(), "cell:U");
 }
 
 }  // namespace

@@ -7,8 +7,10 @@
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/target_choice.h"
+#include "proto/limits.h"
 #include "proto/messages.h"
 #include "server/stream/client_blocks.h"
+#include "server/stream/stream_limits.h"
 #include "tests/server/store/synthetic_log.h"
 
 namespace qtet {
@@ -31,7 +33,10 @@ struct Planned {
   [[nodiscard]] std::vector<BlockRun> plan(const ClientBlocks& blocks,
                                            std::uint32_t payload = kEverything,
                                            const Target& target = {}) const {
-    return planStream(index, blocks, lastChunkFor(target, manifest, index).value(), payload);
+    StreamPlan plan(index, lastChunkFor(target, manifest, index).value(), payload);
+    std::vector<BlockRun> out;
+    while (const auto run = plan.next(blocks)) out.push_back(*run);
+    return out;
   }
   [[nodiscard]] std::vector<std::uint32_t> chunks(const Target& target) const {
     std::vector<std::uint32_t> out;
@@ -138,6 +143,35 @@ TEST(Planner, whatIsPlannedIsExactlyWhatIsMissing) {
       for (std::uint32_t b = 0; b <= mesh; ++b)
         for (const std::uint32_t payload : {1000u, kEverything})
           expectExactlyWhatIsMissing(log, log.blocks({0, 1}, mesh, {a, b}), payload);
+}
+
+TEST(Planner, theBytesThatAreLackingAreThoseOfAllRuns) {
+  const Planned log({.chunks = 4});
+  for (std::uint32_t last = 0; last < 4; ++last) {
+    const ClientBlocks blocks = log.blocks({0, 1}, 2, {1, 0});
+    std::uint64_t bytes = 0;
+    for (const BlockRun& run : log.plan(blocks, 1000, LevelTarget{last}))
+      bytes += sliceOf(log.index, run).size;
+    EXPECT_EQ(lackingBytes(log.index, blocks, last), bytes) << last;
+  }
+}
+
+/// A frame each: as a list they would take 2.5 MB, and 80 MB in a log of 10,000 chunks.
+TEST(Planner, aPlanOfTheMostFieldsKeepsNoFrames) {
+  std::vector<std::string> names{"p", "velocity"};
+  FieldTurns turns{{}};
+  for (std::uint32_t f = 2; f < kMaxRequestFields + 2; ++f) {
+    names.push_back("T@" + std::to_string(f));
+    turns.push_back({f});
+  }
+  const test::SyntheticLog options{.chunks = 300, .fields = names, .largestBlock = 2};
+  const LogIndex index = test::makeIndex(options);
+  const ClientBlocks blocks(index, turns);
+  StreamPlan plan(index, 299, limits::kFramePayload);
+  std::size_t count = 0, bytes = 0;
+  for (; plan.next(blocks); ++count) bytes = std::max(bytes, plan.bytes());
+  EXPECT_EQ(count, 300 * (kMaxRequestFields + 1));
+  EXPECT_LE(bytes, 2 * sizeof(std::size_t));
 }
 
 TEST(Planner, aTargetEndsAStream) {

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "proto/checksum.h"
+#include "server/wire/id_limits.h"
 #include "server/wire/token_limits.h"
 #include "tests/server/program/loopback.h"
 #include "tests/server/program/served_folder.h"
@@ -51,6 +52,17 @@ TEST(Tokens, theFirstNameOfATokenIsItsName) {
   EXPECT_FALSE(named(std::string(limits::kMaxTokenName + 1, 'a')));
   EXPECT_FALSE(named(""));
   EXPECT_FALSE(named("a\"b"));
+}
+
+TEST(Tokens, aNameThatNoMeshCanHaveIsMatchedByNoPattern) {
+  const auto tokens = Tokens::parse("write * " + kWriter);
+  ASSERT_TRUE(tokens) << tokens.error().message;
+  for (const std::size_t size : {limits::kMaxIdBytes - 1, limits::kMaxIdBytes})
+    EXPECT_EQ(tokens->may(Scope::kWrite, bearerOf(kWriter), std::string(size, 'a')),
+              Verdict::kAllowed);
+  EXPECT_EQ(
+      tokens->may(Scope::kWrite, bearerOf(kWriter), std::string(limits::kMaxIdBytes + 1, 'a')),
+      Verdict::kForbidden);
 }
 
 TEST(Tokens, linesAreReadAndWrongOnesNamed) {

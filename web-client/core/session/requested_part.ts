@@ -20,6 +20,8 @@ export class RequestedPart {
   /** Something ahead has failed: each field waits until it is shown. */
   isAheadEnded = false;
   limit: Limit = kFull;
+  /** Some names mean series, and only the head says which instants these have. */
+  private hasSeries = false;
   /** The time that series begin with; null: the first. */
   private time: number | null = null;
   /** The chunks that the log's copy holds. */
@@ -27,7 +29,8 @@ export class RequestedPart {
 
   constructor(private readonly assembler: Assembler) {}
 
-  begin({fields, limit, time = null, chunks = Infinity}: Source): void {
+  begin({fields, hasSeries = false, limit, time = null, chunks = Infinity}: Source): void {
+    this.hasSeries = hasSeries;
     this.time = time;
     this.names = fields;
     this.limit = limit;
@@ -101,7 +104,7 @@ export class RequestedPart {
   /** The server's keys of the fields. */
   get keys(): string[] {
     const {manifest} = this.assembler;
-    if (!manifest) return this.names ?? [];
+    if (!manifest) return this.hasSeries ? [] : (this.names ?? []);
     const keys = fieldKeys(manifest.fields);
     return this.needed.map((field) => keys[field]!);
   }
@@ -121,7 +124,7 @@ export class RequestedPart {
   /** Only the head says which fields there are or where the limit lies. */
   get needsHead(): boolean {
     const mayEnd = this.limit.kind !== 'full' || this.chunks < Infinity;
-    return !this.assembler.manifest && (this.names === null || mayEnd);
+    return !this.assembler.manifest && (this.names === null || this.hasSeries || mayEnd);
   }
 
   /** The leading chunks, by default all, are here with the fields. */

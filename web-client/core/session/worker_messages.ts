@@ -26,6 +26,8 @@ export interface Source extends LogAddress {
   mesh: string;
   /** Keys of the fields, or series in a file, to begin with; null: the opening's; empty: none. */
   fields: string[] | null;
+  /** Some of `fields` are series of a server's mesh, which asks for instants. */
+  hasSeries?: boolean;
   /** The time at which series begin; null: the first. */
   time?: number | null;
   /** The log is a segment of a list: a single instant is a series, too. */

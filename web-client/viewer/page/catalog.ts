@@ -10,7 +10,10 @@ import {fetchWith} from '../../core/transport/token';
 export interface MeshEntry {
   id: string;
   tetrahedra: number;
+  /** Keys; a server's list names a series once, and perhaps not all of many fields. */
   fields: string[];
+  /** Those of `fields` that are series. */
+  series: string[];
   /** The key of the field to show first; empty if it is unknown or there is none. */
   firstField: string;
   /** The address of the log as a file, from a published list; without it the server has it. */
@@ -65,12 +68,17 @@ function entryOf(mesh: Listed, list: URL | null): MeshEntry {
   return {
     id: String(mesh.id),
     tetrahedra: Number(mesh.tetrahedra ?? 0),
-    fields: Array.isArray(mesh.fields) ? mesh.fields.map(String) : [],
+    fields: strings(mesh.fields),
+    series: strings(mesh.series),
     firstField: typeof mesh.firstField === 'string' ? mesh.firstField : '',
     ...(list && {log: new URL(String(mesh.links?.log), list).href}),
     ...(list && Number.isInteger(mesh.firstBytes) && {firstBytes: Number(mesh.firstBytes)}),
     ...(list && Number.isInteger(mesh.chunks) && {chunks: Number(mesh.chunks)}),
   };
+}
+
+function strings(listed: unknown): string[] {
+  return Array.isArray(listed) ? listed.map(String) : [];
 }
 
 /** Null if it is no JSON. */
@@ -86,7 +94,7 @@ function parsed(bytes: ArrayBuffer): unknown {
 function entryOfSegments(url: URL, body: unknown, sizeBytes: number): MeshEntry {
   try {
     const segments = readSegmentList(body, sizeBytes);
-    return {id: meshOfLog(url), tetrahedra: 0, fields: [], firstField: '', segments};
+    return {id: meshOfLog(url), tetrahedra: 0, fields: [], series: [], firstField: '', segments};
   } catch (thrown) {
     throw new QtetError(
       errorCode(thrown),
