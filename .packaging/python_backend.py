@@ -25,7 +25,7 @@ _EARLIEST = 315532800
 # Debian's packages of what is linked statically into the library.
 LINKED = (
     "libdraco-dev libboost-program-options-dev libhdf5-dev libaec-dev libexpat1-dev libdeflate-dev "
-    "liblz4-dev liblzma-dev libwebp-dev libbrotli-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev"
+    "liblz4-dev liblzma-dev libwebp-dev libbrotli-dev zlib1g-dev nlohmann-json3-dev"
 ).split()
 
 
@@ -69,8 +69,9 @@ def _tag():
 
 def _notices():
     """The licences of what the library holds, as the build machine's packages state them."""
+    compiler = subprocess.run(["g++", "-dumpversion"], capture_output=True, text=True, check=True)
     parts = []
-    for package in LINKED:
+    for package in [*LINKED, f"libstdc++-{compiler.stdout.strip().split('.')[0]}-dev"]:
         path = pathlib.Path("/usr/share/doc") / package / "copyright"
         if not path.is_file():
             raise SystemExit(f"{path} is missing; a wheel is made on Debian, after make setup")

@@ -10,7 +10,9 @@ string(REGEX MATCH "[0-9-]+$" day "${newest}")
 execute_process(COMMAND date -u -R -d ${day} OUTPUT_VARIABLE date
   OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 
-file(WRITE changelog.Debian "qtet (${VERSION}) bookworm; urgency=medium\n\n"
+file(STRINGS /etc/os-release suite REGEX "^VERSION_CODENAME=")
+string(REPLACE "VERSION_CODENAME=" "" suite "${suite}")
+file(WRITE changelog.Debian "qtet (${VERSION}) ${suite}; urgency=medium\n\n"
   "  * Packages of this release: see changelog.gz.\n\n -- ${MAINTAINER}  ${date}\n")
 file(COPY_FILE ${SOURCE}/CHANGELOG.md changelog)
 file(COPY_FILE ${SOURCE}/.packaging/qtet-server.1 qtet-server.1)
