@@ -291,7 +291,7 @@ std::filesystem::path freshFolder(const std::string& name) {
   // One folder a process, gone when the process ends.
   static const struct Root {
     std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("qtet-test-" + std::to_string(getpid()));
+        std::filesystem::temp_directory_path() / ("qtet-unit-test." + std::to_string(getpid()));
     ~Root() {
       std::error_code ignored;
       std::filesystem::remove_all(path, ignored);

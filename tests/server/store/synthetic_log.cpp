@@ -104,7 +104,7 @@ Bytes makeLog(const SyntheticLog& options) {
 LogIndex makeIndex(const SyntheticLog& options) { return build(options).index; }
 
 TempFolder::TempFolder() {
-  std::string name = (fs::temp_directory_path() / "qtet-test-XXXXXX").string();
+  std::string name = (fs::temp_directory_path() / "qtet-unit-test.XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
     throw std::runtime_error("no temporary folder can be made");
   path_ = name;
