@@ -168,18 +168,21 @@ function ask(port, method, path, headers = {}, body = undefined) {
   });
 }
 
+/** Asks the server at `port`, and compares the answer with the description. */
+const expectsOf = (port) => async (status, method, path, headers, body) => {
+  const reply = await ask(port, method, path, headers, body);
+  const what = `${method} ${path} ${headers ? JSON.stringify(headers).slice(0, 200) : ''}`;
+  if (reply.status !== status)
+    complain(
+      what,
+      `status ${reply.status} instead of ${status}: ${reply.body.toString().slice(0, 200)}`,
+    );
+  judge(what, method, path.split('?')[0], reply);
+  return reply;
+};
+
 async function checkAll(port) {
-  const expect = async (status, method, path, headers, body) => {
-    const reply = await ask(port, method, path, headers, body);
-    const what = `${method} ${path} ${headers ? JSON.stringify(headers).slice(0, 200) : ''}`;
-    if (reply.status !== status)
-      complain(
-        what,
-        `status ${reply.status} instead of ${status}: ${reply.body.toString().slice(0, 200)}`,
-      );
-    judge(what, method, path.split('?')[0], reply);
-    return reply;
-  };
+  const expect = expectsOf(port);
   const get = (status, path, headers) => expect(status, 'GET', path, headers);
   const mesh = JSON.parse((await get(200, '/v1/meshes/fin')).body);
   const log = `/v1/logs/${mesh.digest}`;
@@ -378,15 +381,29 @@ const sorted = (value) =>
         )
       : value;
 
-prepare(options);
-const {child, port} = await startServer(options);
-try {
-  await checkAll(port);
-} finally {
-  agent.destroy();
-  child.removeAllListeners('exit');
-  child.kill('SIGTERM');
+/** A server that has no memory for levels. */
+async function checkTooLarge(port) {
+  const expect = expectsOf(port);
+  const {digest} = JSON.parse((await expect(200, 'GET', '/v1/meshes/fin')).body);
+  const series = 'series?x=0.5&y=0.5&z=0.5&field=Velocity';
+  for (const path of ['levels/0.vtu', series, 'preview.png', 'poster.webp'])
+    await expect(413, 'GET', `/v1/logs/${digest}/${path}`);
 }
+
+prepare(options);
+for (const [check, more] of [
+  [checkAll, undefined],
+  [checkTooLarge, ['--max-level-bytes', '1']],
+]) {
+  const {child, port} = await startServer(options, more);
+  try {
+    await check(port);
+  } finally {
+    child.removeAllListeners('exit');
+    child.kill('SIGTERM');
+  }
+}
+agent.destroy();
 for (const path of Object.values(description.paths))
   for (const operation of Object.values(path))
     for (const status of Object.keys(operation.responses ?? {})) {

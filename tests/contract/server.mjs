@@ -52,8 +52,8 @@ export function prepare({bin, out}) {
   writeFileSync(join(out, 'viewer/index.html'), '<!doctype html><title>viewer</title>');
 }
 
-/** The process, and the port that it listens on. */
-export function startServer({bin, out}) {
+/** The process, and the port that it listens on. `more` are options of the server. */
+export function startServer({bin, out}, more = ['--cache', join(out, 'cache')]) {
   const words = [
     join(out, 'logs'),
     '--port',
@@ -64,8 +64,7 @@ export function startServer({bin, out}) {
     join(out, 'tokens'),
     '--max-upload-bytes',
     '1000000',
-    '--cache',
-    join(out, 'cache'),
+    ...more,
   ];
   const child = spawn(join(bin, 'qtet-server'), words, {stdio: ['ignore', 'pipe', 'inherit']});
   return new Promise((ready, failed) => {
