@@ -166,8 +166,10 @@ Result<LevelFile> Decoders::level(const LevelRequest& request, const std::stop_t
   const TaskLimits bounds{state_->options.levelBytes + limits::kDecoderBaseBytes,
                           state_->options.levelBytes, limits::kLevelTime};
   const std::string& digest = task.digest;
+  // A level makes its process forget what the next point needs.
+  const std::string subject = (request.point ? "points of " : "levels of ") + digest;
   const Result<DecodeAnswer> answer =
-      state_->ask(task, files, bounds, stop, digest,
+      state_->ask(task, files, bounds, stop, subject,
                   request.mesh->id + " (" + digest + "), level " + std::to_string(request.level) +
                       " as " + std::string(formName(request.form)));
   if (!answer) return std::unexpected(answer.error());

@@ -172,6 +172,18 @@ TEST_F(DecodersTest, aStopEndsAProcessThatDoesNotHeedIt) {
   EXPECT_EQ(decoders.processes().front(), heeding);
 }
 
+TEST_F(DecodersTest, aLevelLeavesTheProcessAloneThatHasTheMeshForPoints) {
+  Decoders decoders(options(2));
+  LevelRequest point = finest(LevelForm::kJson);
+  point.point = {1e9, 0, 0};
+  EXPECT_FALSE(decoders.level(point, {}));
+  const pid_t first = decoders.processes().front();
+  ::kill(first, SIGSTOP);
+  EXPECT_TRUE(decoders.level(finest(), {})) << "by the other one";
+  ::kill(first, SIGCONT);
+  EXPECT_FALSE(decoders.level(point, {}));
+}
+
 TEST_F(DecodersTest, aLevelHasRoomForSoManyBytesAndNoMore) {
   const std::uint64_t size = makeLevel(finest(), {}).value().size();
   for (const std::uint64_t room : {size - 1, size, size + 1}) {
