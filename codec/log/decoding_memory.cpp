@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 #include <vector>
 
@@ -35,6 +36,12 @@ struct Totals {
 /// Sums over the chunks up to the one that completes the level.
 Totals totalsOf(const LogIndex& index, std::uint32_t level, std::span<const std::uint32_t> fields) {
   Totals out;
+  // A chunk has as many tuples for all fields of an association, so one of each counts.
+  std::map<Association, std::uint32_t> widest;
+  for (const std::uint32_t field : fields) {
+    std::uint32_t& most = widest.emplace(index.fields[field].association, field).first->second;
+    if (index.fields[field].components > index.fields[most].components) most = field;
+  }
   for (std::uint32_t chunk = 0; chunk < index.chunks.size(); ++chunk) {
     const ChunkEntry& entry = index.chunks[chunk];
     out.slots.vertices += entry.newVertices;
@@ -44,7 +51,7 @@ Totals totalsOf(const LogIndex& index, std::uint32_t level, std::span<const std:
     out.structureBytes += entry.blocks[kStructurePart].size;
     const std::uint64_t positions = std::uint64_t{3} * index.tuples(chunk, kPositionsPart);
     std::uint64_t largest = 0;
-    for (const std::uint32_t field : fields)
+    for (const auto& [association, field] : widest)
       largest = std::max(largest, std::uint64_t{index.fields[field].components} *
                                       index.tuples(chunk, kFirstFieldPart + field));
     out.blockIntegers = std::max(out.blockIntegers, positions + largest);

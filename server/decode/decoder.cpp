@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "proto/sanitizer.h"
 #include "server/decode/decoder_main.h"
 
 namespace qtet {
@@ -97,19 +98,6 @@ std::string endText(int status) {
   return "the process that decoded it ended with code " + std::to_string(WEXITSTATUS(status));
 }
 
-// Sanitizers map far more memory than they use.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kBoundsMemory = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kBoundsMemory = false;
-#else
-constexpr bool kBoundsMemory = true;
-#endif
-#else
-constexpr bool kBoundsMemory = true;
-#endif
-
 }  // namespace
 
 Decoder::Decoder(Channel channel, pid_t process)
@@ -146,7 +134,7 @@ Result<std::unique_ptr<Decoder>> Decoder::start(const std::string& program) {
 }
 
 void Decoder::bound(const TaskLimits& bounds) const {
-  if (kBoundsMemory) setLimit(process_, RLIMIT_DATA, bounds.memoryBytes);
+  if (!kSanitized) setLimit(process_, RLIMIT_DATA, bounds.memoryBytes);
   setLimit(process_, RLIMIT_FSIZE, bounds.fileBytes);
   const std::chrono::seconds end = usedTime(process_) + bounds.time;
   setLimit(process_, RLIMIT_CPU, static_cast<std::uint64_t>(end.count()));

@@ -12,6 +12,8 @@
 #include <string>
 #include <thread>
 
+#include "proto/sanitizer.h"
+
 namespace qtet {
 namespace {
 
@@ -19,19 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 /// Between two looks at the copy, at first and at most: short trials are not made longer by it.
 constexpr std::chrono::microseconds kFirstPause{200}, kLongestPause{50'000};
-
-/// Sanitizers reserve more addresses than any machine has memory.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kBoundsMemory = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kBoundsMemory = false;
-#else
-constexpr bool kBoundsMemory = true;
-#endif
-#else
-constexpr bool kBoundsMemory = true;
-#endif
 
 /// Bytes that the process has read and written so far; 0 where the system does not report them.
 std::uint64_t bytesMovedBy(pid_t process) {
@@ -46,7 +35,7 @@ std::uint64_t bytesMovedBy(pid_t process) {
 
 void boundMemory() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGESIZE);
-  if (!kBoundsMemory || pages <= 0 || bytes <= 0) return;
+  if (kSanitized || pages <= 0 || bytes <= 0) return;
   const rlim_t all = static_cast<rlim_t>(pages) * static_cast<rlim_t>(bytes);
   rlimit data{};
   if (::getrlimit(RLIMIT_DATA, &data) != 0) return;
