@@ -1,4 +1,4 @@
-// Whether this is built with a sanitizer, which reserves more addresses than any machine has memory.
+// Whether a sanitizer is built in: it reserves more addresses than any machine has memory.
 #pragma once
 
 namespace qtet {
