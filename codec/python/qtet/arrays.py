@@ -38,7 +38,7 @@ def _copied(address, count, width):
 def field_of(log: Log, number: int) -> numpy.ndarray:
     """The values of the field with this number, in the input's type."""
     info = log.fields[number]
-    kind = info.type.decode()
+    kind = info.type
     count = log.field_count(number)
     is_double = kind != "float32"
     values = numpy.empty(count, "float64" if is_double else "float32")

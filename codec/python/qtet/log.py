@@ -8,6 +8,8 @@ alone; libqtet.so decodes (codec/api/qtet.h).
 A source is a file, a log's URL on any host, `http://host/v1/meshes/NAME` of a qtet-server, or the
 address of its viewer (`http://host/?mesh=NAME`). Of a URL only the bytes that a level needs are
 fetched, where the host answers Range requests."""
+from __future__ import annotations
+
 import ctypes
 import ctypes.util
 import os
@@ -18,6 +20,8 @@ import tempfile
 import urllib.error
 import urllib.parse
 import urllib.request
+from dataclasses import dataclass
+from typing import Any
 
 _u32, _u64, _f64, _text = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_char_p
 _HEADER_BYTES = 64  # FORMAT.md, "Header"
@@ -33,7 +37,7 @@ class QtetError(RuntimeError):
     """What went wrong, where, and what to do, in the words of the library."""
 
 
-class LogInfo(ctypes.Structure):
+class _CLogInfo(ctypes.Structure):
     _fields_ = [
         ("versionMajor", _u32),
         ("versionMinor", _u32),
@@ -50,7 +54,7 @@ class LogInfo(ctypes.Structure):
     ]
 
 
-class FieldInfo(ctypes.Structure):
+class _CFieldInfo(ctypes.Structure):
     _fields_ = [
         ("components", _u32),
         ("association", _u32),
@@ -65,7 +69,7 @@ class FieldInfo(ctypes.Structure):
     ]
 
 
-class LevelInfo(ctypes.Structure):
+class _CLevelInfo(ctypes.Structure):
     _fields_ = [
         ("tetrahedra", _u32),
         ("vertices", _u32),
@@ -81,6 +85,65 @@ class LevelInfo(ctypes.Structure):
         ("volumeLost", _f64),
         ("volumeGained", _f64),
     ]
+
+
+# Copies in Python's own types, with the members of qtet.h: they outlive their log.
+@dataclass(frozen=True)
+class LogInfo:
+    versionMajor: int
+    versionMinor: int
+    bytes: int
+    chunks: int
+    levels: int
+    fields: int
+    latticeBits: int
+    latticeStep: float
+    latticeOrigin: tuple[float, ...]
+    digest: str
+    source: str
+    generator: str
+
+
+@dataclass(frozen=True)
+class FieldInfo:
+    components: int
+    association: int
+    bits: int
+    step: float
+    minimum: tuple[float, ...]  # of each component
+    range: tuple[float, ...]  # the least and the largest
+    bytes: int
+    name: str
+    type: str
+
+
+@dataclass(frozen=True)
+class LevelInfo:
+    tetrahedra: int
+    vertices: int
+    boundaryTriangles: int
+    hasError: bool
+    prefixBytes: int
+    boundaryDistance: float
+    toLevelMean: float
+    toLevelMax: float
+    toOriginalMean: float
+    toOriginalMax: float
+    volumeKept: float
+    volumeLost: float
+    volumeGained: float
+
+
+def _plain(value: Any) -> Any:
+    """A member of a struct without the library's memory."""
+    if isinstance(value, bytes):
+        return value.decode(errors="replace")
+    return tuple(value) if isinstance(value, ctypes.Array) else value
+
+
+def _members(struct: ctypes.Structure) -> dict[str, Any]:
+    names = (entry[0] for entry in struct._fields_)
+    return {name: _plain(getattr(struct, name)) for name in names if name != "reserved"}
 
 
 def _candidates():
@@ -222,7 +285,7 @@ def _series_of(fields):
     """{name: {time: field number}}, times ascending: the series of two and more instants."""
     found = {}
     for number, info in enumerate(fields):
-        parts = _INSTANT.fullmatch(info.name.decode(errors="replace"))
+        parts = _INSTANT.fullmatch(info.name)
         if parts:
             kind = (parts[1], info.association, info.components, info.type)
             found.setdefault(kind, {}).setdefault(float(parts[2]), number)
@@ -263,11 +326,8 @@ class Log:
         if not self.handle:
             raise MemoryError("no memory for a log")
         self.check(self.c.qtet_log_open_file(self.handle, os.fsencode(path)))
-        self.info = self._struct(LogInfo, self.c.qtet_log_get_info)
-        self.fields = [
-            self._struct(FieldInfo, self.c.qtet_log_get_field, _u32(f))
-            for f in range(self.info.fields)
-        ]
+        self.info = LogInfo(**self._struct(_CLogInfo, self.c.qtet_log_get_info))
+        self.fields = [self._field_info(f) for f in range(self.info.fields)]
         self.series = _series_of(self.fields)
 
     def check(self, status):
@@ -281,7 +341,12 @@ class Log:
                 self.handle, *arguments, ctypes.c_size_t(ctypes.sizeof(kind)), ctypes.byref(out)
             )
         )
-        return out
+        return _members(out)
+
+    def _field_info(self, field):
+        members = self._struct(_CFieldInfo, self.c.qtet_log_get_field, _u32(field))
+        members["minimum"] = members["minimum"][: members["components"]]
+        return FieldInfo(**members)
 
     def _level(self, function, *arguments):
         level = _u32()
@@ -293,7 +358,8 @@ class Log:
         return self.info.levels - 1
 
     def level_info(self, level):
-        return self._struct(LevelInfo, self.c.qtet_log_get_level, _u32(level))
+        members = self._struct(_CLevelInfo, self.c.qtet_log_get_level, _u32(level))
+        return LevelInfo(**{**members, "hasError": bool(members["hasError"])})
 
     def level_of_tetrahedra(self, most):
         """The finest level of at most so many tetrahedra; 0 if there is none."""
@@ -314,7 +380,7 @@ class Log:
 
     @property
     def field_names(self):
-        return [info.name.decode(errors="replace") for info in self.fields]
+        return [info.name for info in self.fields]
 
     @property
     def times(self):

@@ -79,7 +79,7 @@ def _cells(source, corners, count):
 
 def _field(log, number):
     info = log.fields[number]
-    kind = info.type.decode()
+    kind = info.type
     tuples = log.field_count(number) // info.components
     is_double = kind != "float32"
     values = _sized(

@@ -1,5 +1,6 @@
 """qtet.simplify: logs as the tool makes them, every wrong argument an exception, Ctrl-C.
    qtet_test.py LIBRARY QTET-PROGRAM MODULES FOLDER-TO-WRITE-TO; ends with 77 without numpy."""
+import dataclasses
 import os
 import pathlib
 import signal
@@ -191,6 +192,22 @@ def what_is_wrong_is_an_exception():
     )
 
 
+def what_a_log_holds_outlives_it():
+    points, cells, point_data, cell_data = grid(3)
+    paths = [OUT / f"{name}.qtet" for name in "abc"]
+    for path in paths:
+        qtet.simplify(points, cells, point_data, cell_data, source=path.name, path=path)
+    infos = [qtet.open(path).info for path in paths]
+    assert [info.source for info in infos] == ["a.qtet", "b.qtet", "c.qtet"], infos
+    assert all(isinstance(info.digest, str) and len(info.digest) == 64 for info in infos)
+    assert all(type(x) in (int, float, str, tuple) for x in vars(infos[0]).values())
+    field, level = qtet.open(paths[0]).fields[1], qtet.open(paths[0]).level_info(0)
+    assert (field.name, field.type, len(field.minimum)) == ("Swirl", "float64", 3), field
+    assert type(level.boundaryDistance) is float and level.hasError is True
+    for frozen in (infos[0], field, level):
+        refused(dataclasses.FrozenInstanceError, "bytes", lambda: setattr(frozen, "bytes", 0))
+
+
 class Block:
     def __init__(self, kind, data):
         self.type, self.data = kind, data
@@ -272,6 +289,7 @@ def ctrl_c_ends_the_work(mesh):
 logs_are_the_tools()
 shapes_and_types_do_not_matter()
 what_is_wrong_is_an_exception()
+what_a_log_holds_outlives_it()
 grids_with_times_are_a_series()
 large = grid(32)  # a second and a half: reports come every 0.1 s
 progress_is_told_and_may_end_the_work(large)
