@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy
 
-__all__ = ["Grid", "grid_of", "packed_array", "series_of"]
+__all__ = ["Grid", "grid_of", "mesh_array", "packed_array", "series_of"]
 
 # VTK's numbers of volume cells by meshio's names. Both order the nodes alike.
 _NUMBERS = {
@@ -43,9 +43,30 @@ _VTU_TYPES = {
 _WIDENED = {"bool": "uint8", "float16": "float32"}
 
 
+def field_array(values):
+    """A field's array. What a mask covers is a missing value, NaN: masked integers become
+    float64."""
+    is_list = isinstance(values, (list, tuple))
+    if is_list and any(numpy.ma.isMaskedArray(part) for part in values):
+        values = numpy.ma.array(values)
+    if not numpy.ma.is_masked(values):
+        return numpy.asarray(values)
+    kind = values.dtype if values.dtype.kind in "fc" else numpy.dtype("float64")
+    return values.astype(kind).filled(numpy.nan)
+
+
+def mesh_array(values, what):
+    """An array of points or cells. Raises ValueError where a mask covers some."""
+    array = field_array(values)
+    parts = values if isinstance(values, (list, tuple)) else [values]
+    if any(numpy.ma.is_masked(part) for part in parts):
+        raise ValueError(f"some {what} are masked; leave them out, or fill them")
+    return array
+
+
 def packed_array(values, what):
     """A packed array of one of the types that a log has, in the machine's order of bytes."""
-    array = numpy.asarray(values)
+    array = field_array(values)
     name = array.dtype.newbyteorder("=").name
     name = _WIDENED.get(name, name)
     if name not in _VTU_TYPES:
@@ -61,7 +82,7 @@ class Grid:
     those before ends[i]; point_data and cell_data {name: (n or m, ...)}."""
 
     def __init__(self, points, types, connectivity, ends, point_data, cell_data):
-        self.points, self.types = numpy.asarray(points), numpy.asarray(types, "uint8")
+        self.points, self.types = mesh_array(points, "points"), numpy.asarray(types, "uint8")
         self.connectivity, self.ends = numpy.asarray(connectivity), numpy.asarray(ends)
         self.point_data, self.cell_data = dict(point_data), dict(cell_data)
 
@@ -155,14 +176,18 @@ def series_of(grids, times):
 
 
 def _add_instants(out, name, values, times):
-    first = numpy.asarray(values[0]) if values[0] is not None else None
+    arrays = [None if v is None else field_array(v) for v in values]
+    # An instant whose integers a mask made floats shares its type with the others.
+    kind = numpy.result_type(*(array.dtype for array in arrays if array is not None))
+    arrays = [None if array is None else array.astype(kind, copy=False) for array in arrays]
+    first = arrays[0]
     if first is not None and all(
         v is not None and numpy.array_equal(first, v, equal_nan=first.dtype.kind == "f")
-        for v in values
+        for v in arrays
     ):
         out[name] = first
         return
-    for time, of_time in zip(times, values):
+    for time, of_time in zip(times, arrays):
         if of_time is not None:
             out[f"{name}@{repr(time).removesuffix('.0')}"] = of_time
 
@@ -195,19 +220,18 @@ def _of_meshio(source):
     if not kept:
         found = sorted({block.type for block in source.cells})
         raise ValueError(f"the mesh has no volume cells, only {json.dumps(found)}")
-    blocks = [source.cells[i] for i in kept]
-    sizes = numpy.concatenate([numpy.full(len(b.data), b.data.shape[1]) for b in blocks])
-    points = numpy.asarray(source.points)
-    if points.shape[1] != 3:
+    blocks = [(source.cells[i].type, mesh_array(source.cells[i].data, "cells")) for i in kept]
+    points = mesh_array(source.points, "points")
+    if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"points have the shape {points.shape}; give (points, 3)")
     return Grid(
         points,
-        numpy.concatenate([numpy.full(len(b.data), _NUMBERS[b.type], "uint8") for b in blocks]),
-        numpy.concatenate([numpy.asarray(b.data).ravel() for b in blocks]),
-        numpy.cumsum(sizes),
+        numpy.concatenate([numpy.full(len(nodes), _NUMBERS[kind], "uint8") for kind, nodes in blocks]),
+        numpy.concatenate([nodes.ravel() for _, nodes in blocks]),
+        numpy.cumsum(numpy.concatenate([numpy.full(*nodes.shape) for _, nodes in blocks])),
         source.point_data,
         {
-            name: numpy.concatenate([numpy.asarray(values[i]) for i in kept])
+            name: numpy.concatenate([field_array(values[i]) for i in kept])
             for name, values in source.cell_data.items()
         },
     )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 import numpy
 
 from . import tool
-from .grids import grid_of, packed_array, series_of
+from .grids import grid_of, mesh_array, packed_array, series_of
 from .log import QtetError, library
 
 if TYPE_CHECKING:
@@ -131,14 +131,14 @@ def _library():
 
 
 def _points(points):
-    array = packed_array(points, "points")
+    array = packed_array(mesh_array(points, "points"), "points")
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"points have the shape {array.shape}; give (points, 3)")
     return array if array.dtype.name in ("float32", "float64") else array.astype("float64")
 
 
 def _cells(cells):
-    array = packed_array(cells, "cells")
+    array = packed_array(mesh_array(cells, "cells"), "cells")
     if array.ndim != 2 or array.shape[1] != 4 or array.dtype.kind not in "iu":
         raise ValueError(
             f"cells are {array.dtype} of the shape {array.shape}; give integers of "

@@ -158,6 +158,41 @@ def shapes_and_types_do_not_matter():
     assert flags == qtet.simplify(points, cells, None, {"Flag": (cells[:, 0] % 2).astype("uint8")})
 
 
+def a_mask_is_missing_values():
+    points, cells, point_data, cell_data = grid(3)
+    heat, part = point_data["Heat"], cell_data["Region"]
+    hidden, gone = heat < 0.3, part == 1
+    filled = numpy.where(hidden, numpy.float32(9.96921e36), heat)
+    masked = numpy.ma.array(filled, mask=hidden)
+    parts = numpy.ma.array(part, mask=gone)
+    with_nan = {"Heat": numpy.where(hidden, numpy.float32("nan"), heat)}
+    part_nan = {"Part": numpy.where(gone, numpy.nan, part)}
+    expected = qtet.simplify(points, cells, with_nan, part_nan)
+    assert qtet.simplify(points, cells, {"Heat": masked}, {"Part": parts}) == expected
+    mesh = Mesh(points, cells, {"Heat": masked}, {"Part": parts})
+    assert qtet.simplify(mesh) == expected
+    rows = [numpy.ma.array(points[i], mask=hidden[i]) for i in range(len(points))]
+    table = numpy.where(hidden[:, None], numpy.nan, points)
+    assert qtet.simplify(points, cells, {"P": rows}) == qtet.simplify(points, cells, {"P": table})
+    bare = numpy.ma.array(part, mask=False)
+    whole = qtet.simplify(points, cells, None, {"Part": part})
+    assert qtet.simplify(points, cells, None, {"Part": bare}) == whole
+    steps = [Mesh(points, cells, {}, {"Part": values}) for values in (parts, bare)]
+    qtet.simplify(steps, times=[0, 1], path=OUT / "masked.qtet")
+    with qtet.open(OUT / "masked.qtet") as log:
+        assert log.times == [0, 1] and {f.type for f in log.fields} == {"float64"}, log.fields
+    some = numpy.ma.array(points, mask=numpy.repeat(hidden[:, None], 3, axis=1))
+    few = numpy.ma.array(cells, mask=numpy.repeat(gone[:, None], 4, axis=1))
+    for grid_or_points, others in (
+        (some, (cells,)),
+        (list(some), (cells,)),
+        (points, (few,)),
+        (Mesh(some, cells, {}, {}), ()),
+        (Mesh(points, few, {}, {}), ()),
+    ):
+        refused(ValueError, "are masked", lambda: qtet.simplify(grid_or_points, *others))
+
+
 def what_is_wrong_is_an_exception():
     points, cells, point_data, cell_data = grid(3)
     refused(ValueError, "(points, 3)", lambda: qtet.simplify(points[:, :2], cells))
@@ -289,6 +324,7 @@ def ctrl_c_ends_the_work(mesh):
 logs_are_the_tools()
 shapes_and_types_do_not_matter()
 what_is_wrong_is_an_exception()
+a_mask_is_missing_values()
 what_a_log_holds_outlives_it()
 grids_with_times_are_a_series()
 large = grid(32)  # a second and a half: reports come every 0.1 s
