@@ -226,9 +226,11 @@ def _of_meshio(source):
         raise ValueError(f"points have the shape {points.shape}; give (points, 3)")
     return Grid(
         points,
-        numpy.concatenate([numpy.full(len(nodes), _NUMBERS[kind], "uint8") for kind, nodes in blocks]),
+        numpy.repeat([_NUMBERS[kind] for kind, _ in blocks], [len(nodes) for _, nodes in blocks]),
         numpy.concatenate([nodes.ravel() for _, nodes in blocks]),
-        numpy.cumsum(numpy.concatenate([numpy.full(*nodes.shape) for _, nodes in blocks])),
+        numpy.cumsum(
+            numpy.concatenate([numpy.full(len(nodes), nodes.shape[1]) for _, nodes in blocks])
+        ),
         source.point_data,
         {
             name: numpy.concatenate([field_array(values[i]) for i in kept])

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
+import errno
 import os
 import pathlib
 import re
@@ -199,6 +200,27 @@ def version():
     text = library().qtet_version_text
     text.restype = _text
     return text().decode()
+
+
+def check_output(path: str | os.PathLike[str]) -> None:
+    """Refuses a place for a log before the work, as the program `qtet simplify` does, and a file
+    that holds something else. Raises ValueError for another ending, and OSError."""
+    file = pathlib.Path(path)
+    if file.suffix != ".qtet":
+        raise ValueError(f"the output {file} must end in .qtet")
+    folder = file.resolve().parent
+    if not folder.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "make the output's folder first", str(folder))
+    if file.is_dir():
+        raise IsADirectoryError(errno.EISDIR, "the output is a folder", str(file))
+    if not os.access(folder, os.W_OK):
+        raise PermissionError(errno.EACCES, "the output's folder cannot be written", str(folder))
+    if file.exists():
+        with file.open("rb") as old:
+            if old.read(len(_MAGIC)) not in (_MAGIC, b""):
+                raise FileExistsError(
+                    errno.EEXIST, "the output is no log; choose another name", str(file)
+                )
 
 
 class _Remote:

@@ -13,7 +13,7 @@ import numpy
 
 from . import tool
 from .grids import grid_of, mesh_array, packed_array, series_of
-from .log import QtetError, library
+from .log import QtetError, check_output, library
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -334,7 +334,8 @@ def simplify(
     field_weights: Mapping[str, float] | None = None,
     regions: str | None = None,
 ) -> Any:
-    """Makes the log of a mesh: its bytes, or, with `path`, a file (and the path).
+    """Makes the log of a mesh: its bytes, or, with `path`, a file (and the path). The path ends in
+    .qtet; a file there is replaced if it is a log.
 
     points      (n, 3) floats, finite, in any unit of length; or a grid: an unstructured grid of VTK
                 or PyVista, or a mesh of meshio, with any volume cells and its own data
@@ -364,16 +365,19 @@ def simplify(
     field_weights         {name: what a point field counts, 1 otherwise}
     regions               the name of a cell field whose values keep their topology
 
-    Raises ValueError (arrays of another shape or type, a word that is not known), QtetError (a mesh
-    that cannot be simplified, options out of range, a file that cannot be written), Cancelled,
-    MemoryError. Ctrl-C ends the work soon, and KeyboardInterrupt is raised. Other threads of Python
-    run meanwhile; the arrays must not change."""
+    Raises ValueError (arrays of another shape or type, a word that is not known), OSError (a file
+    that cannot be written, FileExistsError where it is no log), QtetError (a mesh that cannot be
+    simplified, options out of range), Cancelled, MemoryError. Ctrl-C ends the work soon, and
+    KeyboardInterrupt is raised. Other threads of Python run meanwhile; the arrays must not
+    change."""
     words = {
         name: value
         for name, value in locals().items()
         if name
         not in ("points", "cells", "point_data", "cell_data", "times", "path", "progress", "source")
     }
+    if path is not None:
+        check_output(path)
     if times is not None and cells is not None:
         raise ValueError("times are those of grids; call a field of an instant NAME@TIME")
     if cells is None:

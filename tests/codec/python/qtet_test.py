@@ -220,11 +220,32 @@ def what_is_wrong_is_an_exception():
         lambda: qtet.simplify(points, cells, field_weights={"Heat": 1}),
     )
     refused(qtet.QtetError, "0..1", lambda: qtet.simplify(points, cells, target_ratio=2))
-    refused(
-        qtet.QtetError,
-        "not-found: ",
-        lambda: qtet.simplify(points, cells, path=OUT / "no" / "log.qtet"),
-    )
+
+
+def only_a_log_is_overwritten():
+    points, cells, _, _ = grid(2)
+    (OUT / "folder.qtet").mkdir(exist_ok=True)
+    (OUT / "link.qtet").unlink(missing_ok=True)
+    (OUT / "link.qtet").symlink_to("mesh.vtu")
+    for name in ("mesh.vtu", "mesh.qtet"):
+        (OUT / name).write_text("<VTKFile>")
+    mixed = Mesh(points, cells, {}, {})
+    mixed.cells.append(Block("pyramid", numpy.array([[0, 1, 4, 3, 9]])))
+    for arguments in ((points, cells), (Mesh(points, cells, {}, {}),), (mixed,)):
+        for name, kind, word in (
+            ("mesh.vtu", ValueError, "must end in .qtet"),
+            ("mesh", ValueError, "must end in .qtet"),
+            ("mesh.qtet", FileExistsError, "no log"),
+            ("link.qtet", FileExistsError, "no log"),
+            ("folder.qtet", IsADirectoryError, "folder.qtet"),
+            ("no/log.qtet", FileNotFoundError, "folder first"),
+        ):
+            refused(kind, word, lambda: qtet.simplify(*arguments, path=OUT / name))
+    assert (OUT / "mesh.vtu").read_text() == (OUT / "mesh.qtet").read_text() == "<VTKFile>"
+    log = OUT / "again.qtet"
+    log.write_bytes(b"")
+    for _ in range(2):
+        assert qtet.simplify(points, cells, path=str(log)) == str(log)
 
 
 def what_a_log_holds_outlives_it():
@@ -324,6 +345,7 @@ def ctrl_c_ends_the_work(mesh):
 logs_are_the_tools()
 shapes_and_types_do_not_matter()
 what_is_wrong_is_an_exception()
+only_a_log_is_overwritten()
 a_mask_is_missing_values()
 what_a_log_holds_outlives_it()
 grids_with_times_are_a_series()
