@@ -7,11 +7,13 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "codec/api/qtet.h"
 #include "codec/refine/log_file.h"
 #include "codec/refine/refiner.h"
 #include "proto/manifest.h"
+#include "proto/series.h"
 
 namespace qtet {
 
@@ -38,11 +40,13 @@ struct qtet_log : qtet::Failure {
 
   std::optional<qtet::LogFile> file;
   qtet::Manifest manifest;               // of `file`
+  std::vector<qtet::Series> series;      // of `manifest`
   std::optional<qtet::Refiner> refiner;  // of `file`, with a complete level
 
   // Checks of a call's arguments. Each returns QTET_OK or refuses.
   qtet_status needField(std::uint32_t field);
   qtet_status needLevel(std::uint32_t level);
+  qtet_status needSeries(std::uint32_t number);
   qtet_status needPlace(const void* place) {
     return place != nullptr ? QTET_OK
                             : refuse(QTET_BAD_ARGUMENT, "the place for the answer is null");

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <span>
+#include <utility>
 
 #include "codec/api/c_api_handle.h"
 #include "codec/log/log_levels.h"
@@ -30,6 +32,7 @@ qtet_status take(qtet_log* log, Result<LogFile> file, const std::string& path) {
     if (!path.empty()) manifest.error().message = path + ": " + manifest.error().message;
     return log->refuse(manifest.error());
   }
+  log->series = qtet::seriesOf(std::span(std::as_const(manifest->fields)));
   log->manifest = std::move(*manifest);
   log->file = std::move(*file);
   return QTET_OK;
@@ -39,9 +42,10 @@ void close(qtet_log* log) {
   log->refiner.reset();
   log->file.reset();
   log->manifest = {};
+  log->series.clear();
 }
 
-/// Bytes of the structs of 0.1: to the end of the member that was its last. No caller has fewer.
+/// Bytes of the structs' first versions: to the end of the last member. No caller has fewer.
 template <class Info>
 constexpr std::size_t kFirstBytes = 0;
 template <>
@@ -50,6 +54,9 @@ constexpr std::size_t kFirstBytes<qtet_log_info> =
 template <>
 constexpr std::size_t kFirstBytes<qtet_field_info> =
     offsetof(qtet_field_info, type) + sizeof(qtet_field_info::type);
+template <>
+constexpr std::size_t kFirstBytes<qtet_series_info> =
+    offsetof(qtet_series_info, name) + sizeof(qtet_series_info::name);
 template <>
 constexpr std::size_t kFirstBytes<qtet_level_info> =
     offsetof(qtet_level_info, volumeKept) + sizeof(qtet_level_info::volumeKept);
@@ -92,11 +99,15 @@ qtet_log_info infoOf(const qtet_log& log) {
   return info;
 }
 
+std::uint32_t associationOf(const ManifestField& field) {
+  return field.association == "cell" ? QTET_CELL : QTET_POINT;
+}
+
 qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
   const ManifestField& f = log.manifest.fields[field];
   qtet_field_info info{};
   info.components = f.components;
-  info.association = f.association == "cell" ? QTET_CELL : QTET_POINT;
+  info.association = associationOf(f);
   info.bits = static_cast<std::uint32_t>(f.bits);
   info.step = f.step;
   for (std::size_t c = 0; c < f.components; ++c) info.minimum[c] = f.minimum[c];
@@ -172,6 +183,13 @@ qtet_status qtet_log::needLevel(std::uint32_t level) {
                                                     "; the last is " + std::to_string(last));
 }
 
+qtet_status qtet_log::needSeries(std::uint32_t number) {
+  return number < series.size()
+             ? QTET_OK
+             : refuse(QTET_NOT_FOUND, "there is no series " + std::to_string(number) +
+                                          "; the log has " + std::to_string(series.size()));
+}
+
 qtet_log* qtet_log_create() { return new (std::nothrow) qtet_log; }
 void qtet_log_destroy(qtet_log* log) { delete log; }
 const char* qtet_log_error(const qtet_log* log) {
@@ -232,5 +250,39 @@ qtet_status qtet_log_find_field(qtet_log* log, const char* name, uint32_t* field
       return QTET_OK;
     }
     return log->refuse(qtet::noSuchField(log->manifest, name));
+  });
+}
+
+uint32_t qtet_log_series_count(const qtet_log* log) {
+  return log != nullptr ? static_cast<std::uint32_t>(log->series.size()) : 0;
+}
+
+qtet_status qtet_log_get_series(qtet_log* log, uint32_t series, size_t infoBytes,
+                                qtet_series_info* info) {
+  return withLog(log, [&] {
+    if (const qtet_status status = log->needSeries(series)) return status;
+    const qtet::Series& found = log->series[series];
+    return give(
+        log,
+        qtet_series_info{associationOf(log->manifest.fields[found.fields.front()]),
+                         static_cast<std::uint32_t>(found.fields.size()), found.name.c_str()},
+        infoBytes, info);
+  });
+}
+
+qtet_status qtet_log_copy_series(qtet_log* log, uint32_t series, size_t count, double* times,
+                                 uint32_t* fields) {
+  return withLog(log, [&]() -> qtet_status {
+    if (const qtet_status status = log->needSeries(series)) return status;
+    const qtet::Series& found = log->series[series];
+    if (count < found.times.size())
+      return log->refuse(QTET_BAD_ARGUMENT, "the arrays have room for " + std::to_string(count) +
+                                                " instants, the series has " +
+                                                std::to_string(found.times.size()));
+    if (times != nullptr) std::ranges::copy(found.times, times);
+    if (fields != nullptr)
+      std::ranges::transform(found.fields, fields,
+                             [](std::size_t f) { return static_cast<std::uint32_t>(f); });
+    return QTET_OK;
   });
 }

@@ -162,6 +162,23 @@ QTET_API qtet_status qtet_log_find_field(qtet_log* log, const char* name, uint32
 QTET_API qtet_status qtet_log_field_error(qtet_log* log, uint32_t level, uint32_t field,
                                           double* rms, double* max);
 
+/* ---- series: fields NAME@TIME that agree in association, components and type, two and more */
+
+typedef struct {
+  uint32_t association; /* QTET_POINT or QTET_CELL */
+  uint32_t instants;    /* 2 and more */
+  const char* name;     /* without @TIME; a series of points and one of cells may share it */
+} qtet_series_info;
+
+/* Since 0.4. In the order of their first fields; 0 without a log. */
+QTET_API uint32_t qtet_log_series_count(const qtet_log* log);
+QTET_API qtet_status qtet_log_get_series(qtet_log* log, uint32_t series, size_t infoBytes,
+                                         qtet_series_info* info);
+/* Since 0.4. Writes a series' times, ascending, and the number of each time's field. The caller's
+ * arrays have `count` entries; either may be null. */
+QTET_API qtet_status qtet_log_copy_series(qtet_log* log, uint32_t series, size_t count,
+                                          double* times, uint32_t* fields);
+
 /* ---- choosing a level */
 
 /* The finest level within a bound: of at most `most` tetrahedra, or decodable from the log's first

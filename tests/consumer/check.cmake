@@ -122,6 +122,13 @@ foreach(program IN LISTS programs)
   endif()
 endforeach()
 
+foreach(program IN LISTS programs)
+  run(${program} ${SOURCE}/tests/golden/valid/series.qtet 0)
+  if(NOT said MATCHES "\nseries T: 6 instants, 0 to 2.5\nseries C: 3 instants, 0 to 2\n")
+    message(FATAL_ERROR "${program} of a log with two series says '${said}'")
+  endif()
+endforeach()
+
 # ---- a log that a program makes is the tool's of the same mesh
 
 foreach(name IN ITEMS solid cell-fields no-fields)

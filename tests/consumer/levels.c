@@ -1,5 +1,5 @@
-/* An example of a program that uses the library: prints a log's levels, then the volume and the
- * fields' ranges at one of them.
+/* An example of a program that uses the library. It prints a log's levels and series, then the
+ * volume and the fields' ranges at one level.
  *   levels LOG.qtet LEVEL     "full" is the last level */
 #include <qtet/qtet.h>
 #include <stdio.h>
@@ -32,6 +32,18 @@ static void printRange(const char* name, const double* values, size_t count) {
   printf("%s: %.9g to %.9g\n", name, low, high);
 }
 
+static int printSeries(qtet_log* log, uint32_t number) {
+  qtet_series_info series;
+  if (qtet_log_get_series(log, number, sizeof series, &series)) return 0;
+  double* times = malloc(series.instants * sizeof *times);
+  const int isThere = times && !qtet_log_copy_series(log, number, series.instants, times, NULL);
+  if (isThere)
+    printf("series %s: %u instants, %.9g to %.9g\n", series.name, series.instants, times[0],
+           times[series.instants - 1]);
+  free(times);
+  return isThere;
+}
+
 int main(int argc, char** argv) {
   if (argc != 3) return fprintf(stderr, "levels LOG.qtet LEVEL\n"), 2;
   qtet_log* log = qtet_log_create();
@@ -45,6 +57,8 @@ int main(int argc, char** argv) {
            level.tetrahedra, level.vertices, level.boundaryTriangles,
            (unsigned long long)level.prefixBytes);
   }
+  for (uint32_t i = 0; i < qtet_log_series_count(log); ++i)
+    if (!printSeries(log, i)) return failed(log);
   if (qtet_log_refine(log,
                       strcmp(argv[2], "full") ? (uint32_t)strtoul(argv[2], NULL, 10) : QTET_FULL))
     return failed(log);

@@ -5,6 +5,7 @@
 
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
+#include "proto/field_key.h"
 #include "tests/codec/api/c_log.h"
 
 namespace qtet {
@@ -72,6 +73,42 @@ TEST(QtetC, whatALogHoldsIsWhatItsManifestSays) {
       EXPECT_EQ(level.hasError, 0u);
     }
   }
+}
+
+TEST(QtetC, aSeriesHasItsTimesAndTheirFields) {
+  const Handle log = opened(golden("valid/series.qtet"));
+  const std::uint32_t count = qtet_log_series_count(log.get());
+  ASSERT_GT(count, 1u);
+  for (std::uint32_t s = 0; s < count; ++s) {
+    qtet_series_info info{};
+    ASSERT_EQ(qtet_log_get_series(log.get(), s, sizeof info, &info), QTET_OK) << errorOf(log);
+    ASSERT_GE(info.instants, 2u);
+    std::vector<double> times(info.instants + 1, -77);
+    std::vector<std::uint32_t> fields(info.instants + 1, 77);
+    ASSERT_EQ(qtet_log_copy_series(log.get(), s, info.instants, times.data(), fields.data()),
+              QTET_OK);
+    EXPECT_EQ(times.back(), -77) << "written beyond the end";
+    EXPECT_EQ(fields.back(), 77u) << "written beyond the end";
+    for (std::uint32_t i = 0; i < info.instants; ++i) {
+      if (i > 0) EXPECT_LT(times[i - 1], times[i]);
+      qtet_field_info field{};
+      ASSERT_EQ(qtet_log_get_field(log.get(), fields[i], sizeof field, &field), QTET_OK);
+      EXPECT_EQ(field.association, info.association);
+      const auto instant = instantName(field.name);
+      ASSERT_TRUE(instant) << field.name;
+      EXPECT_EQ(instant->series, info.name);
+      EXPECT_EQ(instant->time, times[i]);
+    }
+    EXPECT_EQ(qtet_log_copy_series(log.get(), s, info.instants, nullptr, nullptr), QTET_OK);
+    EXPECT_EQ(qtet_log_copy_series(log.get(), s, info.instants - 1, times.data(), nullptr),
+              QTET_BAD_ARGUMENT);
+    EXPECT_EQ(qtet_log_get_series(log.get(), s, sizeof info - 1, &info), QTET_BAD_ARGUMENT);
+  }
+  qtet_series_info info{};
+  EXPECT_EQ(qtet_log_get_series(log.get(), count, sizeof info, &info), QTET_NOT_FOUND);
+  EXPECT_EQ(qtet_log_copy_series(log.get(), count, 9, nullptr, nullptr), QTET_NOT_FOUND);
+  EXPECT_EQ(qtet_log_series_count(handle().get()), 0u);
+  EXPECT_EQ(qtet_log_series_count(nullptr), 0u);
 }
 
 TEST(QtetC, everyLevelForwardIsTheRefinersMesh) {
