@@ -16,7 +16,8 @@ import importlib
 import os
 from typing import TYPE_CHECKING
 
-from .log import Log, QtetError, version
+from .library import QtetError, version
+from .log import Log
 
 if TYPE_CHECKING:
     from .hosting import serve, view

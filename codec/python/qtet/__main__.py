@@ -5,7 +5,7 @@ import signal
 import sys
 
 from . import hosting, tool
-from .log import QtetError
+from .library import QtetError
 
 
 def _arguments(name, words):

@@ -3,15 +3,21 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Iterable
 
 import numpy
 
-from .log import POINT, Log
+from .library import POINT
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .log import Log
 
 __all__ = ["Arrays", "arrays_of", "field_of"]
 
 
-@dataclass
+@dataclass(repr=False)
 class Arrays:
     """points      (n, 3) float64, in the input's unit
     cells       (m, 4) int32: the points of each tetrahedron
@@ -20,14 +26,19 @@ class Arrays:
     cell_data   {name: (m,) or (m, components)}
     """
 
-    points: numpy.ndarray
-    cells: numpy.ndarray
-    boundary: numpy.ndarray
-    point_data: dict[str, numpy.ndarray]
-    cell_data: dict[str, numpy.ndarray]
+    points: NDArray[Any]
+    cells: NDArray[Any]
+    boundary: NDArray[Any]
+    point_data: dict[str, NDArray[Any]]
+    cell_data: dict[str, NDArray[Any]]
+
+    def __repr__(self) -> str:
+        sizes = f"{len(self.points)} points, {len(self.cells)} cells"
+        names = ", ".join([*self.point_data, *self.cell_data]) or "none"
+        return f"<qtet.Arrays {sizes}, fields: {names}>"
 
 
-def _copied(address, count, width):
+def _copied(address: Any, count: int, width: int) -> NDArray[Any]:
     """Indices out of the library's memory."""
     if count == 0:
         return numpy.empty((0, width), "uint32")
@@ -35,7 +46,7 @@ def _copied(address, count, width):
     return numpy.frombuffer(packed, "uint32").reshape(-1, width)
 
 
-def field_of(log: Log, number: int) -> numpy.ndarray:
+def field_of(log: Log, number: int) -> NDArray[Any]:
     """The values of the field with this number, in the input's type."""
     info = log.fields[number]
     kind = info.type
@@ -48,11 +59,15 @@ def field_of(log: Log, number: int) -> numpy.ndarray:
     return values.reshape(-1, info.components) if info.components > 1 else values
 
 
-def arrays_of(log: Log, fields=None, time=None) -> Arrays:
-    """The log's present mesh, as refine() made it; `fields` and `time` as for Log.arrays(). Raises
-    QtetError for a name that the log does not have."""
-    wanted = log.fields_of(fields, time)
+def arrays_of(
+    log: Log,
+    fields: str | Iterable[str] | None = None,
+    time: float | None = None,
+    method: str | None = None,
+) -> Arrays:
+    """Log.arrays()."""
     vertices, tetrahedra, triangles = log.counts()
+    wanted = log.fields_of(fields, time, method)
     points = numpy.empty((vertices, 3))
     if vertices:
         log.copy_points(points.ctypes.data_as(ctypes.c_void_p), 3 * vertices, True)

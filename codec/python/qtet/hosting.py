@@ -13,7 +13,7 @@ import webbrowser
 from typing import Any, Sequence
 
 from . import tool
-from .log import QtetError
+from .library import QtetError
 
 __all__ = ["Server", "serve", "view"]
 

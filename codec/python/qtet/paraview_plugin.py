@@ -95,7 +95,7 @@ class _QtetSource(VTKPythonAlgorithmBase):
     def _opened(self):
         if self._log is None and self._source:
             self._log = qtet_vtk.Log(self._source)
-            for _, name, _ in self._log.fields_of(time=self._first_time()):
+            for _, name, _ in self._log.fields_of(time=self._first_time(), method="nearest"):
                 self._arrays.AddArray(name)
         return self._log
 
@@ -107,7 +107,7 @@ class _QtetSource(VTKPythonAlgorithmBase):
         if self._choose == BY_BOUNDARY_ERROR:
             return log.level_of_error("boundary", self._percent / 100)
         if self._choose == BY_FIELD_ERROR and log.fields:
-            first = log.fields_of(time=self._first_time())[0][1]
+            first = log.fields_of(time=self._first_time(), method="nearest")[0][1]
             return log.level_of_error(self._field or first, self._percent / 100)
         return self._level
 
@@ -154,9 +154,9 @@ class _QtetSource(VTKPythonAlgorithmBase):
             time, key = self._first_time(), vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
             if time is not None and outInfo.GetInformationObject(0).Has(key):
                 time = outInfo.GetInformationObject(0).Get(key)
-            names = [name for _, name, _ in log.fields_of(time=time)]
+            names = [name for _, name, _ in log.fields_of(time=time, method="nearest")]
             wanted = [name for name in names if self._arrays.ArrayIsEnabled(name)]
-            grid = qtet_vtk.grid_of(log, wanted, time)
+            grid = qtet_vtk.grid_of(log, wanted, time, "nearest")
             if time is not None:
                 grid.GetInformation().Set(grid.DATA_TIME_STEP(), time)
         except (qtet_vtk.QtetError, OSError) as error:

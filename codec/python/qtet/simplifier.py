@@ -13,7 +13,8 @@ import numpy
 
 from . import tool
 from .grids import grid_of, mesh_array, packed_array, series_of
-from .log import QtetError, check_output, library
+from .library import QtetError, library
+from .sources import check_output
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 
-from .log import QtetError, library
+from .library import QtetError, library
 
 __all__ = ["call", "run"]
 

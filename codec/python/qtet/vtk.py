@@ -5,8 +5,12 @@
     mesh = pyvista.wrap(qtet.vtk.read(part, error=("Density", 0.01)))
 
 libqtet.so decodes straight into VTK's own arrays; numpy is not needed."""
+from __future__ import annotations
+
 import array
 import ctypes
+import os
+from typing import Any, Iterable
 
 try:
     from vtkmodules import vtkCommonCore as core
@@ -16,7 +20,8 @@ except ImportError as error:
         "VTK's Python modules are needed (Debian: python3-vtk9; or pip install vtk)"
     ) from error
 
-from .log import CELL, POINT, Log, QtetError
+from .library import CELL, POINT, QtetError
+from .log import Log
 
 __all__ = ["Log", "QtetError", "grid_of", "read", "surface_of"]
 
@@ -36,13 +41,13 @@ _ARRAYS = {
 }
 
 
-def _sized(values, components, tuples):
+def _sized(values: Any, components: int, tuples: int) -> Any:
     values.SetNumberOfComponents(components)
     values.SetNumberOfTuples(tuples)
     return values
 
 
-def _memory(values):
+def _memory(values: Any) -> ctypes.c_void_p:
     """An array's memory for ctypes."""
     return ctypes.cast(
         (ctypes.c_char * (values.GetDataTypeSize() * values.GetNumberOfValues())).from_buffer(
@@ -52,7 +57,7 @@ def _memory(values):
     )
 
 
-def _points(log):
+def _points(log: Log) -> Any:
     info, vertices = log.info, log.counts()[0]
     far = max(abs(x) for x in info.latticeOrigin) > info.latticeStep * 2**_FLOAT_BITS
     is_double = info.latticeBits > _FLOAT_BITS or far
@@ -64,7 +69,7 @@ def _points(log):
     return points
 
 
-def _cells(source, corners, count):
+def _cells(source: Any, corners: int, count: int) -> Any:
     """vtkCellArray of `count` cells, from the library's own indices."""
     connectivity = _sized(core.vtkTypeInt32Array(), 1, corners * count)
     if count:
@@ -77,7 +82,7 @@ def _cells(source, corners, count):
     return cells
 
 
-def _field(log, number):
+def _field(log: Log, number: int) -> Any:
     info = log.fields[number]
     kind = info.type
     tuples = log.field_count(number) // info.components
@@ -94,8 +99,8 @@ def _field(log, number):
     return values
 
 
-def _add_fields(log, grid, fields, time, associations):
-    for number, name, info in log.fields_of(fields, time):
+def _add_fields(log: Log, grid: Any, associations: tuple[int, ...], *choice: Any) -> None:
+    for number, name, info in log.fields_of(*choice):
         if info.association not in associations:
             continue
         data = grid.GetCellData() if info.association == CELL else grid.GetPointData()
@@ -106,36 +111,56 @@ def _add_fields(log, grid, fields, time, associations):
             data.SetActiveScalars(values.GetName())
 
 
-def grid_of(log, fields=None, time=None):
+def grid_of(
+    log: Log,
+    fields: str | Iterable[str] | None = None,
+    time: float | None = None,
+    method: str | None = None,
+) -> Any:
     """The log's present mesh as a vtkUnstructuredGrid of tetrahedra, with the named fields (None:
-    all); with a time each series is one field (Log.fields_of)."""
+    all); with a time each series is one field. Arguments and exceptions are those of
+    Log.arrays()."""
     grid = model.vtkUnstructuredGrid()
     grid.SetPoints(_points(log))
     cells = _cells(log.c.qtet_log_tetrahedra(log.handle), 4, log.counts()[1])
     grid.SetCells(model.VTK_TETRA, cells)
-    _add_fields(log, grid, fields, time, (POINT, CELL))
+    _add_fields(log, grid, (POINT, CELL), fields, time, method)
     return grid
 
 
-def surface_of(log, fields=None, time=None):
+def surface_of(
+    log: Log,
+    fields: str | Iterable[str] | None = None,
+    time: float | None = None,
+    method: str | None = None,
+) -> Any:
     """The log's present boundary as a vtkPolyData of triangles, with the points of the whole mesh
     and its point fields."""
     surface = model.vtkPolyData()
     surface.SetPoints(_points(log))
     surface.SetPolys(_cells(log.c.qtet_log_boundary(log.handle), 3, log.counts()[2]))
-    _add_fields(log, surface, fields, time, (POINT,))
+    _add_fields(log, surface, (POINT,), fields, time, method)
     return surface
 
 
-def read(source, level=None, tetrahedra=None, error=None, fields=None, time=None):
-    """A level of a log (a file or a URL) as a vtkUnstructuredGrid.
+def read(
+    source: str | os.PathLike[str] | bytes,
+    level: int | None = None,
+    tetrahedra: float | None = None,
+    error: tuple[str, float] | None = None,
+    fields: str | Iterable[str] | None = None,
+    time: float | None = None,
+    method: str | None = None,
+) -> Any:
+    """A level of a log (a file, its bytes or a URL) as a vtkUnstructuredGrid.
 
     level       its number, 0 the coarsest; without anything: the whole mesh
     tetrahedra  or the finest level of at most so many
     error       or ("NAME", E): the coarsest at which the field's rms error is at most E of its
                 range, or the distance ("boundary", E)
     fields      names; None: all
-    time        series at this time alone, by their names"""
+    time        series at exactly this time alone, by their names
+    method      "nearest": at the nearest time"""
     if sum(choice is not None for choice in (level, tetrahedra, error)) > 1:
         raise ValueError("give one of level, tetrahedra and error")
     with Log(source) as log:
@@ -144,4 +169,4 @@ def read(source, level=None, tetrahedra=None, error=None, fields=None, time=None
         elif error is not None:
             level = log.level_of_error(*error)
         log.refine(log.last_level if level is None else level)
-        return grid_of(log, fields, time)
+        return grid_of(log, fields, time, method)

@@ -291,13 +291,14 @@ def grids_with_times_are_a_series():
         assert log.times == times and list(log.series) == ["Heat"]
         assert {"Heat@-1", "Heat@0.5", "Heat@2.0000001", "Late@2.0000001"} <= set(log.field_names)
         log.refine(max(log.level_of_error("Heat", 0.001), log.last_level))
-        assert set(log.arrays(time=0).point_data) == {"Heat", "Fixed", "Late@2.0000001"}
+        near = log.arrays(time=0, method="nearest").point_data
+        assert set(near) == {"Heat", "Fixed", "Late@2.0000001"}
         for time, nearest in ((-9, -1), (-0.25, -1), (-0.2, 0.5), (9, 2.0000001)):
-            at = log.field("Heat", time)
+            at = log.field("Heat", time, "nearest")
             assert (at == log.field(f"Heat@{nearest}")).all()
             assert abs(at - log.field("Fixed") * (nearest + 2)).max() < 0.003
         refused(qtet.QtetError, "Heat (give a time)", lambda: log.field("Heat"))
-        refused(qtet.QtetError, "'Fixed', 'Heat', 'Height'", lambda: log.field("Cold", 0))
+        refused(qtet.QtetError, "'Fixed', 'Heat', 'Height'", lambda: log.field("Cold", 0.5))
     qtet.simplify(grids[:2], times=times[:2], time_statistics=True, path=path)
     with qtet.open(path) as log:
         log.refine(log.last_level)
@@ -308,6 +309,43 @@ def grids_with_times_are_a_series():
     refused(ValueError, "NAME@TIME", lambda: qtet.simplify(points, cells, times=[1]))
     grids[1] = Mesh(points * 2, cells, {}, {})
     refused(ValueError, "points at the time 0.5", lambda: qtet.simplify(grids, times=times))
+
+
+def a_time_is_exact_unless_the_nearest_is_asked_for():
+    points, cells, _, _ = grid(2)
+    temperature, middle = points[:, 0], points[cells].mean(axis=1)[:, 0]
+    point_data = {"T@0": temperature, "T@1": temperature + 1, "Fixed": temperature}
+    cell_data = {"T@0.1": middle + 2, "T@1": middle + 3, "U@5": middle, "U@6": middle + 1}
+    log = qtet.open(qtet.simplify(points, cells, point_data, cell_data))
+    log.refine(log.last_level)
+    assert log.series["T"].keys() == {0, 0.1, 1} and log.times == [0, 0.1, 1, 5, 6]
+    for name, time, own, choice in (
+        ("T", 0, "T@0", {}),
+        ("T", 0.1, "T@0.1", {}),
+        ("T", 0.1 + 1e-12, "T@0.1", {}),
+        ("T", numpy.float32(1), "point:T@1", {}),
+        ("cell:T", 1, "cell:T@1", {}),
+        ("T", 0.06, "T@0.1", {"method": "nearest"}),
+        ("point:T", 0.06, "T@0", {"method": "nearest"}),
+        ("T", 99, "point:T@1", {"method": "nearest"}),
+        ("Fixed", 99, "Fixed", {}),
+    ):
+        assert (log.field(name, time, **choice) == log.field(own)).all(), (name, time)
+    at = log.arrays("T", time=1)
+    assert list(at.point_data) == list(at.cell_data) == ["T"]
+    assert not log.arrays(time=0.1).point_data.keys() - {"Fixed"}
+    refused(KeyError, "its times are 0, 0.1, 1;", lambda: log.field("T", time=99))
+    refused(KeyError, "its times are 0.1, 1;", lambda: log.field("cell:T", time=0))
+    refused(KeyError, "its times are 0, 0.1, 1, 5, 6;", lambda: log.arrays(time=99))
+    refused(KeyError, "its times are 5, 6;", lambda: log.arrays(["T", "U"], time=1))
+    for time in (numpy.nan, numpy.inf):
+        for choice in (None, "nearest"):
+            refused(ValueError, "finite", lambda: log.field("T", time, choice))
+            refused(ValueError, "finite", lambda: log.arrays(time=time, method=choice))
+    refused(ValueError, "'linear'", lambda: log.field("T", 0, "linear"))
+    plain = qtet.open(qtet.simplify(points, cells, {"Fixed": temperature}))
+    plain.refine(0)
+    refused(KeyError, "its times are none", lambda: plain.arrays(time=0))
 
 
 def progress_is_told_and_may_end_the_work(mesh):
@@ -349,6 +387,7 @@ only_a_log_is_overwritten()
 a_mask_is_missing_values()
 what_a_log_holds_outlives_it()
 grids_with_times_are_a_series()
+a_time_is_exact_unless_the_nearest_is_asked_for()
 large = grid(32)  # a second and a half: reports come every 0.1 s
 progress_is_told_and_may_end_the_work(large)
 ctrl_c_ends_the_work(large)

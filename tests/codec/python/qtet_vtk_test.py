@@ -77,7 +77,7 @@ def compare(grid, expected, what):
 def refused(call, word):
     try:
         call()
-    except (qtet_vtk.QtetError, ValueError) as error:
+    except (qtet_vtk.QtetError, ValueError, OSError) as error:
         assert word in str(error), error
         return
     raise AssertionError(f"accepted; expected a complaint with '{word}'")

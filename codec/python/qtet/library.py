@@ -1,0 +1,186 @@
+"""libqtet.so: where it is, and what its structs say (codec/api/qtet.h)."""
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import os
+import pathlib
+from dataclasses import dataclass
+from typing import Any
+
+_u32, _u64, _f64, _text = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_char_p
+POINT, CELL = 0, 1
+
+
+class QtetError(RuntimeError):
+    """What went wrong, where, and what to do, in the words of the library."""
+
+
+class CLogInfo(ctypes.Structure):
+    _fields_ = [
+        ("versionMajor", _u32),
+        ("versionMinor", _u32),
+        ("bytes", _u64),
+        ("chunks", _u32),
+        ("levels", _u32),
+        ("fields", _u32),
+        ("latticeBits", _u32),
+        ("latticeStep", _f64),
+        ("latticeOrigin", _f64 * 3),
+        ("digest", _text),
+        ("source", _text),
+        ("generator", _text),
+    ]
+
+
+class CFieldInfo(ctypes.Structure):
+    _fields_ = [
+        ("components", _u32),
+        ("association", _u32),
+        ("bits", _u32),
+        ("reserved", _u32),
+        ("step", _f64),
+        ("minimum", _f64 * 16),
+        ("range", _f64 * 2),
+        ("bytes", _u64),
+        ("name", _text),
+        ("type", _text),
+    ]
+
+
+class CLevelInfo(ctypes.Structure):
+    _fields_ = [
+        ("tetrahedra", _u32),
+        ("vertices", _u32),
+        ("boundaryTriangles", _u32),
+        ("hasError", _u32),
+        ("prefixBytes", _u64),
+        ("boundaryDistance", _f64),
+        ("toLevelMean", _f64),
+        ("toLevelMax", _f64),
+        ("toOriginalMean", _f64),
+        ("toOriginalMax", _f64),
+        ("volumeKept", _f64),
+        ("volumeLost", _f64),
+        ("volumeGained", _f64),
+    ]
+
+
+class CSeriesInfo(ctypes.Structure):
+    _fields_ = [("association", _u32), ("instants", _u32), ("name", _text)]
+
+
+# Copies in Python's own types, with the members of qtet.h: they outlive their log.
+@dataclass(frozen=True)
+class LogInfo:
+    versionMajor: int
+    versionMinor: int
+    bytes: int
+    chunks: int
+    levels: int
+    fields: int
+    latticeBits: int
+    latticeStep: float
+    latticeOrigin: tuple[float, ...]
+    digest: str
+    source: str
+    generator: str
+
+
+@dataclass(frozen=True)
+class FieldInfo:
+    components: int
+    association: int
+    bits: int
+    step: float
+    minimum: tuple[float, ...]  # of each component
+    range: tuple[float, ...]  # the least and the largest
+    bytes: int
+    name: str
+    type: str
+
+
+@dataclass(frozen=True)
+class LevelInfo:
+    tetrahedra: int
+    vertices: int
+    boundaryTriangles: int
+    hasError: bool
+    prefixBytes: int
+    boundaryDistance: float
+    toLevelMean: float
+    toLevelMax: float
+    toOriginalMean: float
+    toOriginalMax: float
+    volumeKept: float
+    volumeLost: float
+    volumeGained: float
+
+
+def _plain(value: Any) -> Any:
+    """A member of a struct without the library's memory."""
+    if isinstance(value, bytes):
+        return value.decode(errors="replace")
+    return tuple(value) if isinstance(value, ctypes.Array) else value
+
+
+def members_of(struct: ctypes.Structure) -> dict[str, Any]:
+    names = (entry[0] for entry in struct._fields_)
+    return {name: _plain(getattr(struct, name)) for name in names if name != "reserved"}
+
+
+def _candidates() -> list[str]:
+    """Where libqtet.so may be: QTET_LIBRARY, in this folder, beside an installed copy of it, where
+    the system's linker looks."""
+    if os.environ.get("QTET_LIBRARY"):
+        return [os.environ["QTET_LIBRARY"]]
+    here = pathlib.Path(__file__).resolve().parent
+    installed = [str(found) for found in here.glob("libqtet.so")] + [
+        str(found)
+        for up in list(here.parents)[:4]
+        for below in ("lib", "lib64", "lib/*-linux-gnu")
+        for found in up.glob(below + "/libqtet.so.0")
+    ]
+    return [*installed, "libqtet.so.0", ctypes.util.find_library("qtet") or "libqtet.so"]
+
+
+_loaded: ctypes.CDLL | None = None
+
+
+def library() -> ctypes.CDLL:
+    """libqtet.so, loaded once."""
+    global _loaded
+    if _loaded is not None:
+        return _loaded
+    tried = []
+    for name in _candidates():
+        try:
+            c = ctypes.CDLL(name)
+        except OSError as error:
+            tried.append(str(error))
+            continue
+        for function, result in (
+            ("create", ctypes.c_void_p),
+            ("error", _text),
+            ("tetrahedra", ctypes.c_void_p),
+            ("boundary", ctypes.c_void_p),
+            ("lattice_points", ctypes.c_void_p),
+            ("field_count", ctypes.c_size_t),
+            ("series_count", _u32),
+            ("level", _u32),
+        ):
+            getattr(c, "qtet_log_" + function).restype = result
+        _loaded = c
+        return c
+    raise QtetError(
+        "libqtet.so is not found ("
+        + "; ".join(tried)
+        + "); install libqtet0, or set QTET_LIBRARY to its path"
+    )
+
+
+def version() -> str:
+    """That of libqtet.so: "0.3.0"."""
+    text = library().qtet_version_text
+    text.restype = _text
+    return text().decode()
