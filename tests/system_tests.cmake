@@ -82,6 +82,8 @@ if(QTET_VTK_PYTHON AND NOT QTET_SANITIZE)
     ${here}/codec/python/qtet_vtk_test.py ${library} ${valid} ${out})
   qtet_system_test(qtet_python ROOM codec COMMAND ${QTET_VTK_PYTHON}
     ${here}/codec/python/qtet_test.py ${library} ${out}/qtet_python)
+  qtet_system_test(python_types ROOM codec COMMAND ${QTET_VTK_PYTHON}
+    ${here}/codec/python/types_test.py ${modules} ${out}/python_types)
   qtet_system_test(wheel ROOM codec COMMAND ${here}/codec/python/wheel_test.sh ${QTET_VTK_PYTHON}
     ${CMAKE_BINARY_DIR}/bin ${out}/wheel)
   qtet_system_test(paraview ROOM codec COMMAND ${here}/codec/python/paraview.sh ${library} ${out})

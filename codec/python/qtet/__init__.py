@@ -3,7 +3,7 @@
     import qtet
     log = qtet.simplify(points, cells, point_data={"Heat": heat}, target_ratio=0.02)  # bytes
     log = qtet.simplify(grid)  # of PyVista, VTK or meshio
-    with qtet.open("part.qtet") as log:  # or a URL
+    with qtet.open("part.qtet") as log:  # or a URL, or bytes
         log.refine(0)
         print(log.counts())
     qtet.view("part.vtu")  # in the browser of this machine
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import importlib
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .library import QtetError, version
 from .log import Log
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["Cancelled", "Log", "QtetError", "open", "page", "serve", "show", "simplify", "view"]
 
 
-def open(source: str | os.PathLike[str]) -> Log:
-    """The log in a file or behind a URL (Log); with `with` it is closed again."""
+def open(source: str | os.PathLike[str] | bytes | bytearray | memoryview) -> Log:
+    """The log in a file, in bytes or behind a URL (Log); with `with` it is closed again."""
     return Log(source)
 
 
@@ -43,7 +43,11 @@ _MODULES = {
 }
 
 
-def __getattr__(name):
+def __dir__() -> list[str]:
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__")), "__version__"})
+
+
+def __getattr__(name: str) -> Any:
     if name in _MODULES:
         return getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
     if name == "__version__":

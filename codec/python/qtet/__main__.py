@@ -1,14 +1,17 @@
 """The command `qtet`, also as `python -m qtet`."""
+from __future__ import annotations
+
 import argparse
 import os
 import signal
 import sys
+import webbrowser
 
 from . import hosting, tool
 from .library import QtetError
 
 
-def _arguments(name, words):
+def _arguments(name: str, words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     is_view = name == "view"
     parser = argparse.ArgumentParser(
         prog=f"qtet {name}",
@@ -31,7 +34,7 @@ def _arguments(name, words):
     return given, rest
 
 
-def _serve(name, words):
+def _serve(name: str, words: list[str]) -> int:
     given, options = _arguments(name, words)
     # As Ctrl-C does: the temporary files go.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -41,16 +44,17 @@ def _serve(name, words):
             print("qtet: Ctrl-C stops", file=sys.stderr)
             has_desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
             if name == "view" and has_desktop and not given.no_open:
-                hosting.webbrowser.open(server.url)
+                webbrowser.open(server.url)
             server.wait()
+        return 0
     except KeyboardInterrupt:
         return 0
-    except QtetError as error:
+    except (QtetError, OSError) as error:
         print(f"qtet: {error}", file=sys.stderr)
         return 1
 
 
-def main():
+def main() -> int:
     words = sys.argv[1:]
     if words[:1] in (["view"], ["serve"]):
         return _serve(words[0], words[1:])

@@ -1,13 +1,22 @@
 """Meshes of other packages as arrays, and as .vtu files for the tool: unstructured grids of VTK and
 PyVista, and meshes of meshio."""
+from __future__ import annotations
+
 import json
+import os
+import re
 import struct
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
 import numpy
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 __all__ = ["Grid", "grid_of", "mesh_array", "packed_array", "series_of"]
 
+_ma: Any = numpy.ma  # which has no types
 # VTK's numbers of volume cells by meshio's names. Both order the nodes alike.
 _NUMBERS = {
     "tetra": 10,
@@ -43,28 +52,29 @@ _VTU_TYPES = {
 _WIDENED = {"bool": "uint8", "float16": "float32"}
 
 
-def field_array(values):
+def field_array(values: Any) -> NDArray[Any]:
     """A field's array. What a mask covers is a missing value, NaN: masked integers become
     float64."""
     is_list = isinstance(values, (list, tuple))
-    if is_list and any(numpy.ma.isMaskedArray(part) for part in values):
-        values = numpy.ma.array(values)
-    if not numpy.ma.is_masked(values):
+    if is_list and any(_ma.isMaskedArray(part) for part in values):
+        values = _ma.array(values)
+    if not _ma.is_masked(values):
         return numpy.asarray(values)
     kind = values.dtype if values.dtype.kind in "fc" else numpy.dtype("float64")
-    return values.astype(kind).filled(numpy.nan)
+    filled: NDArray[Any] = values.astype(kind).filled(numpy.nan)
+    return filled
 
 
-def mesh_array(values, what):
+def mesh_array(values: Any, what: str) -> NDArray[Any]:
     """An array of points or cells. Raises ValueError where a mask covers some."""
     array = field_array(values)
     parts = values if isinstance(values, (list, tuple)) else [values]
-    if any(numpy.ma.is_masked(part) for part in parts):
+    if any(_ma.is_masked(part) for part in parts):
         raise ValueError(f"some {what} are masked; leave them out, or fill them")
     return array
 
 
-def packed_array(values, what):
+def packed_array(values: Any, what: str) -> NDArray[Any]:
     """A packed array of one of the types that a log has, in the machine's order of bytes."""
     array = field_array(values)
     name = array.dtype.newbyteorder("=").name
@@ -81,22 +91,31 @@ class Grid:
     """points (n, 3); types (m,), VTK's numbers; connectivity and ends (m,): the nodes of cell i are
     those before ends[i]; point_data and cell_data {name: (n or m, ...)}."""
 
-    def __init__(self, points, types, connectivity, ends, point_data, cell_data):
+    def __init__(
+        self,
+        points: Any,
+        types: Any,
+        connectivity: Any,
+        ends: Any,
+        point_data: Mapping[str, Any],
+        cell_data: Mapping[str, Any],
+    ) -> None:
         self.points, self.types = mesh_array(points, "points"), numpy.asarray(types, "uint8")
         self.connectivity, self.ends = numpy.asarray(connectivity), numpy.asarray(ends)
         self.point_data, self.cell_data = dict(point_data), dict(cell_data)
 
-    def tetrahedra(self):
+    def tetrahedra(self) -> NDArray[Any] | None:
         """(m, 4) if all cells are tetrahedra, else None."""
         if (self.types != _TETRAHEDRON).any() or len(self.connectivity) != 4 * len(self.types):
             return None
         return self.connectivity.reshape(-1, 4)
 
-    def write_vtu(self, path):
+    def write_vtu(self, path: str | os.PathLike[str]) -> None:
         """Uncompressed, in the machine's order of bytes, which is little-endian."""
-        blocks, at = [], 0
+        blocks: list[NDArray[Any]] = []
+        at = 0
 
-        def array(name, values):
+        def array(name: str, values: Any) -> str:
             nonlocal at
             values = packed_array(values, f"field {name!r}")
             components = int(numpy.prod(values.shape[1:]))
@@ -130,11 +149,11 @@ class Grid:
             file.write(head.encode())
             for values in blocks:
                 file.write(struct.pack("<Q", values.nbytes))
-                file.write(memoryview(values).cast("B") if values.size else b"")
+                file.write(values.data.cast("B") if values.size else b"")
             file.write(b"</AppendedData></VTKFile>")
 
 
-def grid_of(source):
+def grid_of(source: Any) -> Grid | None:
     """The Grid of a VTK, PyVista or meshio object; None for anything else. Raises ValueError for
     one without volume cells, and for polyhedra."""
     if not hasattr(source, "GetCellTypesArray") and hasattr(source, "cast_to_unstructured_grid"):
@@ -146,25 +165,30 @@ def grid_of(source):
     return None
 
 
-def series_of(grids, times):
+def series_of(grids: Sequence[Any], times: Sequence[float]) -> Grid:
     """One Grid of the instants of a mesh: a field that changes is one NAME@TIME an instant, another
-    is there once. Raises ValueError for another mesh, and for times that are not ascending."""
+    is there once. Points that move stay where they are first; Displacement@TIME says how far
+    they are from there. Raises ValueError for other cells, and for times that are not
+    ascending."""
     times = [float(time) for time in times]
     if not grids or len(times) != len(grids):
         raise ValueError(f"there are {len(grids)} grids and {len(times)} times; give one each")
     if not numpy.isfinite(times).all() or (numpy.diff(times) <= 0).any():
         raise ValueError("times are not ascending finite numbers")
-    instants = [grid_of(grid) for grid in grids]
-    if None in instants:
+    instants = [grid for grid in map(grid_of, grids) if grid is not None]
+    if len(instants) < len(grids):
         raise ValueError("an instant is no grid; give unstructured grids of VTK, PyVista or meshio")
     first = instants[0]
     for time, grid in zip(times, instants):
-        for what in ("points", "types", "connectivity", "ends"):
-            if not numpy.array_equal(getattr(grid, what), getattr(first, what)):
-                raise ValueError(
-                    f"the {'points' if what == 'points' else 'cells'} at the time {time:.17g} are "
-                    "not those of the first instant; make a log a step"
-                )
+        same = (
+            numpy.array_equal(getattr(grid, what), getattr(first, what))
+            for what in ("types", "connectivity", "ends")
+        )
+        if grid.points.shape != first.points.shape or not all(same):
+            raise ValueError(
+                f"the cells at the time {time:.17g} are not those of the first instant; make a log "
+                "a step"
+            )
     merged = Grid(first.points, first.types, first.connectivity, first.ends, {}, {})
     for out, data in (
         (merged.point_data, [grid.point_data for grid in instants]),
@@ -172,10 +196,40 @@ def series_of(grids, times):
     ):
         for name in dict.fromkeys(name for fields in data for name in fields):
             _add_instants(out, name, [fields.get(name) for fields in data], times)
+    if any(not numpy.array_equal(grid.points, first.points, equal_nan=True) for grid in instants):
+        is_narrow = all(grid.points.dtype == numpy.float32 for grid in instants)
+        kind = "float32" if is_narrow else "float64"
+        moved = [_displacement(first, grid, time, kind) for time, grid in zip(times, instants)]
+        _add_instants(merged.point_data, _motion_name(instants), moved, times)
     return merged
 
 
-def _add_instants(out, name, values, times):
+def _motion_name(instants: list[Grid]) -> str:
+    """As the program calls it (simplify/INPUT.md, "Moving points")."""
+    names = {n for grid in instants for data in (grid.point_data, grid.cell_data) for n in data}
+    taken = {re.sub(r"(?s)(.)@[^@]*$", r"\1", name) for name in names} | names
+    name, again = "Displacement", 0
+    while name in taken:
+        again += 1
+        name = "Motion" if again == 1 else f"Motion-{again}"
+    return name
+
+
+def _displacement(rest: Grid, grid: Grid, time: float, kind: str) -> NDArray[Any]:
+    moved: NDArray[Any] = grid.points.astype("float64") - rest.points
+    lost = ~numpy.isfinite(moved).all(axis=1)
+    used = numpy.intersect1d(numpy.flatnonzero(lost), rest.connectivity)
+    if len(used):
+        raise ValueError(
+            f"point {used[0]} has a coordinate that is NaN or infinite at the time {time:.17g}"
+        )
+    moved[lost] = 0
+    return moved.astype(kind)
+
+
+def _add_instants(
+    out: dict[str, Any], name: str, values: Sequence[Any], times: Sequence[float]
+) -> None:
     arrays = [None if v is None else field_array(v) for v in values]
     # An instant whose integers a mask made floats shares its type with the others.
     kind = numpy.result_type(*(array.dtype for array in arrays if array is not None))
@@ -192,10 +246,10 @@ def _add_instants(out, name, values, times):
             out[f"{name}@{repr(time).removesuffix('.0')}"] = of_time
 
 
-def _of_vtk(source):
+def _of_vtk(source: Any) -> Grid:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    def fields(data):
+    def fields(data: Any) -> dict[str, Any]:
         arrays = (data.GetArray(i) for i in range(data.GetNumberOfArrays()))
         return {a.GetName(): vtk_to_numpy(a) for a in arrays if a is not None and a.GetName()}
 
@@ -215,7 +269,7 @@ def _of_vtk(source):
     )
 
 
-def _of_meshio(source):
+def _of_meshio(source: Any) -> Grid:
     kept = [i for i, block in enumerate(source.cells) if block.type in _NUMBERS]
     if not kept:
         found = sorted({block.type for block in source.cells})

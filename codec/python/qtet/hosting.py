@@ -6,14 +6,17 @@ import http.server
 import os
 import pathlib
 import re
+import shutil
 import tempfile
 import threading
 import urllib.parse
 import webbrowser
-from typing import Any, Sequence
+from typing import Any, BinaryIO, Sequence
 
 from . import tool
 from .library import QtetError
+from .log import Log
+from .sources import Remote, check_readable, log_url
 
 __all__ = ["Server", "serve", "view"]
 
@@ -39,16 +42,16 @@ class _Handler(http.server.BaseHTTPRequestHandler):
     # Small answers would wait for the other side's acknowledgement.
     disable_nagle_algorithm = True
 
-    def do_GET(self):
+    def do_GET(self) -> None:
         self._answer(True)
 
-    def do_HEAD(self):
+    def do_HEAD(self) -> None:
         self._answer(False)
 
-    def log_message(self, *_):
+    def log_message(self, *_: Any) -> None:
         pass
 
-    def _answer(self, with_body):
+    def _answer(self, with_body: bool) -> None:
         # A page of another site whose name leads here must read nothing.
         if self.headers.get("Host", "").rsplit(":", 1)[0] not in (_ADDRESS, "localhost"):
             return self.send_error(421, "Misdirected Request")
@@ -60,7 +63,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
             first, last, is_part = 0, size - 1, False
             asked = re.fullmatch(r"bytes=(\d*)-(\d*)", self.headers.get("Range", ""))
             if asked and any(asked.groups()):
-                first, last = _range(*asked.groups(), size)
+                first, last = _range(asked[1], asked[2], size)
                 is_part = True
             if is_part and first > last:
                 self.send_response(416)
@@ -80,7 +83,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
                 self._send(file, first, last + 1 - first)
         return None
 
-    def _send(self, file, first, count):
+    def _send(self, file: BinaryIO, first: int, count: int) -> None:
         file.seek(first)
         with contextlib.suppress(ConnectionError):
             while count > 0:
@@ -90,7 +93,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
                 self.wfile.write(piece)
                 count -= len(piece)
 
-    def _file(self):
+    def _file(self) -> pathlib.Path | None:
         """The file of the request's path; None: there is none within the folder."""
         name = urllib.parse.unquote(urllib.parse.urlsplit(self.path).path).lstrip("/")
         try:
@@ -100,7 +103,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         return path if path.is_file() and self.folder in path.parents else None
 
 
-def _range(first, last, size):
+def _range(first: str, last: str, size: int) -> tuple[int, int]:
     """The first and the last byte; an empty range where there is nothing to send."""
     if not first:
         return max(0, size - int(last)), size - 1
@@ -116,9 +119,16 @@ class Server:
     url: str
     folder: pathlib.Path
 
-    def __init__(self, folder, port=0, owned=None):
+    def __init__(
+        self,
+        folder: pathlib.Path,
+        port: int = 0,
+        owned: tempfile.TemporaryDirectory[str] | None = None,
+    ) -> None:
         """`owned`: a temporary folder that goes with the server."""
-        handler = type("Handler", (_Handler,), {"folder": pathlib.Path(folder).resolve()})
+        if not 0 <= port < 1 << 16:
+            raise ValueError(f"the port is {port}; give 0 to 65535")
+        handler: Any = type("Handler", (_Handler,), {"folder": pathlib.Path(folder).resolve()})
         self.folder, self._owned = handler.folder, owned
         try:
             self._http = http.server.ThreadingHTTPServer((_ADDRESS, port), handler)
@@ -144,57 +154,103 @@ class Server:
             self._owned.cleanup()
             self._owned = None
 
-    def __enter__(self):
+    def __enter__(self) -> Server:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<qtet.Server {self.url}>"
 
 
-def _log_name(path):
+def _log_name(path: str | os.PathLike[str]) -> str:
     """A log's name that needs no quoting in an address."""
     stem = pathlib.Path(path).stem
     return re.sub(r"[^A-Za-z0-9.-]", "_", stem).lstrip(".") or "mesh"
 
 
-def log_of(source, folder, options=(), told=False):
-    """The path of a log: the file itself, or what is made of a mesh or of bytes in `folder`.
-    `options`: words for `qtet simplify`; `told`: it may print its notes."""
+def _free(folder: pathlib.Path, name: str) -> pathlib.Path:
+    """The path of a log that is not there yet."""
+    path, again = folder / f"{name}.qtet", 1
+    while path.exists():
+        again += 1
+        path = folder / f"{name}-{again}.qtet"
+    return path
+
+
+def _log_of_path(
+    source: str | os.PathLike[str],
+    folder: pathlib.Path,
+    is_log: bool,
+    options: Sequence[str],
+    told: bool,
+) -> pathlib.Path:
+    url = log_url(source)
+    if url is not None:
+        remote = Remote(url)
+        remote.need(remote.bytes)
+        return pathlib.Path(shutil.copyfile(remote.file.name, _free(folder, "mesh")))
+    check_readable(source)
+    path = pathlib.Path(source)
+    if path.suffix == ".qtet":
+        return path
+    log = _free(folder, _log_name(path))
+    if is_log:
+        return pathlib.Path(shutil.copyfile(path, log))
+    tool.run(["simplify", path, "-o", log, "--quiet", *options], told)
+    return log
+
+
+def log_of(
+    source: Any,
+    folder: pathlib.Path,
+    options: Sequence[str] = (),
+    told: bool = False,
+    times: Sequence[float] | None = None,
+) -> pathlib.Path:
+    """The path of a log: the file itself, or what is made in `folder` of a mesh, of bytes, of an
+    open log. `options`: words for `qtet simplify`; `told`: it may print its notes; `times`: those
+    of a list of grids."""
+    is_log = isinstance(source, Log)
+    if is_log:
+        source = source.source
     if isinstance(source, (bytes, bytearray, memoryview)):
-        log = folder / "mesh.qtet"
+        log = _free(folder, "mesh")
         log.write_bytes(source)
         return log
     if isinstance(source, (str, os.PathLike)):
-        path = pathlib.Path(source)
-        if path.suffix == ".qtet":
-            return path
-        log = folder / (_log_name(path) + ".qtet")
-        tool.run(["simplify", path, "-o", log, "--quiet", *options], told)
-        return log
+        return _log_of_path(source, folder, is_log, options, told)
     from .simplifier import simplify
 
-    return pathlib.Path(simplify(source, path=folder / "mesh.qtet"))
+    of_list = times if isinstance(source, (list, tuple)) else None
+    if isinstance(source, (list, tuple)) and times is None:
+        raise ValueError(f"{len(source)} grids without times; give times=[...], one each")
+    return pathlib.Path(simplify(source, times=of_list, path=_free(folder, "mesh")))
 
 
 def serve(
-    *sources: Any, port: int = 0, options: Sequence[str] = (), told: bool = False
+    *sources: Any,
+    times: Sequence[float] | None = None,
+    port: int = 0,
+    options: Sequence[str] = (),
+    told: bool = False,
 ) -> Server:
     """Shows meshes in the browser of this machine: a Server, which has their address.
 
-    sources   paths of logs and of mesh files, logs as bytes, grids as simplify() takes them
+    sources   logs: paths, URLs, bytes, open ones; paths of mesh files; grids as simplify() takes
+              them, and lists of grids
+    times     of the grids in a list
     port      on 127.0.0.1; 0: any free one
     options   of mesh files: words for `qtet simplify`
     told      warnings go to the standard error
 
-    Raises QtetError. Others reach what `qtet publish` writes by any web server, or a qtet-server.
-    """
+    Raises QtetError, and OSError for a file that cannot be opened. Others reach what `qtet publish`
+    writes by any web server, or a qtet-server."""
     owned = tempfile.TemporaryDirectory(prefix="qtet-")
     try:
         folder = pathlib.Path(owned.name)
-        logs = [log_of(source, folder, options, told) for source in sources]
+        logs = [log_of(source, folder, options, told, times) for source in sources]
         tool.run(["publish", folder / "site", *logs, "--plain"])
         return Server(folder / "site", port, owned)
     except BaseException:
@@ -202,8 +258,13 @@ def serve(
         raise
 
 
-def view(*sources: Any, port: int = 0, options: Sequence[str] = ()) -> Server:
+def view(
+    *sources: Any,
+    times: Sequence[float] | None = None,
+    port: int = 0,
+    options: Sequence[str] = (),
+) -> Server:
     """serve(), and the browser on it."""
-    server = serve(*sources, port=port, options=options)
+    server = serve(*sources, times=times, port=port, options=options)
     webbrowser.open(server.url)
     return server

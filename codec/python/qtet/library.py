@@ -183,4 +183,4 @@ def version() -> str:
     """That of libqtet.so: "0.3.0"."""
     text = library().qtet_version_text
     text.restype = _text
-    return text().decode()
+    return str(text().decode())

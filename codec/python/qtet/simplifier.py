@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 import numpy
 
 from . import tool
-from .grids import grid_of, mesh_array, packed_array, series_of
+from .grids import Grid, grid_of, mesh_array, packed_array, series_of
 from .library import QtetError, library
 from .sources import check_output
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Cancelled", "simplify"]
 
@@ -48,6 +48,7 @@ _MEASURES = {"none": 0, "levels": 1, "all": 2}
 _CODECS = {"draco": 0, "adaptive": 1}
 _STAGES = ("clean", "quantise", "simplify", "measure", "encode", "keep")
 _MAX_COMPONENTS = 16
+_INTEGERS = ("base_cells", "position_bits", "field_bits", "threads")
 # Between two checks of the progress and of Ctrl-C.
 _INTERVAL_S = 0.1
 
@@ -121,7 +122,7 @@ class _Options(ctypes.Structure):
     ]
 
 
-def _library():
+def _library() -> ctypes.CDLL:
     c = library()
     if not hasattr(c, "qtet_simplify"):
         raise QtetError("this libqtet.so makes no logs; install a newer libqtet0")
@@ -131,14 +132,14 @@ def _library():
     return c
 
 
-def _points(points):
+def _points(points: Any) -> NDArray[Any]:
     array = packed_array(mesh_array(points, "points"), "points")
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"points have the shape {array.shape}; give (points, 3)")
     return array if array.dtype.name in ("float32", "float64") else array.astype("float64")
 
 
-def _cells(cells):
+def _cells(cells: Any) -> NDArray[Any]:
     array = packed_array(mesh_array(cells, "cells"), "cells")
     if array.ndim != 2 or array.shape[1] != 4 or array.dtype.kind not in "iu":
         raise ValueError(
@@ -155,8 +156,15 @@ def _cells(cells):
 class _Input:
     """The C struct of a mesh, and the arrays that it points into."""
 
-    def __init__(self, points, cells, point_data, cell_data):
-        self.points, self.cells, self.values = _points(points), _cells(cells), []
+    def __init__(
+        self,
+        points: Any,
+        cells: Any,
+        point_data: Mapping[str, Any] | None,
+        cell_data: Mapping[str, Any] | None,
+    ) -> None:
+        self.points, self.cells = _points(points), _cells(cells)
+        self.values: list[NDArray[Any]] = []
         fields = [
             self._field(name, values, association, tuples)
             for data, association, tuples in (
@@ -177,7 +185,9 @@ class _Input:
             ctypes.sizeof(_Field),
         )
 
-    def _field(self, name, values, association, tuples):
+    def _field(self, name: str, values: Any, association: int, tuples: int) -> _Field:
+        if not isinstance(name, str) or "\0" in name:
+            raise ValueError(f"the name {name!r} of a field is no str without NUL")
         array = packed_array(values, f"field {name!r}")
         components = int(numpy.prod(array.shape[1:]))
         if array.ndim == 0 or len(array) != tuples or not 1 <= components <= _MAX_COMPONENTS:
@@ -191,12 +201,24 @@ class _Input:
         )
 
 
-def _named(numbers):
+def _check_numbers(numbers: Mapping[str, Any]) -> None:
+    """Refuses NaN and negative ones; the library and the tool know the upper bounds. A C integer
+    would take -3 for 4 thousand millions, and NaN stands for an option that is not given."""
+    for name, value in numbers.items():
+        if isinstance(value, Mapping):
+            _check_numbers({f"{name}[{key!r}]": x for key, x in value.items()})
+        elif value is not None and not value >= 0:
+            raise ValueError(f"{name} is {value}; give a number of 0 or above")
+        elif name in _INTEGERS and value is not None and not (value < 2**32 and value % 1 == 0):
+            raise ValueError(f"{name} is {value}; give an integer")
+
+
+def _named(numbers: Mapping[str, float] | None) -> tuple[Any, int]:
     entries = [_NamedNumber(name.encode(), value) for name, value in (numbers or {}).items()]
     return (_NamedNumber * len(entries))(*entries), len(entries)
 
 
-def _choice(choices, word, what):
+def _choice(choices: Mapping[str, int], word: str, what: str) -> int:
     if word not in choices:
         raise ValueError(f"{what} {word!r} is not known; give one of {', '.join(choices)}")
     return choices[word]
@@ -206,20 +228,20 @@ class _Work:
     """One call of qtet_simplify in a thread of its own: Python handles Ctrl-C between two steps of
     the thread that waits, and would lose it in a callback from C."""
 
-    def __init__(self, c, source, options):
+    def __init__(self, c: ctypes.CDLL, source: _Input, options: _Options) -> None:
         self.c, self.source, self.options = c, source, options
-        self.stage, self.fraction, self.is_stopped, self.status = 0, 0.0, False, None
+        self.stage, self.fraction, self.is_stopped, self.status = 0, 0.0, False, 0
         self.is_over = threading.Event()
         options.progress = _Progress(self._tell)
         self.made = _address(c.qtet_simplified_create())
         if not self.made:
             raise MemoryError("no memory for a log")
 
-    def _tell(self, _, stage, fraction):
+    def _tell(self, _: Any, stage: int, fraction: float) -> int:
         self.stage, self.fraction = stage, fraction
         return int(self.is_stopped)
 
-    def _call(self):
+    def _call(self) -> None:
         try:
             self.status = self.c.qtet_simplify(
                 self.made,
@@ -231,7 +253,7 @@ class _Work:
         finally:
             self.is_over.set()
 
-    def run(self, progress):
+    def run(self, progress: Callable[[str, float], bool | None] | None) -> None:
         thread = threading.Thread(target=self._call, name="qtet.simplify")
         try:
             thread.start()
@@ -243,7 +265,7 @@ class _Work:
             self._wait_for_end(thread)
         self.check(self.status)
 
-    def _wait_for_end(self, thread):
+    def _wait_for_end(self, thread: threading.Thread) -> None:
         """Whatever else is interrupted meanwhile: C must not write into memory that is gone."""
         while thread in threading.enumerate() and not self.is_over.is_set():
             try:
@@ -252,7 +274,7 @@ class _Work:
             except KeyboardInterrupt:
                 pass
 
-    def check(self, status):
+    def check(self, status: int) -> None:
         if status == 0:
             return
         text = self.c.qtet_simplified_error(self.made).decode(errors="replace")
@@ -260,22 +282,22 @@ class _Work:
             raise MemoryError(text)
         raise (Cancelled if status == _CANCELLED else QtetError)(text)
 
-    def log(self):
+    def log(self) -> bytes:
         size = ctypes.c_size_t()
         address = self.c.qtet_simplified_log(self.made, ctypes.byref(size))
         return ctypes.string_at(address, size.value)
 
-    def write(self, path):
+    def write(self, path: str | os.PathLike[str]) -> None:
         self.check(self.c.qtet_simplified_write(self.made, os.fsencode(path)))
 
-    def close(self):
+    def close(self) -> None:
         self.c.qtet_simplified_destroy(self.made)
 
 
-def _tool_words(options):
+def _tool_words(options: Mapping[str, Any]) -> list[str]:
     """The options of simplify() as words of `qtet simplify`."""
     names = {"value_codec": "geometry-codec", "regions": "preserve-regions"}
-    words = []
+    words: list[str] = []
     for key, value in options.items():
         name = "--" + names.get(key, key.removesuffix("s") if isinstance(value, dict) else key)
         name = name.replace("_", "-")
@@ -290,15 +312,21 @@ def _tool_words(options):
     return words
 
 
-def _simplify_by_tool(grid, path, progress, source, options):
+def _simplify_by_tool(
+    grid: Grid,
+    path: str | os.PathLike[str] | None,
+    progress: Callable[[str, float], bool | None] | None,
+    source: str,
+    options: Mapping[str, Any],
+) -> Any:
     """Cells other than tetrahedra are split by the tool, which reads them from a file."""
     with tempfile.TemporaryDirectory(prefix="qtet-") as folder:
         stem = pathlib.PurePath(source).stem or "grid"
         mesh = pathlib.Path(folder) / (stem + ".vtu")
         log = pathlib.Path(path) if path is not None else mesh.with_suffix(".qtet")
         grid.write_vtu(mesh)
-        words = ["simplify", mesh, "-o", log, "--quiet", *_tool_words(options)]
-        if tool.run(words, goes_on=progress and (lambda: progress(_STAGES[2], 0.0))) is None:
+        words = ["simplify", str(mesh), "-o", str(log), "--quiet", *_tool_words(options)]
+        if tool.run(words, goes_on=lambda: progress and progress(_STAGES[2], 0.0)) is None:
             raise Cancelled("cancelled")
         return path if path is not None else log.read_bytes()
 
@@ -342,8 +370,9 @@ def simplify(
                 or PyVista, or a mesh of meshio, with any volume cells and its own data
     cells       (m, 4) integers: the points of each tetrahedron, counted from 0
     point_data  {name: array}: (n,) or (n, components), float or integer; NaN is a missing value
-    cell_data   {name: array}: the same with m
-    times       of the grids, ascending: a field that changes becomes a series, NAME@TIME
+    cell_data   {name: array}: the same with m. What a mask of numpy.ma covers is missing
+    times       of the grids, ascending: a field that changes becomes a series, NAME@TIME. Points
+                that move get one, too: Displacement, from where they are first
     time_statistics       of each series: the fields NAME_average, NAME_minimum, NAME_maximum and
                 NAME_stddev over all instants
     progress    called about ten times a second with the stage's name and the fraction of it that
@@ -379,6 +408,7 @@ def simplify(
     }
     if path is not None:
         check_output(path)
+    _check_numbers({name: value for name, value in words.items() if not isinstance(value, str)})
     if times is not None and cells is not None:
         raise ValueError("times are those of grids; call a field of an instant NAME@TIME")
     if cells is None:
@@ -411,7 +441,7 @@ def simplify(
         ("baseError", base_error),
     ):
         if value is not None:
-            setattr(options, member, value)
+            setattr(options, member, int(value) if member.endswith("Bits") else value)
     options.algorithm = _choice(_ALGORITHMS, algorithm, "algorithm")
     options.placement = _choice(_PLACEMENTS, placement, "placement")
     options.measure = _choice(_MEASURES, measure, "measure")
@@ -420,7 +450,7 @@ def simplify(
     options.originalIds = bool(original_ids)
     options.timeStatistics = bool(time_statistics)
     options.baseCells = int(base_cells or 0)
-    options.threads = threads
+    options.threads = int(threads)
     options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
     options.fieldWeights, options.fieldWeightCount = _named(field_weights)
     options.regions = regions.encode() if regions is not None else None

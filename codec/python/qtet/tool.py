@@ -1,4 +1,6 @@
 """The program `qtet` from Python: the one in the package's library, or the one that is installed."""
+from __future__ import annotations
+
 import ctypes
 import os
 import pathlib
@@ -6,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from typing import Callable, Sequence
 
 from .library import QtetError, library
 
@@ -16,11 +19,11 @@ _FAILED = 1
 _INTERVAL_S = 0.1
 
 
-def _is_in_library():
+def _is_in_library() -> bool:
     return hasattr(library(), "qtet_main")
 
 
-def call(words):
+def call(words: Sequence[str | os.PathLike[str]]) -> int:
     """Runs `qtet WORDS...` in this process and returns its exit code. The process can do nothing
     else meanwhile: it is for the command `qtet`, and run() for everybody else."""
     if not _is_in_library():
@@ -38,16 +41,21 @@ def call(words):
     )
     given = [b"qtet", *(os.fsencode(word) for word in words)]
     sys.stdout.flush()
-    return library().qtet_main(len(given), (ctypes.c_char_p * (len(given) + 1))(*given, None))
+    code: int = library().qtet_main(len(given), (ctypes.c_char_p * (len(given) + 1))(*given, None))
+    return code
 
 
-def _is_this_package(program):
+def _is_this_package(program: str) -> bool:
     """Whether the program is the script that pip made of this package."""
     with open(program, "rb") as file:
         return file.read(2) == b"#!"
 
 
-def run(words, told=False, goes_on=None):
+def run(
+    words: Sequence[str | os.PathLike[str]],
+    told: bool = False,
+    goes_on: Callable[[], bool | None] | None = None,
+) -> str | None:
     """Runs `qtet WORDS...` in a process of its own. Returns what it printed. Raises QtetError with
     its own text where it fails, KeyboardInterrupt after Ctrl-C. `told`: what it says of a success
     goes to the standard error. `goes_on` is called about ten times a second; the answer False ends
@@ -59,9 +67,10 @@ def run(words, told=False, goes_on=None):
     # Within ParaView the program is no Python.
     is_python = pathlib.Path(sys.executable or "").name.startswith("python")
     python = sys.executable if is_python else shutil.which("python3")
-    command = [python, "-m", "qtet"] if _is_in_library() else [shutil.which("qtet")]
-    if command[0] is None:
+    program = python if _is_in_library() else shutil.which("qtet")
+    if program is None:
         raise QtetError("the program qtet is not found; install the package qtet")
+    command = [program, "-m", "qtet"] if _is_in_library() else [program]
     with subprocess.Popen(
         [*command, *(os.fspath(word) for word in words)],
         stdin=subprocess.DEVNULL,

@@ -1,8 +1,11 @@
 """qtet.simplify: logs as the tool makes them, every wrong argument an exception, Ctrl-C.
    qtet_test.py LIBRARY QTET-PROGRAM MODULES FOLDER-TO-WRITE-TO; ends with 77 without numpy."""
+import copy
 import dataclasses
+import importlib
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -307,8 +310,35 @@ def grids_with_times_are_a_series():
     refused(ValueError, "3 grids and 2 times", lambda: qtet.simplify(grids, times=[1, 2]))
     refused(ValueError, "ascending", lambda: qtet.simplify(grids, times=[1, 1, 2]))
     refused(ValueError, "NAME@TIME", lambda: qtet.simplify(points, cells, times=[1]))
-    grids[1] = Mesh(points * 2, cells, {}, {})
-    refused(ValueError, "points at the time 0.5", lambda: qtet.simplify(grids, times=times))
+    grids[1] = Mesh(points, cells[1:], {}, {})
+    refused(ValueError, "cells at the time 0.5", lambda: qtet.simplify(grids, times=times))
+
+
+def points_that_move_are_taken_as_the_tool_does():
+    points, cells, _, _ = grid(4)
+    moved = [points, points * [1, 1, 1.25], points + [0, points[:, 0].max() / 8, 0]]
+    times, log = [0, 0.5, 1], OUT / "moves.qtet"
+    for kind in ("float64", "float32"):
+        files = []
+        for i, place in enumerate(moved):
+            write_vtu(OUT / f"moves-{i}.vtu", place.astype(kind), cells, {}, {})
+            files.append(f'<DataSet timestep="{times[i]}" file="moves-{i}.vtu"/>')
+        (OUT / "moves.pvd").write_text(
+            f'<VTKFile type="Collection"><Collection>{"".join(files)}</Collection></VTKFile>'
+        )
+        words = ["simplify", OUT / "moves.pvd", "--time", "all", "-o", log, "-q"]
+        subprocess.run([program, *words], check=True)
+        grids = [Mesh(place.astype(kind), cells, {}, {}) for place in moved]
+        assert qtet.simplify(grids, times=times, source="moves.pvd") == log.read_bytes(), kind
+    own = [Mesh(place, cells, {"Displacement": points}, {"Motion@5": cells}) for place in moved]
+    taken = qtet.open(qtet.simplify(own, times=times))
+    assert "Motion-2" in taken.series, taken
+    free = numpy.vstack([points, [[9, 9, 9]]])
+    lost = numpy.vstack([points * 2, [[numpy.nan] * 3]])
+    steps = [Mesh(free, cells, {}, {}), Mesh(lost, cells, {}, {})]
+    assert qtet.open(qtet.simplify(steps, times=[0, 1])).series.keys() == {"Displacement"}
+    lost[3] = numpy.inf
+    refused(ValueError, "point 3 has", lambda: qtet.simplify(steps, times=[0, 1]))
 
 
 def a_time_is_exact_unless_the_nearest_is_asked_for():
@@ -346,6 +376,131 @@ def a_time_is_exact_unless_the_nearest_is_asked_for():
     plain = qtet.open(qtet.simplify(points, cells, {"Fixed": temperature}))
     plain.refine(0)
     refused(KeyError, "its times are none", lambda: plain.arrays(time=0))
+
+
+def numbers_out_of_range_are_refused():
+    points, cells, point_data, cell_data = grid(2)
+    mixed = Mesh(points, cells, point_data, {})
+    mixed.cells.append(Block("pyramid", numpy.array([[0, 1, 4, 3, 9]])))
+    for name in (
+        *("target_ratio", "base_error", "base_cells", "boundary_weight", "shape_weight", "threads"),
+        *("envelope_tolerance", "max_boundary_error", "position_bits", "field_bits"),
+        *("max_field_errors", "field_weights"),
+    ):
+        for value in (numpy.nan, -3, -1e-9):
+            option = {name: {"Heat": value} if name.endswith(("errors", "weights")) else value}
+            refused(ValueError, name, lambda: qtet.simplify(points, cells, point_data, **option))
+            refused(ValueError, name, lambda: qtet.simplify(mixed, **option))
+    for value in (2.5, 2**32, numpy.inf):
+        refused(ValueError, "integer", lambda: qtet.simplify(points, cells, base_cells=value))
+    refused(ValueError, "name 3", lambda: qtet.simplify(points, cells, {3: points}))
+    log = qtet.open(qtet.simplify(points, cells, point_data))
+    for level in (-3, log.last_level + 1):
+        refused(qtet.QtetError, f"no level {level};", lambda: log.refine(level))
+        refused(qtet.QtetError, f"no level {level};", lambda: log.level_info(level))
+    for level in (numpy.nan, 0.5):
+        refused(TypeError, "integer", lambda: log.refine(level))
+    for value in (numpy.nan, -3, numpy.inf):
+        refused(ValueError, "0 or above", lambda: log.level_of_tetrahedra(value))
+    for value in (numpy.nan, -3):
+        refused(qtet.QtetError, "bound", lambda: log.level_of_error("Heat", value))
+    refused(ValueError, "height", lambda: qtet.show(OUT / "grid.qtet", height=numpy.nan))
+
+
+def a_log_is_opened_as_files_are():
+    names = {"simplify", "show", "page", "view", "serve", "open", "Log", "QtetError", "Cancelled"}
+    assert names <= set(dir(qtet)) and "importlib" not in dir(qtet)
+    for call in (qtet.open, qtet.show, qtet.serve, lambda path: qtet.page(path, OUT / "a.html")):
+        for missing in ("nothing.qtet", "nothing.vtu"):
+            refused(FileNotFoundError, missing, lambda: call(OUT / missing))
+        refused(IsADirectoryError, "folder.qtet", lambda: call(OUT / "folder.qtet"))
+        if os.geteuid() != 0:
+            (OUT / "secret.qtet").touch(0)
+            refused(PermissionError, "secret.qtet", lambda: call(OUT / "secret.qtet"))
+    points, cells, point_data, cell_data = grid(3)
+    made, path = qtet.simplify(points, cells, point_data, cell_data), OUT / "opened.qtet"
+    path.write_bytes(made)
+    for source in (made, bytearray(made), memoryview(made), path, str(path)):
+        log = qtet.open(source)
+        for early in (log.arrays, log.counts, log.to_meshio, lambda: log.field("Heat")):
+            refused(qtet.QtetError, "refine(level) first", early)
+        assert "not refined" in repr(log) and "fields: Heat, Swirl, Region, Height" in repr(log)
+        with log:
+            log.refine(log.last_level)
+            is_path = isinstance(source, (str, pathlib.Path))
+            name = str(path) if is_path else f"{len(made)} bytes"
+            assert repr(log).startswith(f"<qtet.Log {name}: "), log
+            for again in (pickle.loads(pickle.dumps(log)), copy.copy(log)):
+                assert again.level == log.last_level and again.info == log.info
+                assert (again.arrays().points == log.arrays().points).all()
+            assert set(log.arrays("Heat").point_data) == {"Heat"}
+            assert "27 points" not in repr(log.arrays()) and "Heat, Swirl" in repr(log.arrays())
+            refused(qtet.QtetError, "no field ['Temp']", lambda: log.arrays("Temp"))
+            refused(TypeError, "a name", lambda: log.arrays([1]))
+        log.close()
+        assert repr(log).endswith("closed>") and log.info.levels > 0
+        for late in (log.arrays, lambda: log.refine(0), lambda: log.field("Heat"), log.__enter__):
+            refused(qtet.QtetError, "closed", late)
+    refused(qtet.QtetError, "bad-magic", lambda: qtet.open(b"part.qtet" * 9))
+
+
+class Packages:
+    """Stands in for packages that are not installed."""
+
+    @staticmethod
+    def wrap(grid):
+        return grid
+
+    class Dataset:
+        def __init__(self, variables, coords):
+            self.sizes = {}
+            for dimensions, values in variables.values():
+                assert len(dimensions) == numpy.ndim(values), dimensions
+                self.sizes.update(zip(dimensions, numpy.shape(values)))
+            self.variables, self.coords = variables, coords
+
+        def __getitem__(self, name):
+            return self.variables[name][1]
+
+
+def other_packages_take_the_mesh():
+    points, cells, _, cell_data = grid(3)
+    data = {"T@0": points[:, 0], "T@1": points[:, 0] + 1, "U@1": points, "U@2": points * 2}
+    log = qtet.open(qtet.simplify(points, cells, data, {**cell_data, "T@1": cells, "T@2": cells}))
+    log.refine(log.last_level)
+    for name in ("meshio", "pyvista", "xarray"):
+        kept, sys.modules[name] = sys.modules.get(name), None
+        refused(ImportError, f"pip install {name}", getattr(log, f"to_{name}"))
+        del sys.modules[name]
+        if kept:
+            sys.modules[name] = kept
+    for name in ("pyvista", "xarray"):
+        try:
+            importlib.import_module(name)
+        except ImportError:
+            sys.modules[name] = Packages
+    try:
+        mesh = log.to_meshio(["T", "Height"], time=1)
+        assert mesh.points.shape == points.shape and mesh.cells[0].type == "tetra"
+        assert set(mesh.point_data) == {"T"} and set(mesh.cell_data) == {"T", "Height"}
+        back = qtet.open(qtet.simplify(mesh))
+        assert back.info.fields == 3
+    except ImportError as error:
+        print("skipped:", error)
+    try:
+        vtk = log.to_pyvista("T", time=1)
+        assert vtk.GetNumberOfCells() == len(cells), vtk
+    except ImportError as error:
+        print("skipped:", error)
+    every = log.to_xarray()
+    sizes = {"time": 3, "point": len(points), "cell": len(cells), "U_component": 3}
+    assert sizes.items() <= dict(every.sizes).items(), every.sizes
+    heat = numpy.asarray(every["T"])
+    assert (heat[1] == log.field("T", time=1)).all() and numpy.isnan(heat[2]).all()
+    assert numpy.asarray(every["cell:T"]).shape == (3, len(cells), 4)
+    one = log.to_xarray("Region")
+    assert numpy.asarray(one["Region"]).dtype == numpy.int16
+    refused(qtet.QtetError, "no field ['Cold']", lambda: log.to_xarray("Cold"))
 
 
 def progress_is_told_and_may_end_the_work(mesh):
@@ -387,7 +542,11 @@ only_a_log_is_overwritten()
 a_mask_is_missing_values()
 what_a_log_holds_outlives_it()
 grids_with_times_are_a_series()
+points_that_move_are_taken_as_the_tool_does()
 a_time_is_exact_unless_the_nearest_is_asked_for()
+numbers_out_of_range_are_refused()
+a_log_is_opened_as_files_are()
+other_packages_take_the_mesh()
 large = grid(32)  # a second and a half: reports come every 0.1 s
 progress_is_told_and_may_end_the_work(large)
 ctrl_c_ends_the_work(large)

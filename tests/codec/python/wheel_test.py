@@ -106,7 +106,27 @@ def test_show():
     assert "it holds" in cut.told and len(cut.page) <= len(shown.page) + 8000
     qtet.page(pathlib.Path("box.vtu"), "box.html")
     assert pathlib.Path("box.html").read_text().startswith("<!doctype html>")
-    assert "nothing.qtet" in raised(qtet.QtetError, lambda: qtet.show("nothing.qtet"))
+    assert "nothing.qtet" in raised(FileNotFoundError, lambda: qtet.show("nothing.qtet"))
+
+
+def test_show_takes_steps_and_open_logs():
+    steps = [hexahedra(3), hexahedra(3)]
+    steps[1].points = steps[1].points * 1.5
+    shown = qtet.show(steps, times=[0, 0.5], time=0.5)
+    assert "time=0.5" in shown.page and "bytes" in shown.told
+    assert "give times" in raised(ValueError, lambda: qtet.show(steps))
+    qtet.page("box.qtet", "path.html")
+    for log in (qtet.open("box.qtet"), qtet.open(pathlib.Path("box.qtet").read_bytes())):
+        qtet.page(log, "log.html")
+        paths = (pathlib.Path("log.html"), pathlib.Path("path.html"))
+        sizes = [path.stat().st_size for path in paths]
+        assert abs(sizes[0] - sizes[1]) < 100, sizes
+    pathlib.Path("box.log").write_bytes(pathlib.Path("box.qtet").read_bytes())
+    with qtet.serve(qtet.open("box.log"), hexahedra(2), steps, times=[0, 1]) as server:
+        names = sorted(path.name for path in pathlib.Path(server.folder).glob("*.qtet"))
+        assert names == ["box.qtet", "mesh-2.qtet", "mesh.qtet"], names
+        from_url = qtet.show(server.url + "box.qtet")
+        assert "bytes" in from_url.told
 
 
 def answer(server, path, method="GET", **headers):
@@ -145,7 +165,7 @@ def test_host():
         port = int(server.url.split(":")[2].strip("/"))
         assert str(port) in raised(qtet.QtetError, lambda: qtet.serve("box.qtet", port=port))
     assert not os.path.exists(server.folder)
-    assert "nothing.qtet" in raised(qtet.QtetError, lambda: qtet.serve("nothing.qtet"))
+    assert "nothing.qtet" in raised(FileNotFoundError, lambda: qtet.serve("nothing.qtet"))
 
 
 for name, test in list(globals().items()):
