@@ -72,6 +72,10 @@ void turnAway(tcp::socket socket, unsigned status, std::string_view type, std::s
   if (!ec) socket.write_some(asio::buffer(text), ec);
 }
 
+Workers workersOf(asio::thread_pool& pool) {
+  return [&pool](std::move_only_function<void()> work) { asio::post(pool, std::move(work)); };
+}
+
 void logEnd(const std::exception_ptr& thrown) {
   if (!thrown) return;
   try {
@@ -161,9 +165,9 @@ struct Server::State {
                     options.accessLog,
                     options.timeouts,
                     &uploads,
-                    &writers,
-                    &checkers,
-                    &describers,
+                    workersOf(writers),
+                    workersOf(checkers),
+                    workersOf(describers),
                     options.access,
                     &options.allowedOrigins,
                     &handshakes};
@@ -177,9 +181,9 @@ struct Server::State {
                          options.accessLog,
                          options.timeouts,
                          nullptr,
-                         nullptr,
-                         nullptr,
-                         nullptr,
+                         {},
+                         {},
+                         {},
                          nullptr,
                          nullptr,
                          nullptr};

@@ -6,7 +6,6 @@
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <expected>
 #include <memory>
@@ -102,14 +101,14 @@ asio::awaitable<Reply> makeReply(Reply head, const LevelRequest& level, const Re
   co_return out;
 }
 
-/// The result of `work`, which may wait for the disk, on a thread of the pool.
+/// The result of `work`, which may wait for the disk.
 /// `work` captures references alone: GCC 12 destroys a temporary closure in the operand of co_await
 /// twice.
 template <class Outcome, class Work>
   requires std::is_trivially_destructible_v<Work>
-asio::awaitable<Outcome> runOn(asio::thread_pool& pool, Work work) {
-  auto start = [&pool, &work, executor = co_await asio::this_coro::executor](auto handler) {
-    asio::post(pool, [&work, executor, handler = std::move(handler)]() mutable {
+asio::awaitable<Outcome> runOn(const Workers& workers, Work work) {
+  auto start = [&workers, &work, executor = co_await asio::this_coro::executor](auto handler) {
+    workers([&work, executor, handler = std::move(handler)]() mutable {
       Outcome outcome = work();
       asio::post(executor, [handler = std::move(handler), outcome = std::move(outcome)]() mutable {
         handler(std::move(outcome));
@@ -143,12 +142,12 @@ asio::awaitable<std::optional<Reply>> receiveBody(HttpInput& input, Upload& uplo
     const std::size_t have = co_await readPiece(input, std::span(piece).first(wanted));
     ByteView rest = ByteView(piece).first(have);
     const auto append = [&] { return upload.append(std::exchange(rest, {})); };
-    if (auto trouble = co_await runOn<std::optional<Reply>>(*services.writers, append))
+    if (auto trouble = co_await runOn<std::optional<Reply>>(services.writers, append))
       co_return trouble;
     while (upload.isBusy()) {
       if (peer.connection->ending())
         co_return busyReply("the server ends; go on with the next one");
-      if (auto trouble = co_await runOn<std::optional<Reply>>(*services.writers, append))
+      if (auto trouble = co_await runOn<std::optional<Reply>>(services.writers, append))
         co_return trouble;
     }
     if (have < wanted)
@@ -166,7 +165,7 @@ asio::awaitable<Reply> finish(Upload& upload, ClientSocket& socket, const Servic
   const auto pending = std::make_shared<bool>(true);
   watchForEnd(socket, [pending] { return *pending; }, [&stop] { stop.request_stop(); });
   Reply out =
-      co_await runOn<Reply>(*services.checkers, [&] { return upload.finish(stop.get_token()); });
+      co_await runOn<Reply>(services.checkers, [&] { return upload.finish(stop.get_token()); });
   *pending = false;
   socket.cancel();  // the watch, if it still stands
   co_return stop.stop_requested() ? clientGone() : std::move(out);
@@ -177,7 +176,7 @@ asio::awaitable<std::optional<Reply>> takeUpload(const UploadRequest& upload, bo
                                                  const Services& services) {
   using Begun = std::expected<std::unique_ptr<Upload>, Reply>;
   const auto begin = [&] { return services.uploads->begin(upload); };
-  Begun begun = co_await runOn<Begun>(*services.writers, begin);
+  Begun begun = co_await runOn<Begun>(services.writers, begin);
   if (!begun) {
     begun.error().close = true;  // the body is not read
     co_return std::move(begun.error());
@@ -200,7 +199,7 @@ asio::awaitable<std::optional<Reply>> takeUpload(const UploadRequest& upload, bo
 asio::awaitable<Reply> describe(const TextRequest& wanted, bool sendBody,
                                 const RequestView& request, const Services& services) {
   const auto make = [&] { return &wanted.mesh->text(wanted.which); };
-  const Document* const text = co_await runOn<const Document*>(*services.describers, make);
+  const Document* const text = co_await runOn<const Document*>(services.describers, make);
   Reply out = documentReply(request, *text, wanted.mesh);
   if (wanted.isPrivate) keepPrivate(out);
   out.sendBody = sendBody;
@@ -216,7 +215,7 @@ asio::awaitable<std::optional<Reply>> workOn(Answer answer, const RequestView& r
     out = co_await makeReply(std::move(answer.reply), *level, request, peer, services);
   } else if (const auto* upload = std::get_if<UploadRequest>(&answer.work)) {
     if (upload->kind == UploadRequest::Kind::kDelete)
-      out = co_await runOn<Reply>(*services.writers,
+      out = co_await runOn<Reply>(services.writers,
                                   [&] { return services.uploads->remove(*upload); });
     else
       out = co_await takeUpload(*upload, request.expect.has_value(), peer, input, services);

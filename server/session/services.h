@@ -17,12 +17,6 @@
 #include "server/wire/http_limits.h"
 #include "server/wire/metrics.h"
 
-// Only declared, like the three classes below: the tests of a running server compile without Asio.
-namespace boost::asio {
-// NOLINTNEXTLINE(readability-identifier-naming): Asio's
-class thread_pool;
-}  // namespace boost::asio
-
 namespace qtet {
 
 namespace limits {
@@ -31,9 +25,13 @@ namespace limits {
 inline constexpr std::chrono::seconds kGraceTime{8};
 }  // namespace limits
 
+// Only declared: the tests of a running server compile without Asio.
 class AddressLimits;
 class Handshakes;
 struct TrustedProxies;
+
+/// Has work done soon, on a thread that may wait for the disk.
+using Workers = std::function<void(std::move_only_function<void()>)>;
 
 /// How long a client may take.
 struct Timeouts {
@@ -60,11 +58,11 @@ struct Services {
   Timeouts timeouts{};
   Uploads* uploads = nullptr;  ///< where the router knows of uploads
   /// Where uploads are begun and written, and meshes removed.
-  boost::asio::thread_pool* writers = nullptr;
+  Workers writers{};
   /// Where uploads are checked and published, one after the other.
-  boost::asio::thread_pool* checkers = nullptr;
+  Workers checkers{};
   /// Where long texts are made and compressed.
-  boost::asio::thread_pool* describers = nullptr;
+  Workers describers{};
   /// Who may read what; nullptr: everybody everything.
   Access* access = nullptr;
   /// Origins of pages that may open streams; nullptr or empty: any.

@@ -46,7 +46,9 @@ struct LevelJobs::State {
   LevelJobCounts counts;
   std::vector<std::jthread> threads;
 
+  /// Until the end.
   void work();
+  bool workOnce(bool waits);
   void finish(const JobPointer& job);
   /// The first job of the address that has waited longest since one of its own began. REQUIRES:
   /// mutex is held, and some job waits.
@@ -57,17 +59,22 @@ struct LevelJobs::State {
 };
 
 void LevelJobs::State::work() {
-  for (;;) {
-    JobPointer job;
-    {
-      std::unique_lock lock(mutex);
-      news.wait(lock, [this] { return ending || !waiting.empty(); });
-      if (ending) return;
-      job = takeNext();
-      running.push_back(job);
-    }
-    finish(job);
+  while (workOnce(true)) {
   }
+}
+
+/// False: the jobs end; or none waits, and the caller does not.
+bool LevelJobs::State::workOnce(bool waits) {
+  JobPointer job;
+  {
+    std::unique_lock lock(mutex);
+    if (waits) news.wait(lock, [this] { return ending || !waiting.empty(); });
+    if (ending || waiting.empty()) return false;
+    job = takeNext();
+    running.push_back(job);
+  }
+  finish(job);
+  return true;
 }
 
 JobPointer LevelJobs::State::takeNext() {
@@ -212,6 +219,8 @@ std::expected<LevelJobs::Subscription, LevelRefusal> LevelJobs::submit(const Lev
     if (const auto state = weak.lock()) state->withdraw(job, subscription);
   });
 }
+
+bool LevelJobs::workOnce() { return state_->workOnce(false); }
 
 LevelJobCounts LevelJobs::counts() const {
   const std::scoped_lock lock(state_->mutex);

@@ -87,6 +87,9 @@ class LevelJobs {
   [[nodiscard]] std::expected<Subscription, LevelRefusal> submit(const LevelRequest& request,
                                                                  Done done, Address from = nullptr);
   [[nodiscard]] LevelJobCounts counts() const;
+  /// Does the work of the next job on the calling thread; false: none waits. For who has no threads
+  /// (`threads` = 0), or more of them.
+  bool workOnce();
 
  private:
   struct State;

@@ -26,6 +26,12 @@ class FrameGather {
  public:
   FrameGather() { items_.reserve(limits::kFramesPerWrite); }
 
+  /// The answer to the handshake, before all frames. REQUIRES: empty().
+  void addAnswer(std::string text) {
+    assert(empty());
+    items_.push_back({{}, 0, std::move(text), nullptr});
+    append(items_.back(), boost::asio::buffer(items_.back().text));
+  }
   /// REQUIRES: not full(). A text, or what a control frame carries.
   void add(std::uint8_t kind, std::string payload) {
     assert(!full());
@@ -85,7 +91,8 @@ class FrameGather {
     [[nodiscard]] bool inFile() const { return file.descriptor >= 0; }
   };
   void append(const Item& item, boost::asio::const_buffer payload, FilePart file = {}) {
-    parts_.push_back({boost::asio::buffer(item.head.data(), item.headBytes)});
+    if (item.headBytes > 0)
+      parts_.push_back({boost::asio::buffer(item.head.data(), item.headBytes)});
     if (payload.size() > 0)
       parts_.push_back({payload, payload.size() >= limits::kMinFromFile ? file : FilePart()});
     bytes_ += payload.size();

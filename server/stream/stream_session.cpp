@@ -327,11 +327,6 @@ asio::awaitable<void> StreamSession::keepTime() {
 asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
   (void)::setsockopt(peer_.socket.number(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
                      sizeof(kUnsentBytes));
-  const std::string answer = handshakeAnswer(handshake.key);
-  const iovec part{const_cast<char*>(answer.data()), answer.size()};
-  error_code ec;
-  const std::size_t taken = peer_.socket.write({&part, 1}, false, ec);
-  if (taken < answer.size()) co_return;  // an empty socket takes it at once
   const auto ended = [self = shared_from_this()](const std::exception_ptr& thrown) {
     if (thrown) self->fail();
   };
@@ -339,6 +334,11 @@ asio::awaitable<void> StreamSession::run(StreamHandshake handshake) {
   hear(handshake.firstBytes);
   asio::co_spawn(executor, [self = shared_from_this()] { return self->read(); }, ended);
   asio::co_spawn(executor, [self = shared_from_this()] { return self->keepTime(); }, ended);
+  {
+    FrameGather answer;
+    answer.addAnswer(handshakeAnswer(handshake.key));
+    co_await flush(answer);  // answers to earlier requests may still fill the socket
+  }
   co_await write();
   clock_.cancel();
   if (peer_.socket.isOpen()) peer_.socket.finishSending();

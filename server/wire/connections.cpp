@@ -20,11 +20,11 @@ std::shared_ptr<Connection> Connections::enter(boost::asio::any_io_executor exec
   // The deleter takes the connection off the list before it goes, so that endAll never meets a dead
   // one.
   std::shared_ptr<Connection> out(new Connection(std::move(executor)),
-                                  [this](Connection* connection) {
-                                    leave(connection);
+                                  [this, number = ++entered_](Connection* connection) {
+                                    leave(number);
                                     delete connection;
                                   });
-  open_.emplace(out.get(), out);
+  open_.emplace(entered_, out);
   return out;
 }
 
@@ -33,11 +33,11 @@ std::size_t Connections::open() const {
   return open_.size();
 }
 
-void Connections::leave(Connection* connection) {
+void Connections::leave(std::uint64_t number) {
   std::function<void()> whenEmpty;
   {
     const std::scoped_lock lock(mutex_);
-    open_.erase(connection);
+    open_.erase(number);
     if (ending_ && open_.empty()) whenEmpty = std::exchange(whenEmpty_, nullptr);
   }
   if (whenEmpty) whenEmpty();
@@ -50,7 +50,7 @@ void Connections::endAll(std::function<void()> whenEmpty) {
     const std::scoped_lock lock(mutex_);
     ending_ = true;
     if (!open_.empty()) whenEmpty_ = std::exchange(whenEmpty, nullptr);
-    for (const auto& [raw, weak] : open_)
+    for (const auto& [number, weak] : open_)
       if (auto connection = weak.lock()) open.push_back(std::move(connection));
   }
   for (const auto& connection : open) Connection::requestEnd(connection);

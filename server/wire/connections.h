@@ -3,10 +3,11 @@
 
 #include <boost/asio/any_io_executor.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 
 namespace qtet {
 
@@ -43,11 +44,12 @@ class Connections {
   void endAll(std::function<void()> whenEmpty);
 
  private:
-  void leave(Connection* connection);
+  void leave(std::uint64_t number);
 
   const std::size_t most_;
   mutable std::mutex mutex_;
-  std::unordered_map<Connection*, std::weak_ptr<Connection>> open_;
+  std::uint64_t entered_ = 0;
+  std::map<std::uint64_t, std::weak_ptr<Connection>> open_;  // by the order in which they entered
   bool ending_ = false;
   std::function<void()> whenEmpty_;
 };

@@ -11,6 +11,7 @@ namespace {
 
 std::atomic<std::int64_t> held{0};
 std::atomic<std::int64_t> peak{0};
+std::atomic<std::uint64_t> count{0};
 // allocations in threads that are not spared; negative: none fails
 std::atomic<std::int64_t> untilFailure{-1};
 thread_local bool isSpared = false;
@@ -23,6 +24,7 @@ void failInTurn() {
 void* taken(void* memory) {
   if (memory == nullptr) throw std::bad_alloc();
   const auto bytes = static_cast<std::int64_t>(malloc_usable_size(memory));
+  count.fetch_add(1, std::memory_order_relaxed);
   const std::int64_t now = held.fetch_add(bytes) + bytes;
   for (std::int64_t seen = peak.load(); now > seen && !peak.compare_exchange_weak(seen, now);) {
   }
@@ -80,6 +82,10 @@ std::size_t peakBytesOf(const std::function<void()>& work) {
   work();
   return static_cast<std::size_t>(peak.load() - before);
 }
+
+std::int64_t heldBytes() { return held.load(); }
+
+std::uint64_t allocations() { return count.load(); }
 
 void withoutMemoryInOthers(std::int64_t n, const std::function<void()>& work) {
   struct Sparing {
