@@ -1,4 +1,4 @@
-// A page whose policy forbids WebAssembly is told what to add, in every browser's words.
+// The viewer says what a page's policy lacks for WebAssembly, whatever words the browser has.
 
 import {expect, test} from 'vitest';
 import {decoderFailure, isForbidden, loadingCause} from '../core/protocol/wasm_policy';

@@ -22,7 +22,7 @@ struct Threshold {
   double low = 0, high = 0;
 };
 
-/// What `readSeconds` is if nobody says it.
+/// The default of `readSeconds`.
 inline constexpr std::chrono::seconds kReadPatience{60};
 
 struct ReadOptions {
