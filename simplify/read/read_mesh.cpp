@@ -159,11 +159,11 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
   switch (format) {
     case MeshFormat::kGmsh:
       return isFluent(path) ? readFluent(path, options, report)
-                            : readGmsh(path, options.time, report);
-    case MeshFormat::kMedit: return readMedit(path, report);
-    case MeshFormat::kTetgen: return readTetgen(path, report);
-    case MeshFormat::kSu2: return readSu2(path, report);
-    case MeshFormat::kUnv: return readUnv(path, report);
+                            : readGmsh(path, options.time, report, options.patience);
+    case MeshFormat::kMedit: return readMedit(path, report, options.patience);
+    case MeshFormat::kTetgen: return readTetgen(path, report, options.patience);
+    case MeshFormat::kSu2: return readSu2(path, report, options.patience);
+    case MeshFormat::kUnv: return readUnv(path, report, options.patience);
     case MeshFormat::kXdmf: {
       const Result<XdmfFile> file = XdmfFile::open(path);
       if (!file) return std::unexpected(file.error());

@@ -67,7 +67,7 @@ Result<std::vector<TimedCells>> readByVtk(const std::filesystem::path& path, Mes
 /// Reads a .vtu file without VTK, unless it holds several steps, which no program writes any more.
 Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& path,
                                                  const ReadOptions& options, ReadReport& report) {
-  const Result<VtuFile> file = VtuFile::open(path);
+  const Result<VtuFile> file = VtuFile::open(path, options.patience);
   if (!file) return std::unexpected(file.error());
   const Result<VtuDocument> document = readVtuDocument(*file);
   if (!document) return std::unexpected(document.error());
@@ -91,7 +91,8 @@ Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& pa
 Result<std::vector<TimedCells>> readLegacy(const std::filesystem::path& path,
                                            const ReadOptions& options, ReadReport& report) {
   ReadReport found;
-  Result<std::optional<CellMesh>> cells = readLegacyVtk(path, options.fields, found);
+  Result<std::optional<CellMesh>> cells =
+      readLegacyVtk(path, options.fields, found, options.patience);
   if (!cells) return std::unexpected(cells.error());
   if (!*cells) return readByVtk(path, MeshFormat::kLegacyVtk, options, report);
   return readChosen({}, path, options, report, [&](std::size_t, ReadReport& ofStep) {

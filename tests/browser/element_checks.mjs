@@ -272,6 +272,53 @@ async function keepsCameraAndMeshWhereverItMoves({server, browser}) {
   assert.deepEqual(viewer.problems, []);
 }
 
+/** uPlot keeps each plot that is not destroyed, and with it the whole element. */
+async function leavesNothingBehind({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=box`);
+  const {page} = viewer;
+  await viewer.waitForState('complete');
+  await page.evaluate(async () => {
+    const pause = (ms) =>
+      new Promise((later) => {
+        setTimeout(later, ms);
+      });
+    const until = async (isSo) => {
+      while (!isSo()) await pause(20);
+    };
+    const openAndRemove = async (hasPlot) => {
+      const element = document.createElement('qtet-viewer');
+      element.setAttribute('mesh', 'box');
+      element.style.cssText = 'display: block; width: 400px; height: 300px';
+      const whole = new Promise((done) => {
+        element.addEventListener('complete', done, {once: true});
+      });
+      document.body.append(element);
+      await whole;
+      const {shadowRoot, viewing} = element;
+      if (hasPlot) {
+        await until(() => viewing.later);
+        const {inspect} = viewing.later.panels;
+        inspect.use('line');
+        await inspect.click(190, 150);
+        await inspect.click(215, 155);
+        await until(() => shadowRoot.querySelector('.plot canvas'));
+      }
+      element.remove();
+      return [new WeakRef(element), new WeakRef(shadowRoot.querySelector('.panel'))];
+    };
+    window.qtetLeft = [await openAndRemove(false), await openAndRemove(true)].flat();
+  });
+  const devtools = await page.context().newCDPSession(page);
+  const left = async () => {
+    await devtools.send('HeapProfiler.collectGarbage');
+    return page.evaluate(() => window.qtetLeft.map((one) => one.deref() !== undefined));
+  };
+  for (const end = Date.now() + kTimeoutMs; (await left()).some(Boolean);) {
+    assert.ok(Date.now() < end, `removed elements stay in memory: ${await left()}`);
+    await page.waitForTimeout(100);
+  }
+}
+
 /** After an error in one picture, the next ones are drawn. */
 async function drawsOnAfterAPictureThatFailed({server, browser}) {
   for (const breakOnce of [
@@ -469,6 +516,7 @@ export const elementChecks = {
   takesItsAttributesInTheTaskThatAppendsIt,
   pausesInTheTaskThatAppendsIt,
   keepsWhatIsAskedForBeforeThereIsAMesh,
+  leavesNothingBehind,
   keepsCameraAndMeshWhereverItMoves,
   drawsOnAfterAPictureThatFailed,
   heedsAQualityThatChangesBeforeTheHeadHasCome,

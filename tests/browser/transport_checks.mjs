@@ -287,8 +287,26 @@ async function worksUnderAStrictPolicy({browser, logs, viewer: files, out}) {
   }
 }
 
+/** The page would only show Chromium's own words, and "Reload". */
+async function saysWhatThePolicyNeeds({browser, logs, viewer: files, out}) {
+  const folder = makeSite(join(out, 'policy-site'), files, logs.fin);
+  const policy = kStrictPolicy.replace(" 'wasm-unsafe-eval'", '');
+  const headers = {'content-security-policy': policy};
+  const host = await hostFolder(folder, {nginx: false, headers});
+  try {
+    const viewer = await browser.open(`${host.url}?src=fin.qtet`);
+    await viewer.waitForState('failed');
+    const notice = await viewer.text('.notice p');
+    assert.match(notice, /Content Security Policy .* script-src needs 'wasm-unsafe-eval'/);
+    assert.doesNotMatch(notice, /Reload/);
+  } finally {
+    host.close();
+  }
+}
+
 export const transportChecks = {
   worksUnderAStrictPolicy,
+  saysWhatThePolicyNeeds,
   namesEachFault,
   showsWhatATokenOpens,
   showsWhichPartOfTheCurveIsHere,

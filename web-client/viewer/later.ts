@@ -89,7 +89,8 @@ export class Later {
       () => host.failed('no-picture', 'What makes pictures cannot be loaded. Try again later.'),
     );
     this.meshDrop = new Wanted(
-      () => import('./drop/mesh_drop').then(({MeshDrop}) => new MeshDrop(page, host)),
+      () =>
+        import('./drop/mesh_drop').then(({MeshDrop}) => new MeshDrop(page, host, this.ends.signal)),
       () =>
         host.failed(
           'dropped-mesh',
@@ -132,6 +133,7 @@ export class Later {
 
   dispose(): void {
     this.ends.abort();
+    this.panels.inspect.dispose();
   }
 
   /** Must be called with each new view. */

@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Labels between two looks at the clock: about a millisecond.
+constexpr std::uint32_t kLabelsBetweenLooks = 1 << 14;
 constexpr FoamList::Label kMaxLabel = (FoamList::Label{1} << 32) - 1;
 
 fs::path compressed(const fs::path& path) { return path.string() + ".gz"; }
@@ -29,7 +31,7 @@ bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; 
 
 bool FoamList::isThere(const fs::path& path) { return isFile(path) || isFile(compressed(path)); }
 
-Result<FoamList> FoamList::open(const fs::path& path) {
+Result<FoamList> FoamList::open(const fs::path& path, std::chrono::seconds patience) {
   Result<std::string> text = std::string();
   if (isFile(path)) {
     text = wholeFile(path);
@@ -43,7 +45,7 @@ Result<FoamList> FoamList::open(const fs::path& path) {
     return fail(ErrorCode::kNotFound, "the case has no file " + path.string() + "; copy it whole");
   }
   if (!text) return std::unexpected(text.error());
-  FoamList out(path, std::move(*text));
+  FoamList out(path, std::move(*text), patience);
   if (Status done = out.readHeader(); !done) return std::unexpected(done.error());
   return out;
 }
@@ -114,6 +116,7 @@ Status FoamList::readHeader() {
 }
 
 Result<FoamList::Label> FoamList::label() {
+  if (labelsRead_++ % kLabelsBetweenLooks == 0 && time_.isOver()) return badHere(time_.text());
   const std::string_view found = word();
   Label value = 0;
   const auto read = std::from_chars(found.data(), found.data() + found.size(), value);
@@ -137,20 +140,34 @@ Result<std::uint64_t> FoamList::count(std::uint64_t bytesEach) {
   return count;
 }
 
-Result<std::uint64_t> FoamList::size() { return count(1); }
+Result<std::uint64_t> FoamList::size() {
+  const std::size_t begin = at_;
+  const Result<std::uint64_t> told = count(1);
+  at_ = begin;
+  return told;
+}
 
-Result<std::vector<FoamList::Label>> FoamList::labels() {
+Result<std::uint64_t> FoamList::faceCount() {
+  const Result<std::uint64_t> told = size();
+  if (!told || !isBinary_ || !isCompact_) return told;
+  return *told == 0 ? 0 : *told - 1;  // where each begins, and where the last one ends
+}
+
+Result<std::vector<FoamList::Label>> FoamList::uniformLabels(Label count, std::uint64_t most) {
+  const Result<Label> value = label();
+  if (!value) return std::unexpected(value.error());
+  if (!take('}')) return badHere("a list N{VALUE} does not end");
+  if (count < 0 || std::cmp_greater(count, most))
+    return badHere("a list N{VALUE} says that it has " + std::to_string(count) +
+                   " labels, but at most " + std::to_string(most) + " are possible");
+  return std::vector<Label>(static_cast<std::size_t>(count), *value);
+}
+
+Result<std::vector<FoamList::Label>> FoamList::labels(std::uint64_t mostUniform) {
   const std::size_t begin = at_;
   const Result<Label> first = label();
   if (!first) return std::unexpected(first.error());
-  if (take('{')) {  // 12{0}: one value for all
-    const Result<Label> value = label();
-    if (!value) return std::unexpected(value.error());
-    if (!take('}')) return badHere("a list N{VALUE} does not end");
-    constexpr Label kMaxUniform = 1 << 24;  // cells of one value: no file of bytes bounds them
-    if (*first > kMaxUniform) return badHere("a list N{VALUE} is too long");
-    return std::vector<Label>(static_cast<std::size_t>(std::max<Label>(*first, 0)), *value);
-  }
+  if (take('{')) return uniformLabels(*first, mostUniform);
   at_ = begin;
   const Result<std::uint64_t> told = count(isBinary_ ? labelBytes_ : 2);
   if (!told) return std::unexpected(told.error());
@@ -195,9 +212,12 @@ Status FoamList::faces(const std::function<Status(std::span<const Label>)>& give
   const Result<std::uint64_t> told = count(kMinFaceBytes);
   if (!told) return std::unexpected(told.error());
   if (!take('(')) return badHere("a list does not begin with (");
+  // work stays in proportion to the file: a mesh has no face whose corners are all the same
+  std::uint64_t uniformLeft = text_.size();
   for (std::uint64_t i = 0; i < *told; ++i) {
-    const Result<std::vector<Label>> corners = labels();
+    const Result<std::vector<Label>> corners = labels(uniformLeft);
     if (!corners) return std::unexpected(corners.error());
+    uniformLeft -= std::min<std::uint64_t>(uniformLeft, corners->size());
     if (Status done = give(*corners); !done) return done;
   }
   if (!take(')')) return badHere("a list of " + std::to_string(*told) + " does not end there");
@@ -205,9 +225,9 @@ Status FoamList::faces(const std::function<Status(std::span<const Label>)>& give
 }
 
 Status FoamList::compactFaces(const std::function<Status(std::span<const Label>)>& give) {
-  const Result<std::vector<Label>> begins = labels();
+  const Result<std::vector<Label>> begins = labels(text_.size());
   if (!begins) return std::unexpected(begins.error());
-  const Result<std::vector<Label>> corners = labels();
+  const Result<std::vector<Label>> corners = labels(text_.size());
   if (!corners) return std::unexpected(corners.error());
   for (std::size_t i = 0; i + 1 < begins->size(); ++i) {
     const Label begin = (*begins)[i], end = (*begins)[i + 1];

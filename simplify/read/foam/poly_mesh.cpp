@@ -32,8 +32,8 @@ std::uint64_t edgesOf(std::span<const Label> corners) {
 }
 
 /// Checks one folder, and returns its number of cells.
-Result<std::uint64_t> checkPolyMesh(const fs::path& folder) {
-  Result<FoamList> points = FoamList::open(folder / "points");
+Result<std::uint64_t> checkPolyMesh(const fs::path& folder, std::chrono::seconds patience) {
+  Result<FoamList> points = FoamList::open(folder / "points", patience);
   if (!points && FoamList::isThere(folder / "points")) return std::unexpected(points.error());
   Label pointCount = INT64_MAX;  // those of another time, if there are none here
   if (points) {
@@ -41,13 +41,17 @@ Result<std::uint64_t> checkPolyMesh(const fs::path& folder) {
     if (!told) return std::unexpected(told.error());
     pointCount = static_cast<Label>(*told);
   }
-  Result<FoamList> ownerFile = FoamList::open(folder / "owner");
+  Result<FoamList> facesFile = FoamList::open(folder / "faces", patience);
+  if (!facesFile) return std::unexpected(facesFile.error());
+  const auto faceCount = facesFile->faceCount();
+  if (!faceCount) return std::unexpected(faceCount.error());
+  Result<FoamList> ownerFile = FoamList::open(folder / "owner", patience);
   if (!ownerFile) return std::unexpected(ownerFile.error());
-  const auto owner = ownerFile->labels();
+  const auto owner = ownerFile->labels(*faceCount);
   if (!owner) return std::unexpected(owner.error());
-  Result<FoamList> neighbourFile = FoamList::open(folder / "neighbour");
+  Result<FoamList> neighbourFile = FoamList::open(folder / "neighbour", patience);
   if (!neighbourFile) return std::unexpected(neighbourFile.error());
-  const auto neighbour = neighbourFile->labels();
+  const auto neighbour = neighbourFile->labels(*faceCount);
   if (!neighbour) return std::unexpected(neighbour.error());
 
   Label last = -1;
@@ -58,8 +62,6 @@ Result<std::uint64_t> checkPolyMesh(const fs::path& folder) {
                           std::to_string(owner->size()) + " faces");
   std::vector<std::uint64_t> open(static_cast<std::size_t>(last + 1));
 
-  Result<FoamList> facesFile = FoamList::open(folder / "faces");
-  if (!facesFile) return std::unexpected(facesFile.error());
   std::size_t face = 0, inner = 0;
   const Status done = facesFile->faces([&](std::span<const Label> corners) -> Status {
     if (face >= owner->size()) return ownerFile->bad("it has fewer lines than there are faces");
@@ -89,7 +91,7 @@ Result<std::uint64_t> checkPolyMesh(const fs::path& folder) {
                           std::to_string(torn - open.begin()) +
                           ": lines of faces, owner or neighbour are wrong");
 
-  Result<FoamList> boundary = FoamList::open(folder / "boundary");
+  Result<FoamList> boundary = FoamList::open(folder / "boundary", patience);
   if (!boundary) return std::unexpected(boundary.error());
   const auto outer = boundary->patchFaces();
   if (!outer) return std::unexpected(outer.error());
@@ -121,7 +123,8 @@ void addMeshes(const fs::path& folder, std::vector<fs::path>& out) {
 
 }  // namespace
 
-Result<std::optional<std::uint64_t>> checkPolyMeshes(const fs::path& folder) {
+Result<std::optional<std::uint64_t>> checkPolyMeshes(const fs::path& folder,
+                                                     std::chrono::seconds patience) {
   std::vector<fs::path> meshes;
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
@@ -137,7 +140,7 @@ Result<std::optional<std::uint64_t>> checkPolyMeshes(const fs::path& folder) {
   std::ranges::sort(meshes);  // of several faults always the same one is reported
   std::uint64_t cells = 0;
   for (const fs::path& mesh : meshes) {
-    const Result<std::uint64_t> found = checkPolyMesh(mesh);
+    const Result<std::uint64_t> found = checkPolyMesh(mesh, patience);
     if (!found) return std::unexpected(found.error());
     cells = *found;
   }

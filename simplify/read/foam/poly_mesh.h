@@ -2,11 +2,13 @@
 // makes other cells of them or none.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 
 #include "proto/error.h"
+#include "simplify/read/options/read_options.h"
 
 namespace qtet {
 
@@ -14,7 +16,8 @@ namespace qtet {
 /// also compressed. Its lists must have as many things as they say and fit together, and each
 /// cell's faces must close. Returns the number of cells if the case has one mesh. Errors: not-found
 /// (no mesh, a file), bad-input (the file and the line, or the cell), truncated, io.
+/// `patience` holds for each file (FoamList::open).
 [[nodiscard]] Result<std::optional<std::uint64_t>> checkPolyMeshes(
-    const std::filesystem::path& folder);
+    const std::filesystem::path& folder, std::chrono::seconds patience = kReadPatience);
 
 }  // namespace qtet

@@ -17,7 +17,7 @@ namespace {
 Result<std::vector<TimedCells>> readFoamCase(const std::filesystem::path& folder,
                                              const std::filesystem::path& marker,
                                              const ReadOptions& options, ReadReport& report) {
-  const auto cells = checkPolyMeshes(folder);
+  const auto cells = checkPolyMeshes(folder, options.patience);
   if (!cells) return std::unexpected(cells.error());
   Result<std::vector<TimedCells>> steps = readApart(
       marker, options, report,

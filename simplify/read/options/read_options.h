@@ -22,6 +22,9 @@ struct Threshold {
   double low = 0, high = 0;
 };
 
+/// The default of `readSeconds`.
+inline constexpr std::chrono::seconds kReadPatience{60};
+
 struct ReadOptions {
   FieldNames fields;
   CurvedCells curved = CurvedCells::kSplit;
@@ -42,8 +45,9 @@ struct ReadOptions {
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.
   std::string plot3dSolution;
   bool plot3d = false;
-  /// How long a foreign reader may read nothing before it is given up (watch_process.h).
-  std::chrono::seconds patience{60};
+  /// How long a foreign reader may read nothing before it is given up (watch_process.h). One of
+  /// ours may take so long beside what the file's size allows (reading_time.h).
+  std::chrono::seconds patience = kReadPatience;
 };
 
 /// Reports what was in the file and is not in the mesh, and what was done to it; `notes` says it in

@@ -28,7 +28,13 @@ void MeshScanner::skipBlanks() {
   }
 }
 
+void MeshScanner::look() {
+  untilLook_ = kReadsBetweenLooks;
+  if (time_.isOver()) fail(ErrorCode::kBadInput, time_.text());
+}
+
 std::string_view MeshScanner::word() {
+  if (--untilLook_ == 0) look();
   if (failed()) return {};
   skipBlanks();
   const std::size_t begin = place_;
@@ -39,6 +45,7 @@ std::string_view MeshScanner::word() {
 }
 
 std::string_view MeshScanner::line() {
+  if (--untilLook_ == 0) look();
   if (failed()) return {};
   const std::size_t end = std::min(text_.find('\n', place_), text_.size());
   std::string_view out = text_.substr(place_, end - place_);

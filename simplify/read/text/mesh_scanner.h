@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "proto/error.h"
+#include "simplify/read/process/reading_time.h"
 
 namespace qtet {
 
@@ -27,6 +28,10 @@ class MeshScanner {
   /// scanner.
   MeshScanner(std::string_view text, std::filesystem::path path, char comment = 0)
       : text_(text), path_(std::move(path)), comment_(comment) {}
+
+  /// From now on the reader has `patience` and what the text's size adds (ReadingTime). Soon after
+  /// it a read is an error.
+  void giveUpAfter(std::chrono::seconds patience) { time_ = {patience, text_.size()}; }
 
   /// The next word between blanks; empty at the end.
   std::string_view word();
@@ -61,6 +66,7 @@ class MeshScanner {
   template <class T>
   T raw(const char* what) {
     T value{};
+    if (--untilLook_ == 0) look();
     if (failed() || sizeof(T) > text_.size() - place_) {
       endsWithin(what);
       return T{};
@@ -95,6 +101,10 @@ class MeshScanner {
   }
 
  private:
+  /// Reads between two looks at the clock: about a millisecond.
+  static constexpr std::uint32_t kReadsBetweenLooks = 1 << 14;
+
+  void look();
   static double beyondRange(std::string_view number);
   void refuse(std::size_t place, std::string_view found, const char* what);
   void endsWithin(const char* what);
@@ -104,6 +114,8 @@ class MeshScanner {
   std::filesystem::path path_;
   char comment_;
   bool bytes_ = false;
+  std::uint32_t untilLook_ = 1;  ///< how many reads
+  ReadingTime time_;
   std::size_t place_ = 0;
   std::optional<Error> error_;
 };

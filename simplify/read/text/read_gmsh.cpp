@@ -45,7 +45,8 @@ class Gmsh {
        ReadReport& report)
       : in_(text, path), path_(path), time_(time), report_(report) {}
 
-  Result<CellMesh> read() {
+  Result<CellMesh> read(std::chrono::seconds patience) {
+    in_.giveUpAfter(patience);
     while (!in_.atEnd()) {
       const std::string section(in_.line());
       readSection(section);
@@ -412,10 +413,10 @@ class Gmsh {
 }  // namespace
 
 Result<CellMesh> readGmsh(const std::filesystem::path& path, const std::string& time,
-                          ReadReport& report) {
+                          ReadReport& report, std::chrono::seconds patience) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
-  return Gmsh(*text, path, time, report).read();
+  return Gmsh(*text, path, time, report).read(patience);
 }
 
 }  // namespace qtet

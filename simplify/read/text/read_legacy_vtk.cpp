@@ -44,7 +44,8 @@ class LegacyVtk {
             ReadReport& report)
       : in_(text, path), path_(path), choice_(fields, report), report_(report) {}
 
-  Result<std::optional<CellMesh>> read() {
+  Result<std::optional<CellMesh>> read(std::chrono::seconds patience) {
+    in_.giveUpAfter(patience);
     readHeader();
     while (isUnderstood_ && !in_.atEnd()) readPart(lowered(in_.word()));
     if (in_.failed()) return in_.error();
@@ -302,10 +303,11 @@ class LegacyVtk {
 }  // namespace
 
 Result<std::optional<CellMesh>> readLegacyVtk(const std::filesystem::path& path,
-                                              const FieldNames& fields, ReadReport& report) {
+                                              const FieldNames& fields, ReadReport& report,
+                                              std::chrono::seconds patience) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
-  return LegacyVtk(*text, path, fields, report).read();
+  return LegacyVtk(*text, path, fields, report).read(patience);
 }
 
 }  // namespace qtet

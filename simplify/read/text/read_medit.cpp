@@ -42,7 +42,8 @@ class Medit {
     in_.readsBytes(bytes);
   }
 
-  Result<CellMesh> read() {
+  Result<CellMesh> read(std::chrono::seconds patience) {
+    in_.giveUpAfter(patience);
     bytes_ ? readBytes() : readText();
     if (in_.failed()) return in_.error();
     addReferences("point", pointReferences_);
@@ -242,12 +243,13 @@ class Medit {
 
 }  // namespace
 
-Result<CellMesh> readMedit(const std::filesystem::path& path, ReadReport& report) {
+Result<CellMesh> readMedit(const std::filesystem::path& path, ReadReport& report,
+                           std::chrono::seconds patience) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
   constexpr std::string_view kFirstByte("\1", 1), kFirstByteSwapped("\0", 1);
   const bool bytes = text->starts_with(kFirstByte) || text->starts_with(kFirstByteSwapped);
-  return Medit(*text, path, bytes, report).read();
+  return Medit(*text, path, bytes, report).read(patience);
 }
 
 }  // namespace qtet

@@ -12,7 +12,8 @@ class Su2 {
  public:
   Su2(std::string_view text, const std::filesystem::path& path) : in_(text, path, '%') {}
 
-  Result<CellMesh> read() {
+  Result<CellMesh> read(std::chrono::seconds patience) {
+    in_.giveUpAfter(patience);
     while (!in_.atEnd()) {
       const std::string key = upper(in_.line());
       const std::size_t equals = key.find('=');
@@ -89,10 +90,11 @@ class Su2 {
 
 }  // namespace
 
-Result<CellMesh> readSu2(const std::filesystem::path& path, ReadReport&) {
+Result<CellMesh> readSu2(const std::filesystem::path& path, ReadReport&,
+                         std::chrono::seconds patience) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
-  return Su2(*text, path).read();
+  return Su2(*text, path).read(patience);
 }
 
 }  // namespace qtet

@@ -23,10 +23,12 @@ bool tooMany(MeshScanner& in, std::uint64_t attributes) {
 }
 
 /// The number of the first point: 0 or 1, which counts everything.
-Result<std::uint64_t> readNodes(const std::filesystem::path& path, CellMesh& out) {
+Result<std::uint64_t> readNodes(const std::filesystem::path& path, std::chrono::seconds patience,
+                                CellMesh& out) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
   MeshScanner in(*text, path, '#');
+  in.giveUpAfter(patience);
   const auto count = in.number<std::uint64_t>("the number of points"),
              dimension = in.number<std::uint64_t>("the dimension");
   const auto attributes = in.number<std::uint64_t>("the number of attributes"),
@@ -58,11 +60,12 @@ Result<std::uint64_t> readNodes(const std::filesystem::path& path, CellMesh& out
   return first;
 }
 
-Status readElements(const std::filesystem::path& path, std::uint64_t first, CellMesh& out,
-                    ReadReport& report) {
+Status readElements(const std::filesystem::path& path, std::chrono::seconds patience,
+                    std::uint64_t first, CellMesh& out, ReadReport& report) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
   MeshScanner in(*text, path, '#');
+  in.giveUpAfter(patience);
   const auto count = in.number<std::uint64_t>("the number of tetrahedra"),
              nodes = in.number<std::uint64_t>("the number of nodes of each");
   const auto attributes = in.number<std::uint64_t>("the number of attributes");
@@ -94,7 +97,8 @@ Status readElements(const std::filesystem::path& path, std::uint64_t first, Cell
 
 }  // namespace
 
-Result<CellMesh> readTetgen(const std::filesystem::path& path, ReadReport& report) {
+Result<CellMesh> readTetgen(const std::filesystem::path& path, ReadReport& report,
+                            std::chrono::seconds patience) {
   std::filesystem::path nodes = path, elements = path;
   nodes.replace_extension(".node");
   elements.replace_extension(".ele");
@@ -105,9 +109,9 @@ Result<CellMesh> readTetgen(const std::filesystem::path& path, ReadReport& repor
           checked.error().message + " (a TetGen mesh is a .node and an .ele file of one name)");
   }
   CellMesh out;
-  const Result<std::uint64_t> first = readNodes(nodes, out);
+  const Result<std::uint64_t> first = readNodes(nodes, patience, out);
   if (!first) return std::unexpected(first.error());
-  if (Status read = readElements(elements, *first, out, report); !read)
+  if (Status read = readElements(elements, patience, *first, out, report); !read)
     return std::unexpected(read.error());
   return out;
 }

@@ -37,7 +37,8 @@ class Unv {
   Unv(std::string_view text, const std::filesystem::path& path, ReadReport& report)
       : in_(text, path), report_(report) {}
 
-  Result<CellMesh> read() {
+  Result<CellMesh> read(std::chrono::seconds patience) {
+    in_.giveUpAfter(patience);
     while (!in_.atEnd() && !in_.failed()) {
       if (in_.line() != "-1") continue;
       const std::string_view dataset = in_.line();
@@ -160,10 +161,11 @@ class Unv {
 
 }  // namespace
 
-Result<CellMesh> readUnv(const std::filesystem::path& path, ReadReport& report) {
+Result<CellMesh> readUnv(const std::filesystem::path& path, ReadReport& report,
+                         std::chrono::seconds patience) {
   const Result<std::string> text = wholeFile(path);
   if (!text) return std::unexpected(text.error());
-  return Unv(*text, path, report).read();
+  return Unv(*text, path, report).read(patience);
 }
 
 }  // namespace qtet

@@ -10,7 +10,7 @@
 
 namespace qtet {
 
-Result<VtuFile> VtuFile::open(const std::filesystem::path& path) {
+Result<VtuFile> VtuFile::open(const std::filesystem::path& path, std::chrono::seconds patience) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status{};
   if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
@@ -18,13 +18,14 @@ Result<VtuFile> VtuFile::open(const std::filesystem::path& path) {
     if (descriptor >= 0) ::close(descriptor);
     return fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + reason);
   }
-  return VtuFile(descriptor, static_cast<std::uint64_t>(status.st_size), path);
+  return VtuFile(descriptor, static_cast<std::uint64_t>(status.st_size), path, patience);
 }
 
 VtuFile::VtuFile(VtuFile&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       size_(other.size_),
-      path_(std::move(other.path_)) {}
+      path_(std::move(other.path_)),
+      time_(other.time_) {}
 
 VtuFile::~VtuFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -36,6 +37,7 @@ Status VtuFile::read(std::uint64_t at, std::span<std::byte> into) const {
                 path_.string() + " ends before byte " + std::to_string(at) + " + " +
                     std::to_string(into.size()) + "; copy or export it again",
                 at);
+  if (Status inTime = time_.check(path_); !inTime) return inTime;
   while (!into.empty()) {
     const ssize_t got = ::pread(descriptor_, into.data(), into.size(), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;

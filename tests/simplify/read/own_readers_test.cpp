@@ -783,6 +783,26 @@ TEST(OwnReaders, aMeshCutBeforeItsLastElementIsRefused) {
   }
 }
 
+TEST(OwnReaders, noneGoesOnAfterItsTime) {
+  const std::string unv = "    -1\n  2411\n 1 1 1 11\n 0 0 0\n    -1\n",
+                    legacy =
+                        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                        "POINTS 1 float\n0 0 0\n",
+                    vtu = "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid/></VTKFile>";
+  ReadOptions options;
+  options.patience = std::chrono::seconds(-100);
+  for (const fs::path& path :
+       {fileWith("a.msh", gmsh22(false)), fileWith("b.msh", gmsh41(true)),
+        fileWith("a.mesh", medit(false, 2)), fileWith("a.meshb", medit(true, 3)),
+        fileWith("a.su2", su2()), tetgenFiles(kNode, kEle), fileWith("a.unv", unv),
+        fileWith("a.vtk", legacy), fileWith("a.vtu", vtu)}) {
+    const Result<ReadMesh> read = readMesh(path, options);
+    ASSERT_FALSE(read) << path;
+    EXPECT_EQ(read.error().code, ErrorCode::kBadInput) << path;
+    EXPECT_NE(read.error().message.find("`readSeconds`"), std::string::npos) << read.error().text();
+  }
+}
+
 TEST(MeshScanner, theFirstErrorStays) {
   MeshScanner in("1 x 2", "f.txt");
   EXPECT_EQ(in.number<int>("a number"), 1);

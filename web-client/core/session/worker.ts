@@ -3,10 +3,10 @@
 import {Assembler} from '../decode/assembler';
 import {WasmCodec} from '../decode/codec';
 import {kDraco} from '../decode/draco';
+import {isForbidden, decoderFailure} from '../protocol/wasm_policy';
 import {fieldsOf} from '../layers/shown';
 import type {Display} from '../picture/display';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
-import {errorText, QtetError} from '../protocol/errors';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
 import type {Inspector} from './inspector';
@@ -49,7 +49,7 @@ function start(baseUrl: string, codecUrl: string): Parts {
   let whole: Promise<WebAssembly.Module> | null = null;
   let inspector: Inspector | null = null;
   const becomeWhole = async (): Promise<WebAssembly.Module> => {
-    const module = await retry(() => compile(codecUrl));
+    const module = await retry(() => compile(codecUrl), Math.random, mayPass);
     codec.become(module);
     session.renewed();
     retry(() => import('../picture/creases')).then(
@@ -65,7 +65,9 @@ function start(baseUrl: string, codecUrl: string): Parts {
   const session = new Session(assembler, publisher, post);
   session.coarse = coarse;
   session.onBase = () => void makeWhole().catch(fail);
-  assembler.codecReady = retry(() => compile(baseUrl)).then((module) => codec.become(module));
+  assembler.codecReady = retry(() => compile(baseUrl), Math.random, mayPass).then((module) =>
+    codec.become(module),
+  );
   assembler.codecReady.catch(fail);
   session.waitForCodec();
   return {
@@ -86,9 +88,10 @@ function start(baseUrl: string, codecUrl: string): Parts {
 }
 
 function fail(thrown: unknown): void {
-  const message = `The decoder could not be loaded (${errorText(thrown)}). Reload the page.`;
-  parts.session.failed(new QtetError('internal', message));
+  parts.session.failed(decoderFailure(thrown));
 }
+
+const mayPass = (thrown: unknown): boolean => !isForbidden(thrown);
 
 /** Compiles while downloading. A host that serves .wasm under another type loses only that. */
 async function compile(url: string): Promise<WebAssembly.Module> {

@@ -1,5 +1,6 @@
 // The worker that simplifies one mesh file, and ends.
 
+import {loadingCause} from '../protocol/wasm_policy';
 import {errorCode, errorText} from '../protocol/errors';
 import type {PageFile} from './page_files';
 import {simplifyFile, type SimplifiedFile, type SimplifyProgress} from './simplify_file';
@@ -68,7 +69,7 @@ async function serve({moduleUrl, files, name}: SimplifyRequest): Promise<void> {
       type: 'failed',
       code: 'no-simplifier',
       message:
-        `What simplifies meshes cannot be loaded (${errorText(thrown)}). Make a log by ` +
+        `What simplifies meshes cannot be loaded (${loadingCause(thrown)}). Make a log by ` +
         '`qtet simplify` and drop that.',
     });
   }

@@ -22,26 +22,39 @@ export interface BlockSource {
    * wanted.
    */
   together(pieces: readonly Piece[], bytes: number): number;
-  /** The bytes of each piece. Throws `network`, `not-found`, `http`, `log-changed`. */
+  /**
+   * The bytes of each piece. Throws `network`, `not-found`, `http`, `log-changed`,
+   * `limit-exceeded`.
+   */
   fetch(pieces: readonly Piece[], signal: AbortSignal): Promise<Uint8Array[]>;
   /** SHA-256 of the log if the server states it, else the response's tag. */
   readonly digest: string;
 }
 
 const kHeaderBytes = 64;
+/** proto/limits.h. */
+const kMaxManifestBytes = 8 << 20;
+/** A log of 1 GB with 8,192 fields takes 60 MB; a browser decodes no larger one. */
+const kMaxTableBytes = 256 << 20;
 const kManifestBytesAt = 24;
 const kTableBytesAt = 28;
 /** Reading over so many unwanted bytes is cheaper than another request. */
 const kGapBytes = 4096;
 
-/** The size of the log's front, from its first 64 bytes. */
+/** The size of the log's front, from its first 64 bytes. Throws `truncated`, `limit-exceeded`. */
 export function headBytesOf(header: Uint8Array): number {
   if (header.length < kHeaderBytes)
     throw new QtetError('truncated', 'The file is too short for a qtet log.');
   const view = new DataView(header.buffer, header.byteOffset);
-  return (
-    kHeaderBytes + view.getUint32(kManifestBytesAt, true) + view.getUint32(kTableBytesAt, true)
-  );
+  const manifest = view.getUint32(kManifestBytesAt, true);
+  const table = view.getUint32(kTableBytesAt, true);
+  if (manifest > kMaxManifestBytes || table > kMaxTableBytes)
+    throw new QtetError(
+      'limit-exceeded',
+      `The log's head says that it has ${manifest + table} bytes, more than a log can have. ` +
+        'Copy the file again.',
+    );
+  return kHeaderBytes + manifest + table;
 }
 
 const plainTag = (tag: string): string => tag.replace(/^"|"$/g, '');

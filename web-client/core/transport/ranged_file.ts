@@ -3,6 +3,14 @@
 
 import {QtetError} from '../protocol/errors';
 import {refusedOrigin} from './refused_origin';
+import {
+  kMaxAnswerBytes,
+  kMaxFileBytes,
+  kMaxRoomAhead,
+  roomFor,
+  statedBytes,
+  tooLarge,
+} from './stated_size';
 
 /**
  * The first request asks for so much if nothing is known of the file: a log's head and its first
@@ -20,7 +28,10 @@ const kNoSuchRange = 416;
 
 export type Fetch = (url: string, init: RequestInit) => Promise<Response>;
 
-/** Fetches. Throws `http` for an answer that will not change, and `network` for one that may. */
+/**
+ * Fetches. Throws `http` for an answer that will not change, and `network` for one that may. Throws
+ * `limit-exceeded` for one that states more than a browser can hold.
+ */
 export async function fetchChecked(
   fetch: Fetch,
   url: string,
@@ -33,7 +44,10 @@ export async function fetchChecked(
     if (init.signal?.aborted) throw thrown;
     throw (await refusedOrigin(url)) ?? new QtetError('network', `${url} does not answer.`);
   }
-  if (response.ok) return response;
+  if (response.ok) {
+    statedBytes(response, url);
+    return response;
+  }
   const {status, statusText} = response;
   if (status === kNoSuchRange) throw emptyFile(url);
   const code =
@@ -58,7 +72,7 @@ export class RangedFile {
   /**
    * The beginning of the file: the first answer, or everything so far from a server without ranges.
    */
-  private front = new Uint8Array(0);
+  private front: Uint8Array<ArrayBuffer> = new Uint8Array(0);
   private frontSize = 0;
   private first: Promise<void> | null = null;
   private whole = false;
@@ -86,8 +100,8 @@ export class RangedFile {
   }
 
   /**
-   * Bytes [from, to); fewer only at the end of the file. Throws `network`, `not-found`, `http`, and
-   * `log-changed` if the file has been replaced.
+   * Bytes [from, to); fewer only at the end of the file. Throws `network`, `not-found`, `http`,
+   * `limit-exceeded`, and `log-changed` if the file has been replaced.
    */
   async read(from: number, to: number, signal: AbortSignal): Promise<Uint8Array> {
     this.first ??= this.begin();
@@ -103,7 +117,7 @@ export class RangedFile {
     const known = this.front.subarray(Math.min(from, this.frontSize), this.frontSize);
     const rest = await this.range(Math.max(from, this.frontSize), to, signal);
     if (known.length === 0) return rest;
-    const joined = new Uint8Array(known.length + rest.length);
+    const joined = roomFor(known.length + rest.length, this.place);
     joined.set(known);
     joined.set(rest, known.length);
     return joined;
@@ -119,12 +133,14 @@ export class RangedFile {
     if (response.status !== 206) {
       this.whole = true;
       this.ended = false;
-      this.front = new Uint8Array(Number(response.headers.get('content-length') ?? 0));
+      const ahead = Math.min(kMaxRoomAhead, statedBytes(response, this.place));
+      this.front = roomFor(ahead, this.place);
       void this.drain(response);
       return;
     }
     this.take(new Uint8Array(await response.arrayBuffer()));
     const total = /\/(\d+)$/.exec(response.headers.get('content-range') ?? '')?.[1];
+    if (Number(total) > kMaxFileBytes) throw tooLarge(this.place, Number(total), kMaxFileBytes);
     if (total) this.size = Number(total);
     else if (this.frontSize < this.firstBytes) this.size = this.frontSize;
   }
@@ -156,8 +172,8 @@ export class RangedFile {
 
   /** Reads the whole file piece by piece. A reader continues as soon as its part is here. */
   private async drain(response: Response): Promise<void> {
+    const reader = response.body!.getReader();
     try {
-      const reader = response.body!.getReader();
       for (;;) {
         const {done, value} = await reader.read();
         if (done) break;
@@ -166,18 +182,22 @@ export class RangedFile {
       this.size = this.frontSize;
       this.ended = true;
       this.wake(Infinity);
-    } catch {
+    } catch (thrown) {
       this.first = null;
       this.frontSize = 0;
-      for (const {reject} of this.waiting.splice(0))
-        reject(new QtetError('network', `${this.url} broke off.`));
+      this.front = new Uint8Array(0);
+      const isOurs = thrown instanceof QtetError;
+      if (isOurs) void reader.cancel();
+      const error = isOurs ? thrown : new QtetError('network', `${this.url} broke off.`);
+      for (const {reject} of this.waiting.splice(0)) reject(error);
     }
   }
 
   private take(bytes: Uint8Array): void {
     const needed = this.frontSize + bytes.length;
     if (needed > this.front.length) {
-      const grown = new Uint8Array(Math.max(needed, 2 * this.front.length));
+      const twice = Math.min(kMaxAnswerBytes, 2 * this.front.length);
+      const grown = roomFor(Math.max(needed, twice), this.place);
       grown.set(this.front.subarray(0, this.frontSize));
       this.front = grown;
     }

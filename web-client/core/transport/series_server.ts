@@ -6,6 +6,7 @@ import type {FieldInfo} from '../protocol/fields';
 import type {Vector} from '../protocol/geometry';
 import {instantName} from '../protocol/series';
 import {fetchChecked, type Fetch} from './ranged_file';
+import {statedBytes} from './stated_size';
 import {fetchWith} from './token';
 
 /** If no level is asked for, the answer is off by at most this share of the range (rms). */
@@ -44,8 +45,8 @@ export class SeriesServer {
   ) {}
 
   /**
-   * Asks a busy server once more. Throws `network`, `not-found`, `http`, `bad-message`, and the
-   * reason of `signal`.
+   * Asks a busy server once more. Throws `network`, `not-found`, `http`, `limit-exceeded`,
+   * `bad-message`, and the reason of `signal`.
    */
   async values(question: SeriesQuestion, signal: AbortSignal): Promise<SeriesValues> {
     const {point, field, level} = question;
@@ -61,7 +62,7 @@ export class SeriesServer {
     };
     const response = await fetchChecked(patient, url.href, {signal});
     const text = await response.text();
-    const length = Number(response.headers.get('content-length'));
+    const length = statedBytes(response, url.href);
     return {
       ...checkedValues(text, field.components),
       bytes: length || new TextEncoder().encode(text).length,

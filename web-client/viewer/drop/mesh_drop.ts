@@ -28,19 +28,23 @@ export class MeshDrop {
   private readonly dialog: HTMLDialogElement;
   private cancel = new AbortController();
 
+  /** `ended`: the viewer is gone, and nobody waits for the mesh. */
   constructor(
     page: Page,
     private readonly host: MeshDropHost,
+    private readonly ended: AbortSignal,
   ) {
     adopt(page.root, styles, 'behind');
     insertMarkup(find(page.root, '.notice'), kDialog);
     this.dialog = find(page.root, '.drop-dialog');
     onClick(this.dialog, '.cancel', () => this.cancel.abort());
     this.dialog.addEventListener('cancel', () => this.cancel.abort());
+    ended.addEventListener('abort', () => this.cancel.abort());
   }
 
   /** Shows the mesh. A mesh that is still being simplified is given up. */
   async take(files: readonly File[]): Promise<void> {
+    if (this.ended.aborted) return;
     this.cancel.abort();
     this.cancel = new AbortController();
     const {signal} = this.cancel;

@@ -4,6 +4,7 @@
 
 import {errorCode, errorText, QtetError} from '../../core/protocol/errors';
 import {isSegmentList, readSegmentList, type SegmentList} from '../../core/protocol/segment_list';
+import {statedBytes} from '../../core/transport/stated_size';
 import {refusedOrigin} from '../../core/transport/refused_origin';
 import {fetchWith} from '../../core/transport/token';
 
@@ -47,6 +48,7 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
       `The server at ${base.host} answers "${response.status} ${response.statusText}" instead ` +
         'of its meshes. For a .qtet file on a plain web server, give its address: ?src=FILE.qtet',
     );
+  statedBytes(response, url.href);
   const bytes = await response.arrayBuffer();
   const body = parsed(bytes) as {meshes?: unknown} | null;
   if (isList && isSegmentList(body)) return [entryOfSegments(url, body, bytes.byteLength)];
@@ -65,16 +67,29 @@ export async function fetchCatalog(base: URL, token = ''): Promise<MeshEntry[]> 
 
 /** `list`: the address of a published list, whose members count. */
 function entryOf(mesh: Listed, list: URL | null): MeshEntry {
+  const [firstBytes, chunks] = [countIn(mesh, 'firstBytes'), countIn(mesh, 'chunks')];
   return {
     id: String(mesh.id),
-    tetrahedra: Number(mesh.tetrahedra ?? 0),
+    tetrahedra: countIn(mesh, 'tetrahedra') ?? 0,
     fields: strings(mesh.fields),
     series: strings(mesh.series),
     firstField: typeof mesh.firstField === 'string' ? mesh.firstField : '',
     ...(list && {log: new URL(String(mesh.links?.log), list).href}),
-    ...(list && Number.isInteger(mesh.firstBytes) && {firstBytes: Number(mesh.firstBytes)}),
-    ...(list && Number.isInteger(mesh.chunks) && {chunks: Number(mesh.chunks)}),
+    ...(list && firstBytes !== undefined && {firstBytes}),
+    ...(list && chunks !== undefined && {chunks}),
   };
+}
+
+/** A number from 0 to 2^53 - 1; undefined: there is none. Throws `bad-message`. */
+function countIn(mesh: Listed, key: 'tetrahedra' | 'firstBytes' | 'chunks'): number | undefined {
+  const value = mesh[key] ?? undefined;
+  if (value === undefined || (Number.isSafeInteger(value) && Number(value) >= 0))
+    return value as number | undefined;
+  throw new QtetError(
+    'bad-message',
+    `The list of meshes says that "${key}" of ${String(mesh.id)} is ${JSON.stringify(value)}, ` +
+      'which is no count. Write the list again.',
+  );
 }
 
 function strings(listed: unknown): string[] {

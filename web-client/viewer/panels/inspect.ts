@@ -120,6 +120,12 @@ export class Inspect {
     this.host.pointAt(null);
   }
 
+  /** Ends the plots: uPlot keeps those that are not destroyed. */
+  dispose(): void {
+    this.overTime.end();
+    this.card.dispose();
+  }
+
   /** Brings a line's plot in line with the picture: another field, or a finer mesh. */
   refresh(): void {
     const [from, to] = this.points;

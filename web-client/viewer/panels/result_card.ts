@@ -27,6 +27,8 @@ export class ResultCard {
   private text = '';
   /** The user has chosen the card's place. */
   private dragged = false;
+  /** The viewer is gone: uPlot would keep it with every plot that is not destroyed. */
+  private ended = false;
 
   constructor(
     private readonly root: ShadowRoot,
@@ -92,10 +94,15 @@ export class ResultCard {
     this.dragged = false;
   }
 
+  dispose(): void {
+    this.ended = true;
+    this.hide();
+  }
+
   /** Draws the field along a line. uPlot is loaded with the first plot. */
   async drawPlot(probe: Probe, title: string): Promise<void> {
     const {drawProbe} = await import('./probe_plot');
-    this.plotBy((root, place) => drawProbe(root, place, probe, title));
+    if (!this.ended) this.plotBy((root, place) => drawProbe(root, place, probe, title));
   }
 
   /** Makes room for what `draw` draws. */
