@@ -8,8 +8,8 @@ add_executable(qtet_simulator ${not_by_default} ${simulator_sources}
   server/store/synthetic_log.cpp support/allocation_meter.cpp)
 target_link_libraries(qtet_simulator PRIVATE qtet::server spdlog::spdlog)
 # All references to these become references to __wrap_NAME (system_calls.cpp).
-foreach(name IN ITEMS epoll_create1 epoll_ctl epoll_wait timerfd_create close recv __recv_chk sendmsg
-    sendfile setsockopt getsockopt getpeername shutdown ioctl clock_gettime time
+foreach(name IN ITEMS epoll_create1 epoll_ctl epoll_wait timerfd_create close recv __recv_chk
+    sendmsg sendfile setsockopt getsockopt getpeername shutdown ioctl clock_gettime time
     _ZNSt6chrono3_V212steady_clock3nowEv _ZNSt6chrono3_V212system_clock3nowEv)
   target_link_options(qtet_simulator PRIVATE LINKER:--wrap=${name})
 endforeach()
