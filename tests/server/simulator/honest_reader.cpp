@@ -10,12 +10,16 @@ namespace {
 
 /// How long an answer may take beside what its line takes: for turns of others, and for levels.
 constexpr Time kPatience = 2s, kLevelPatience = 10s;
+/// A small answer waits at most so long beside what its line takes.
+constexpr Time kLongestWait = 200ms;
+constexpr std::size_t kSmall = 8192;  // bytes
 
 struct Asked {
   std::string what;       ///< method and target, with the range
   std::string_view body;  ///< that has to come, if `isKnown`
   bool isKnown = false, isHead = false, mayBeRefused = false;
   unsigned status = 200;
+  Time since{};  ///< it is the next one to be answered
 };
 
 class Reader final : public Client {
@@ -100,6 +104,7 @@ class Reader final : public Client {
       bytes += asked.isKnown ? asked.body.size() : 300'000;
       patience += asked.mayBeRefused ? kLevelPatience : kPatience;
     }
+    asked_.front().since = world_.kernel.now();
     expect(patience + 10 * line().latency + 2 * line().timeFor(bytes),
            "no answer to " + asked_.front().what);
   }
@@ -121,6 +126,14 @@ class Reader final : public Client {
     judge(asked, status, body);
     heard_.erase(0, end + 4 + bytes);
     ++world_.seen["answers"];
+    if (!asked.mayBeRefused && bytes < kSmall) {
+      const Time wait =
+          world_.kernel.now() - asked.since - 4 * line().latency - line().timeFor(bytes + end);
+      if (wait > kLongestWait)
+        wrong("waited " + std::to_string(wait / 1ms) + " ms for " + asked.what);
+      std::uint64_t& longest = world_.seen["ms of the longest wait"];
+      longest = std::max(longest, static_cast<std::uint64_t>(std::max(wait, Time()) / 1ms));
+    }
     if (!asked_.empty()) {
       waitForAnswer();
       return true;

@@ -9,8 +9,10 @@
 namespace qtet::simulator {
 namespace {
 
-/// Bytes that leave at once: a full segment of a network card that cuts packets itself.
-constexpr std::size_t kSegment = 64 << 10;
+/// Bytes that arrive at once: what the line carries in this time, at least a packet, and at most
+/// what a network card cuts itself.
+constexpr double kSegmentSeconds = .01;
+constexpr std::size_t kPacket = 1448, kMaxSegment = 64 << 10;
 /// Bytes that the server's kernel holds for the server.
 constexpr std::size_t kServerWindow = 128 << 10;
 
@@ -127,6 +129,7 @@ void Kernel::queue(Socket& socket) {
 int Kernel::poll(std::span<epoll_event> events, int milliseconds) {
   const MemoryOf own(kOwn);
   account(0);
+  turn_ = look() - woke_;
   const Time end = milliseconds < 0 ? Time::max() : now_ + std::chrono::milliseconds(milliseconds);
   for (;;) {
     runDue();
@@ -147,7 +150,10 @@ int Kernel::poll(std::span<epoll_event> events, int milliseconds) {
       if (now != 0) events[count++] = {.events = now, .data = {.ptr = socket->data}};
     }
     ready_.insert(ready_.end(), rest.begin(), rest.end());
-    if (count > 0 || std::exchange(woken_, false) || now_ >= end) return static_cast<int>(count);
+    if (count > 0 || std::exchange(woken_, false) || now_ >= end) {
+      woke_ = now_;
+      return static_cast<int>(count);
+    }
     if (events_.empty() && end == Time::max()) throw Violation{"nothing will ever happen again"};
     now_ = events_.empty() ? end : std::clamp(events_.top().when, now_, end);
   }
@@ -186,16 +192,16 @@ SocketPointer Kernel::connect(LineKind line, std::uint32_t address, ClientEnd& c
 void Kernel::send(const SocketPointer& socket, std::string_view bytes) {
   if (socket->endComes || socket->lost) return;
   socket->coming += bytes;
-  if (!socket->comingMoves) moveComing(socket);
+  if (!socket->comingMoves) moveComing(socket, socket->line.latency);
 }
 
 void Kernel::finish(const SocketPointer& socket) {
   socket->endComes = true;
-  if (!socket->comingMoves) moveComing(socket);
+  if (!socket->comingMoves) moveComing(socket, socket->line.latency);
 }
 
 /// Fragments arrive one after the other, as far as the server's kernel has room for them.
-void Kernel::moveComing(const SocketPointer& socket) {
+void Kernel::moveComing(const SocketPointer& socket, Time delay) {
   if (socket->lost || socket->endArrived) return;
   const std::size_t room = kServerWindow - std::min(kServerWindow, socket->arrived.size());
   socket->comingMoves = !socket->coming.empty() ? room > 0 : socket->endComes;
@@ -206,7 +212,7 @@ void Kernel::moveComing(const SocketPointer& socket) {
   std::string piece = socket->coming.substr(0, count);
   socket->coming.erase(0, count);
   const bool isEnd = piece.empty();
-  after(socket->line.latency, [this, socket, isEnd, piece = std::move(piece)] {
+  after(delay, [this, socket, isEnd, piece = std::move(piece)] {
     if (socket->lost) return;
     if (socket->closed) {
       if (!piece.empty()) tellClientLost(socket);
@@ -216,7 +222,7 @@ void Kernel::moveComing(const SocketPointer& socket) {
     socket->endArrived |= isEnd;
     note(piece.size());
     queue(*socket);
-    moveComing(socket);
+    moveComing(socket, random_.between(Time(), 1ms));
   });
 }
 
@@ -263,7 +269,7 @@ long Kernel::receive(int descriptor, std::span<char> into, bool peeks) {
   if (peeks) return static_cast<long>(count);
   socket->arrived.erase(0, count);
   note(count);
-  if (!socket->comingMoves) moveComing(pointer(descriptor));
+  if (!socket->comingMoves) moveComing(pointer(descriptor), socket->line.latency);
   return static_cast<long>(count);
 }
 
@@ -317,7 +323,10 @@ void Kernel::transmit(const SocketPointer& socket) {
   if (socket->sends || socket->lost) return;
   const std::size_t used = socket->underWay + socket->unread.size();
   const std::size_t room = socket->line.window - std::min(socket->line.window, used);
-  const std::size_t count = std::min({socket->unsent.size(), room, kSegment});
+  const std::size_t segment =
+      std::clamp(static_cast<std::size_t>(socket->line.bytesPerSecond * kSegmentSeconds), kPacket,
+                 kMaxSegment);
+  const std::size_t count = std::min({socket->unsent.size(), room, segment});
   if (count == 0) {
     if (!socket->unsent.empty() || !socket->shut || std::exchange(socket->endSent, true)) return;
     at(std::max(now_, socket->lineFree) + socket->line.latency, [socket] {

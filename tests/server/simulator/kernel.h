@@ -143,6 +143,8 @@ class Kernel {
   /// Calls `what` then, between two turns of the server.
   void at(Time when, std::function<void()> what);
   void after(Time time, std::function<void()> what) { at(now_ + time, std::move(what)); }
+  /// How long the server computed between the last two times that it waited.
+  [[nodiscard]] Time turn() const { return turn_; }
   /// Called after each step, between two turns of the server.
   std::function<void()> eachStep;
   /// The server has something to do, given by what is not a socket.
@@ -200,7 +202,7 @@ class Kernel {
   [[nodiscard]] static std::uint32_t readiness(const Socket& socket);
   [[nodiscard]] static bool hasRoom(const Socket& socket);
   void transmit(const SocketPointer& socket);
-  void moveComing(const SocketPointer& socket);
+  void moveComing(const SocketPointer& socket, Time delay);
   void arrive(const SocketPointer& socket, const std::string& bytes);
   void deliver(const SocketPointer& socket);
   void breakOff(const SocketPointer& socket);
@@ -209,7 +211,7 @@ class Kernel {
 
   Random random_;
   std::uint64_t allocations_;  // of the server, at the last look
-  Time now_{};
+  Time now_{}, woke_{}, turn_{};
   std::priority_queue<Event> events_;
   std::uint64_t numbers_ = 0, calls_ = 0, trace_ = 14695981039346656037u;
   std::map<int, SocketPointer> sockets_;  // that the server has not closed
