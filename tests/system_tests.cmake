@@ -44,6 +44,9 @@ if(QTET_PYTHON)
   # Plain words in comments and documents.
   qtet_system_test(prose ROOM house COMMAND ${QTET_PYTHON} ${here}/prose/check.py
     ${PROJECT_SOURCE_DIR})
+  # The notebook beside PYTHON.md has that document's examples.
+  qtet_system_test(python_first_page ROOM house COMMAND ${QTET_PYTHON}
+    ${here}/codec/python/first_page.py --check)
   # The golden files, judged by a decoder that was written from the documents alone.
   qtet_system_test(second_decoder ROOM codec
     COMMAND ${QTET_PYTHON} ${here}/golden/second_decoder/judge.py)

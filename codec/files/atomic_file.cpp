@@ -12,6 +12,7 @@
 #include <string>
 
 #include "codec/files/buffered_file.h"
+#include "codec/files/unreachable.h"
 #include "proto/crc32c.h"
 
 namespace qtet {
@@ -26,7 +27,11 @@ Status systemError(const std::string& what, const fs::path& path, int number) {
 
 Result<fs::path> folderOf(const fs::path& path) {
   fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (std::error_code code; fs::is_directory(folder, code)) return folder;
+  std::error_code code;
+  if (fs::is_directory(folder, code)) return folder;
+  if (isUnreachable(code))
+    return fail(ErrorCode::kIo, "the folder " + folder.string() + " cannot be reached: " +
+                                    code.message() + "; choose another output");
   return fail(ErrorCode::kNotFound, "the folder " + folder.string() +
                                         " does not exist; make it first or choose another output");
 }

@@ -35,7 +35,8 @@ enum class Leftovers : std::uint8_t { kRemove, kKeep };
 /// there or not. Errors: io (a circle of links).
 [[nodiscard]] Result<std::filesystem::path> fileBehindLinks(const std::filesystem::path& path);
 
-/// The folder of that file. Errors: also not-found (there is no such folder).
+/// The folder of that file. Errors: also not-found (there is no such folder), io (it cannot be
+/// reached, with the operating system's reason).
 [[nodiscard]] Result<std::filesystem::path> folderBehindLinks(const std::filesystem::path& path);
 
 /// Removes from `folder` the unfinished files of writers that were killed, if `isOurs` accepts

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 
 #include "proto/field_key.h"
 #include "proto/limits.h"
@@ -48,7 +49,7 @@ void printAdded(const std::vector<NewField>& fields, std::ostream& out) {
 
 Status addField(const ParsedWords& parsed, Progress& progress, Console& console) {
   const auto from = parsed.get<std::string>("from");
-  if (Status checked = checkNewLog(parsed, from); !checked) return checked;
+  if (Status checked = checkNewLog(parsed, from, console); !checked) return checked;
   const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
   if (!log) return std::unexpected(log.error());
   progress.stage("reading " + from);
@@ -70,14 +71,12 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   options.progress = [&](double fraction) { progress.update(fraction); };
   const Result<AddedFields> added = addFields(log->file, read->mesh, options);
   if (!added) return std::unexpected(added.error());
-  return writeAdded(
-      parsed, log->file, *kept, *added, {{"from", from}},
-      [&](const std::vector<NewField>& fields) { printAdded(fields, console.out); }, progress,
-      console);
+  return writeAdded(parsed, log->file, *kept, *added, {{"from", from}}, printAdded, progress,
+                    console);
 }
 
 Status removeField(const ParsedWords& parsed, Console& console) {
-  if (Status checked = checkNewLog(parsed, parsed.get<std::string>("LOG")); !checked)
+  if (Status checked = checkNewLog(parsed, parsed.get<std::string>("LOG"), console); !checked)
     return checked;
   const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
   if (!log) return std::unexpected(log.error());
@@ -92,9 +91,12 @@ Status removeField(const ParsedWords& parsed, Console& console) {
   }
   const Result<EditedLog> edited = withFields(log->file, kept, {});
   if (!edited) return std::unexpected(edited.error());
-  Result<OrderedJson> report = writeNewLog(parsed, log->file, *edited);
+  const Output output = newLogOf(parsed, console);
+  Result<OrderedJson> report = writeNewLog(parsed, output, log->file, *edited);
   if (!report) return std::unexpected(report.error());
-  parsed.has("json") ? printJson(*report, console) : printNew(*report, console.out);
+  std::ostringstream line;
+  printNew(*report, line);
+  parsed.has("json") ? printJson(*report, console) : reportOutput(output, line.str(), console);
   return {};
 }
 
@@ -108,13 +110,15 @@ int runAddField(const Words& words, Console& console) {
       "required: the mesh file whose fields are added; its mesh is the log's input")(
       "fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(
       "output,o", po::value<std::string>(),
-      "the log to write, NAME.qtet; without it the log itself is replaced once the new one is "
-      "whole")("replace", "fields that the log has already are replaced")(
+      "the log to write, NAME.qtet; or - for the standard output; without it the log itself is "
+      "replaced once the new one is whole")("replace",
+                                            "fields that the log has already are replaced")(
       "field-bits", po::value<int>()->default_value(12),
       "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "threads", po::value<int>()->default_value(1),
       "threads for measuring, as many as there are processors at most; the result does not depend "
       "on it")("json", "print one JSON object");
+  addNoClobber(options);
   addReadOptions(options);
   const ParsedWords parsed(
       words,
@@ -143,8 +147,9 @@ int runRemoveField(const Words& words, Console& console) {
       "fields", po::value<std::string>(),
       "required: the fields to leave out: all, or names as `qtet extract --fields` takes them")(
       "output,o", po::value<std::string>(),
-      "the log to write, NAME.qtet; without it the log itself is replaced once the new one is "
-      "whole")("json", "print one JSON object");
+      "the log to write, NAME.qtet; or - for the standard output; without it the log itself is "
+      "replaced once the new one is whole")("json", "print one JSON object");
+  addNoClobber(options);
   const ParsedWords parsed(
       words,
       {"remove-field", "remove-field LOG.qtet --fields NAMES [-o OUT.qtet]",

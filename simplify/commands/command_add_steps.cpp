@@ -243,7 +243,7 @@ Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console)
   request.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
   request.adding.progress = [&](double fraction) { progress.update(fraction); };
   for (const std::string& file : request.files)
-    if (Status checked = checkNewLog(parsed, file); !checked) return checked;
+    if (Status checked = checkNewLog(parsed, file, console); !checked) return checked;
   const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
   if (!log) return std::unexpected(log.error());
   progress.stage("decoding " + parsed.get<std::string>("LOG"));
@@ -251,10 +251,8 @@ Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console)
   if (!added) return std::unexpected(added.error());
   std::vector<std::uint32_t> kept(log->manifest.fields.size());
   std::iota(kept.begin(), kept.end(), 0u);
-  Status written = writeAdded(
-      parsed, log->file, kept, *added, {{"files", request.files}},
-      [&](const std::vector<NewField>& fields) { printSeries(fields, console.out); }, progress,
-      console);
+  Status written = writeAdded(parsed, log->file, kept, *added, {{"files", request.files}},
+                              printSeries, progress, console);
   if (written) warnOfStatistics(log->manifest, added->fields, console);
   return written;
 }
@@ -269,12 +267,14 @@ int runAddSteps(const Words& words, Console& console) {
       "fields", po::value<std::string>()->default_value("all"),
       "all: those of which the log has a series; or names as `qtet simplify --fields` takes them")(
       "output,o", po::value<std::string>(),
-      "the log to write, NAME.qtet; without it the log itself is replaced once the new one is "
-      "whole")("field-bits", po::value<int>()->default_value(12),
-               "bits of a float field's values that a series' own scale does not hold, 1 to 28")(
+      "the log to write, NAME.qtet; or - for the standard output; without it the log itself is "
+      "replaced once the new one is whole")(
+      "field-bits", po::value<int>()->default_value(12),
+      "bits of a float field's values that a series' own scale does not hold, 1 to 28")(
       "threads", po::value<int>()->default_value(1),
       "threads for measuring, as many as there are processors at most; the result does not depend "
       "on it")("json", "print one JSON object");
+  addNoClobber(options);
   addReadOptions(options, "all");
   const ParsedWords parsed(
       words,

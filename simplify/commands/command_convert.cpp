@@ -55,7 +55,7 @@ int runConvert(const Words& words, Console& console) {
                   "-o",
                   parsed.get<std::string>("output")};
     if (parsed.has("to")) extract.insert(extract.end(), {"--to", parsed.get<std::string>("to")});
-    for (const char* same : {"json", "no-draco"})
+    for (const char* same : {"json", "no-draco", "no-clobber"})
       if (parsed.has(same)) extract.push_back("--" + std::string(same));
     return runExtract(extract, console);
   }

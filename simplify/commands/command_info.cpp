@@ -9,6 +9,7 @@
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/error_table.h"
 #include "simplify/commands/list_info.h"
+#include "simplify/commands/several_logs.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/series/series.h"
 
@@ -132,15 +133,26 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
     console.out << moreFields(info["fields"].size(), "--all shows them");
 }
 
-int showList(const std::string& list, const ParsedWords& parsed, Console& console) {
-  const bool asJson = parsed.has("json");
-  const Result<OrderedJson> info = listInfo(list);
-  if (!info) return reportFailure(info.error(), asJson, console);
-  if (asJson)
-    printJson(*info, console);
-  else
-    console.out << listText(*info, list, parsed.has("all") ? kMaxSegments : kShownLevels);
-  return kExitOk;
+Result<LogReport> listReport(const std::string& list, bool all) {
+  Result<OrderedJson> info = listInfo(list);
+  if (!info) return std::unexpected(info.error());
+  std::string text = listText(*info, list, all ? kMaxSegments : kShownLevels);
+  return LogReport{std::move(*info), std::move(text)};
+}
+
+Result<LogReport> logReport(const std::string& path, bool all, const Console& console) {
+  const Result<OpenedLog> log = openLog(path);
+  if (!log) return std::unexpected(log.error());
+  LogReport out{infoJson(*log), ""};
+  const std::size_t levels = log->manifest.levels.size();
+  const std::size_t most = all ? levels : kShownLevels;
+  const std::size_t mostFields = all ? log->manifest.fields.size() : kShownFields;
+  std::ostringstream text;
+  printHead(*log, out.json, mostFields, {text, console.err, false, console.colours});
+  text << "\n" << levelTable(log->manifest, out.json["levels"], most, mostFields);
+  if (levels > most) text << "\n--all shows all " << levels << " levels\n";
+  out.text = text.str();
+  return out;
 }
 
 }  // namespace
@@ -148,11 +160,11 @@ int showList(const std::string& list, const ParsedWords& parsed, Console& consol
 int runInfo(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("json", "print one JSON object")(
+  options.add_options()("json", "print one JSON object; of several logs an array")(
       "all", "show every level and field, not 20 and 10 of them");
   const ParsedWords parsed(
       words,
-      {"info", "info LOG.qtet|LIST.json [--all] [--json]",
+      {"info", "info LOG.qtet|LIST.json... [--all] [--json]",
        "Says what a log holds: digest, lattice, fields, and for each level its cells and bytes. "
        "Level 0 is the base mesh,\n"
        "the last level the input's mesh; `cumulative` is the length of the file's prefix that "
@@ -168,30 +180,19 @@ int runInfo(const Words& words, Console& console) {
        "fractions and of some levels only: boundary {toLevel {mean, max}, toOriginal {mean, max}}, "
        "volumeLost, volumeGained, fields [{rms, max}] in the order of the fields above.\n"
        "A list of logs shows the times, cells and bytes of each. --json: segments [{log, times, "
-       "digest, tetrahedra, vertices, levels, bytes}], instants, timeRange, bytes.",
+       "digest, tetrahedra, vertices, levels, bytes}], instants, timeRange, bytes.\n"
+       "Several files stand under their names, and --json is an array of these objects, with "
+       "input before the other members: {input, error} for one that failed. The exit code is the "
+       "worst of all.",
        "  qtet info fin.qtet\n  qtet info remeshed.json\n  qtet info fin.qtet --json | jq "
-       "'.levels[0]'\n"},
-      options, {"LOG"});
+       "'.levels[0]'\n  qtet info logs/*.qtet\n"},
+      options, {"LOG..."});
   if (parsed.helped(console)) return kExitOk;
-  const bool asJson = parsed.has("json");
-  const auto input = parsed.get<std::string>("LOG");
-  if (isSegmentList(input)) return showList(input, parsed, console);
-
-  const Result<OpenedLog> log = openLog(input);
-  if (!log) return reportFailure(log.error(), asJson, console);
-  const OrderedJson info = infoJson(*log);
-  if (asJson) {
-    printJson(info, console);
-  } else {
-    const bool all = parsed.has("all");
-    const std::size_t most = all ? log->manifest.levels.size() : kShownLevels;
-    const std::size_t mostFields = all ? log->manifest.fields.size() : kShownFields;
-    printHead(*log, info, mostFields, console);
-    console.out << "\n" << levelTable(log->manifest, info["levels"], most, mostFields);
-    if (log->manifest.levels.size() > most)
-      console.out << "\n--all shows all " << log->manifest.levels.size() << " levels\n";
-  }
-  return kExitOk;
+  const bool all = parsed.has("all");
+  const auto report = [&](const std::string& path) {
+    return isSegmentList(path) ? listReport(path, all) : logReport(path, all, console);
+  };
+  return reportLogs(parsed, report, console);
 }
 
 }  // namespace qtet

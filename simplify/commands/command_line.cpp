@@ -1,21 +1,17 @@
 #include "simplify/commands/command_line.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <sstream>
 #include <utility>
 
-#include "codec/files/atomic_file.h"
 #include "proto/option_error.h"
+#include "simplify/commands/did_you_mean.h"
 
 namespace qtet {
 
 namespace po = boost::program_options;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -69,6 +65,9 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     po::store(po::command_line_parser(words).options(all).positional(places).style(style).run(),
               values_);
     po::notify(values_);
+  } catch (po::unknown_option& error) {
+    const std::string near = nearOption(error.get_option_name());
+    throw UsageError(optionErrorText<po::error_with_option_name>(error) + near);
   } catch (po::error& error) {
     throw UsageError(optionErrorText<po::error_with_option_name>(error));
   }
@@ -84,6 +83,14 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     const std::string& name = option->long_name();
     if (isRequired(name) && !has(name)) throw UsageError("--" + name + " is missing");
   }
+}
+
+std::string ParsedWords::nearOption(const std::string& unknown) const {
+  const std::size_t name = unknown.find_first_not_of('-');
+  if (name < 2 || name == std::string::npos) return "";  // a letter is near to every other one
+  std::vector<std::string> known;
+  for (const auto& option : options_.options()) known.push_back(option->long_name());
+  return didYouMean(std::string_view(unknown).substr(name), known, "--");
 }
 
 bool ParsedWords::isRequired(const std::string& option) const {
@@ -184,36 +191,6 @@ std::optional<std::vector<std::string>> parseFieldNames(const std::string& text)
   if (!name.empty()) take();
   if (names.empty()) throw UsageError("--fields is empty; give all, none, or names between commas");
   return names;
-}
-
-Status checkOutput(const fs::path& output, const std::string& extensions,
-                   const std::optional<fs::path>& input) {
-  std::istringstream known(extensions);
-  if (std::find(std::istream_iterator<std::string>(known), {}, output.extension().string()) ==
-      std::istream_iterator<std::string>())
-    throw UsageError("the output " + output.string() + " must end in " +
-                     (extensions.find(' ') == std::string::npos ? "" : "one of ") + extensions);
-  std::error_code code;
-  const Result<fs::path> file = fileBehindLinks(output);
-  if (!file) return std::unexpected(file.error());
-  const fs::path folder = file->has_parent_path() ? file->parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, code)) {
-    return fail(ErrorCode::kNotFound,
-                "the folder " + folder.string() +
-                    " of the output does not exist; make it first or choose another output");
-  }
-  if (fs::is_directory(output, code))
-    return fail(ErrorCode::kIo,
-                "the output " + output.string() + " is a folder; give the name of a file");
-  if (::access(folder.c_str(), W_OK) != 0)
-    return fail(ErrorCode::kIo, "the folder " + folder.string() +
-                                    " of the output cannot be written; choose another output");
-  if (input && fs::equivalent(output, *input, code)) {
-    return fail(ErrorCode::kIo,
-                "the output " + output.string() +
-                    " is the input itself; choose another name, the input is never overwritten");
-  }
-  return {};
 }
 
 int reportFailure(const Error& error, bool asJson, Console& console) {

@@ -64,6 +64,8 @@ class ParsedWords {
 
  private:
   [[nodiscard]] bool isRequired(const std::string& option) const;
+  /// didYouMean of an option as it was given, "--colour".
+  [[nodiscard]] std::string nearOption(const std::string& unknown) const;
   /// The heading of a rare option, "" of any other.
   [[nodiscard]] std::string titleOf(const std::string& option) const;
   [[nodiscard]] std::string optionText(bool all) const;
@@ -84,21 +86,17 @@ inline constexpr const char* kFieldsHelp =
 /// "all" is nullopt, "none" the empty list. Throws UsageError.
 [[nodiscard]] std::optional<std::vector<std::string>> parseFieldNames(const std::string& text);
 
-/// Refuses an output before the work is done. Its ending must be one of `extensions`, separated by
-/// blanks (UsageError); its folder must exist and be writable; it must not be the input itself.
-[[nodiscard]] Status checkOutput(const std::filesystem::path& output, const std::string& extensions,
-                                 const std::optional<std::filesystem::path>& input = std::nullopt);
-
 /// A mesh file to write: its kind, and its name or the standard output ("-" with --to).
 struct MeshOutput {
   std::filesystem::path file;
   std::string ending;  ///< with its dot
   bool isStandardOutput = false;
-  bool asJson = false;  ///< reports it as one JSON object
+  bool asJson = false;    ///< reports it as one JSON object
+  bool keepsOld = false;  ///< --no-clobber
   MeshFileOptions options{};
 };
 
-/// -o, --to, --no-draco and --json for meshOutputOf.
+/// -o, --to, --no-draco, --no-clobber and --json for meshOutputOf.
 void addMeshOutputOptions(boost::program_options::options_description& options);
 
 /// The report about a mesh that was written.

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <sstream>
 
-#include "codec/files/atomic_file.h"
 #include "proto/version.h"
 #include "simplify/commands/command_help.h"
+#include "simplify/commands/output.h"
 
 namespace qtet {
 namespace {
@@ -80,13 +80,15 @@ std::string overviewPage(const std::string& text) {
 }  // namespace
 
 int runManual(const Words& words, Console& console) {
+  boost::program_options::options_description options("options");
+  addNoClobber(options);
   const ParsedWords parsed(words,
                            {"manual", "manual FOLDER",
                             "Writes qtet.1 and a page for every command, qtet-COMMAND.1, into an "
                             "existing folder. They say what --help says.",
                             "  mkdir -p ~/.local/share/man/man1 && qtet manual "
                             "~/.local/share/man/man1 && man qtet-simplify\n"},
-                           boost::program_options::options_description("options"), {"FOLDER"});
+                           options, {"FOLDER"});
   if (parsed.helped(console)) return kExitOk;
   const fs::path folder = parsed.get<std::string>("FOLDER");
   std::ostringstream overview, err;
@@ -96,10 +98,10 @@ int runManual(const Words& words, Console& console) {
   for (const Command& command : commands())
     pages.emplace_back("qtet-" + std::string(command.name) + ".1", commandPage(command));
   for (const auto& [name, text] : pages) {
-    if (Status checked = checkOutput(folder / name, ".1"); !checked)
+    const Output page{folder / name, parsed.has("no-clobber")};
+    if (Status checked = checkOutput(page, ".1"); !checked)
       return reportFailure(checked.error(), false, console);
-    if (Status written = writeFileAtomically(folder / name, Bytes(text.begin(), text.end()));
-        !written)
+    if (Status written = writeOutput(page, Bytes(text.begin(), text.end())); !written)
       return reportFailure(written.error(), false, console);
   }
   console.out << folder.string() << ": " << pages.size() << " pages\n";

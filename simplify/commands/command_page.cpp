@@ -12,6 +12,7 @@
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
+#include "simplify/commands/output.h"
 #include "simplify/commands/provided_log.h"
 #include "simplify/commands/tool_main.h"
 #include "simplify/log/opened_log.h"
@@ -126,7 +127,7 @@ int runPage(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(),
-                        "required: the page to write, NAME.html")(
+                        "required: the page to write, NAME.html; or - for the standard output")(
       "viewer", po::value<std::string>(),
       "the viewer's files; without it those installed with qtet-server")(
       "view", po::value<std::string>()->default_value(""),
@@ -137,6 +138,7 @@ int runPage(const Words& words, Console& console) {
       "5000000, 500k, 5M")(
       "fields", po::value<std::string>()->default_value("all"),
       "of a mesh: all, none, or names between commas, as `qtet simplify --fields` takes them");
+  addNoClobber(options);
   addReadOptions(options);
   const ParsedWords parsed(
       words,
@@ -148,7 +150,7 @@ int runPage(const Words& words, Console& console) {
       options, {"FILE"});
   if (parsed.helped(console)) return kExitOk;
   const fs::path input = parsed.get<std::string>("FILE");
-  const fs::path output = parsed.get<std::string>("output");
+  const Output output = outputOf(parsed, console);
   if (Status checked = checkOutput(output, ".html", input); !checked)
     return reportFailure(checked.error(), false, console);
   const SinglePageOptions wanted{maxBytesOf(parsed), parsed.get<std::string>("view")};
@@ -170,10 +172,12 @@ int runPage(const Words& words, Console& console) {
     if (!part) return reportFailure(part.error(), false, console);
     held += *part;
   }
-  if (Status written = writeFileAtomically(output, page->bytes); !written)
+  if (Status written = writeOutput(output, page->bytes); !written)
     return reportFailure(written.error(), false, console);
-  console.out << console.shown(output.string()) << ": " << grouped(page->bytes.size()) << " bytes"
-              << console.shown(held) << "\n";
+  reportOutput(output,
+               console.shown(output.name()) + ": " + grouped(page->bytes.size()) + " bytes" +
+                   console.shown(held) + "\n",
+               console);
   return kExitOk;
 }
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "simplify/commands/command_line.h"
+#include "simplify/commands/output.h"
 #include "simplify/commands/tool_main.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/publish/publish_site.h"
@@ -45,6 +45,7 @@ int runPublish(const Words& words, Console& console) {
                         "the viewer's files; without it those installed with qtet-server")(
       "plain", "without NAME.gz and NAME.br, for a server that compresses by itself")(
       "json", "print one JSON object");
+  addNoClobber(options);
   const ParsedWords parsed(
       words,
       {"publish", "publish FOLDER LOG... [--viewer DIR] [--plain] [--json]",
@@ -61,6 +62,8 @@ int runPublish(const Words& words, Console& console) {
       options, {"FOLDER", "LOG..."});
   if (parsed.helped(console)) return kExitOk;
   const auto folder = parsed.get<std::string>("FOLDER");
+  if (Status kept = checkKeepsOld({folder, parsed.has("no-clobber")}); !kept)
+    return reportFailure(kept.error(), parsed.has("json"), console);
   const fs::path viewer =
       parsed.has("viewer") ? fs::path(parsed.get<std::string>("viewer")) : installation().viewer;
   const Result<PublishedSite> site =

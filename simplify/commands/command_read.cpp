@@ -3,6 +3,8 @@
 #include <charconv>
 #include <limits>
 
+#include "simplify/read/options/time_steps.h"
+
 namespace qtet {
 namespace {
 
@@ -81,7 +83,7 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
     if (options.format.ends_with(kCompressed))
       options.format.resize(options.format.size() - kCompressed.size());
   }
-  options.time = parsed.get<std::string>("time");
+  options.time = timeWord(parsed.get<std::string>("time"));
   if (parsed.has("threshold"))
     options.threshold = thresholdOf(parsed.get<std::string>("threshold"));
   options.patience = std::chrono::seconds(parsed.integer("read-seconds", 1, kMaxReadSeconds));

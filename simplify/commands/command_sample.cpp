@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "codec/files/atomic_file.h"
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/output.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/samples/samples.h"
 
@@ -25,13 +25,15 @@ std::string listOfSamples() {
 int runSample(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("output,o", po::value<std::string>(), "required: the .vtu file to write")(
+  options.add_options()("output,o", po::value<std::string>(),
+                        "required: the .vtu file to write; or - for the standard output")(
       "cells", po::value<double>(),
       "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)")(
       "steps", po::value<int>(),
       ("so many time steps of each field, 2 to " + std::to_string(kMaxSampleInstants) +
        " (fin, beam)")
           .c_str());
+  addNoClobber(options);
   const ParsedWords parsed(
       words,
       {"sample", "sample NAME -o FILE.vtu [--cells N] [--steps N]", listOfSamples(),
@@ -41,7 +43,7 @@ int runSample(const Words& words, Console& console) {
       options, {"NAME"});
   if (parsed.helped(console)) return kExitOk;
 
-  const auto output = parsed.get<std::string>("output");
+  const Output output = outputOf(parsed, console);
   if (Status checked = checkOutput(output, ".vtu"); !checked)
     return reportFailure(checked.error(), false, console);
   std::optional<std::uint64_t> cells;
@@ -53,12 +55,15 @@ int runSample(const Words& words, Console& console) {
   const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"), cells, steps);
   if (!mesh) throw UsageError(mesh.error().message);
   const Bytes bytes = vtuBytes(*mesh);
-  if (Status written = writeFileAtomically(output, bytes); !written)
+  if (Status written = writeOutput(output, bytes); !written)
     return reportFailure(written.error(), false, console);
-  console.out << output << ": " << counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra")
-              << ", " << counted(mesh->points.size(), "point", "points") << ", "
-              << counted(mesh->fields.size(), "field", "fields") << ", " << grouped(bytes.size())
-              << " bytes\n";
+  reportOutput(output,
+               output.name() + ": " +
+                   counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra") + ", " +
+                   counted(mesh->points.size(), "point", "points") + ", " +
+                   counted(mesh->fields.size(), "field", "fields") + ", " + grouped(bytes.size()) +
+                   " bytes\n",
+               console);
   return kExitOk;
 }
 

@@ -1,3 +1,5 @@
+#include <sstream>
+
 #include "proto/limits.h"
 #include "simplify/commands/command_fusion.h"
 #include "simplify/commands/command_line.h"
@@ -23,10 +25,10 @@ Algorithm algorithmOf(const std::string& name) {
   throw UsageError("--algorithm '" + name + "' is not known; give qtet or paper");
 }
 
-SimplifyRequest requestOf(const ParsedWords& parsed) {
+SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   SimplifyRequest request;
   request.input = parsed.get<std::string>("IN");
-  request.output = parsed.get<std::string>("output");
+  request.output = output.name();
   PipelineOptions& options = request.pipeline;
   options.source = std::filesystem::path(request.input).filename().string();
   options.algorithm = algorithmOf(parsed.get<std::string>("algorithm"));
@@ -55,8 +57,10 @@ SimplifyRequest requestOf(const ParsedWords& parsed) {
 int runSimplify(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
-  options.add_options()("output,o", po::value<std::string>(),
-                        "required: NAME.qtet, the log; or NAME.json, the list of logs of a series")(
+  options.add_options()(
+      "output,o", po::value<std::string>(),
+      "required: NAME.qtet, the log; NAME.json, the list of logs of a series; or - for the log "
+      "on the standard output")(
       "algorithm", po::value<std::string>()->default_value("qtet"),
       "qtet, or paper: the paper's own loop, tetrahedra only, which ends near half of the cells")(
       "fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(
@@ -79,6 +83,7 @@ int runSimplify(const Words& words, Console& console) {
                         "keep which cell of the input each tetrahedron was split from: extract "
                         "gives it back at the last level as the cell field OriginalCellId; implies "
                         "--keep-order")("json", "print one JSON object");
+  addNoClobber(options);
   addReadOptions(options);
   addFusionOptions(options);
   addMeasureOptions(options);
@@ -97,7 +102,7 @@ int runSimplify(const Words& words, Console& console) {
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "
        "--time all -o run.qtet\n"
        "  qtet simplify remeshed.pvd --time all -o remeshed.json\n",
-       {{"input", {"format", "time", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
+       {{"input", {"format", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
         {"fields", {"field-bits", "field-weight", "time-statistics"}},
         {"quality and base mesh",
          {"target-ratio", "base-cells", "envelope-tolerance", "placement", "shape-weight",
@@ -106,23 +111,22 @@ int runSimplify(const Words& words, Console& console) {
         {"rare", {"algorithm"}}}},
       options, {"IN"});
   if (parsed.helped(console)) return kExitOk;
-  const SimplifyRequest request = requestOf(parsed);
+  const Output output = outputOf(parsed, console);
+  const SimplifyRequest request = requestOf(parsed, output);
   const bool asJson = parsed.has("json");
-  if (Status checked = checkOutput(request.output, ".qtet .json", request.input); !checked)
+  if (Status checked = checkOutput(output, ".qtet .json", request.input); !checked)
     return reportFailure(checked.error(), asJson, console);
 
   Progress progress(console);
   const Result<OrderedJson> report = isSegmentList(request.output)
                                          ? makeList(request, progress)
-                                         : makeLog(request, request.output, progress);
+                                         : makeLog(request, output, progress);
   progress.clear();
   if (!report) return reportFailure(report.error(), asJson, console);
   for (const OrderedJson& note : (*report)["notes"]) console.note(note.get<std::string>());
-  if (asJson)
-    printJson(*report, console);
-  else
-    isSegmentList(request.output) ? printMadeList(*report, console.out)
-                                  : printMadeLog(*report, console.out);
+  std::ostringstream lines;
+  isSegmentList(request.output) ? printMadeList(*report, lines) : printMadeLog(*report, lines);
+  asJson ? printJson(*report, console) : reportOutput(output, lines.str(), console);
   for (const OrderedJson& warning : (*report)["warnings"]) console.warn(warning.get<std::string>());
   return kExitOk;
 }

@@ -10,6 +10,7 @@
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/progress.h"
+#include "simplify/commands/several_logs.h"
 #include "simplify/log/kept_input.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/log/opened_log.h"
@@ -96,11 +97,33 @@ Result<OrderedJson> verify(const OpenedLog& log, const std::optional<Input>& inp
   return report;
 }
 
-Result<OrderedJson> verifyLog(const std::string& path, const std::optional<Input>& input,
+/// The times of the input's steps; none where it knows none, or cannot be read.
+std::vector<double> timesOfInput(const Input& input) {
+  ReadOptions options = input.options;
+  options.time = "first";
+  options.fields = std::vector<std::string>{};
+  options.threshold.reset();
+  const Result<ReadMesh> read = readMesh(input.path, options);
+  return read ? read->report.times : std::vector<double>{};
+}
+
+/// Without --time an input of several steps is read at the instants that the log has.
+void takeInstants(const Manifest& manifest, Progress& progress, Input& input) {
+  if (input.options.time != ReadOptions().time) return;
+  const std::vector<double> instants = instantTimes(manifest);
+  if (instants.empty()) return;
+  progress.stage("reading the times of " + input.path);
+  if (timesOfInput(input).empty()) return;
+  input.options.time = timesText(instants);
+  input.options.namesTime = true;
+}
+
+Result<OrderedJson> verifyLog(const std::string& path, std::optional<Input> input,
                               Progress& progress) {
   progress.stage("checking checksums");
   const Result<OpenedLog> log = openLog(path);
   if (!log) return std::unexpected(log.error());
+  if (input) takeInstants(log->manifest, progress, *input);
   return verify(*log, input, progress);
 }
 
@@ -177,11 +200,11 @@ int runVerify(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("against", po::value<std::string>(), "the mesh that the log was made from")(
-      "json", "print one JSON object");
+      "json", "print one JSON object; of several logs an array");
   addReadOptions(options);
   const ParsedWords parsed(
       words,
-      {"verify", "verify LOG.qtet|LIST.json [--against IN] [--json]",
+      {"verify", "verify LOG.qtet|LIST.json... [--against IN] [--json]",
        "Checks every checksum, decodes every chunk and compares every level and field with what "
        "the manifest says. With --against the finest level\n"
        "must be the input's mesh cell for cell, positions within half a lattice step, fields "
@@ -190,22 +213,29 @@ int runVerify(const Words& words, Console& console) {
        "--keep-order or\n"
        "--lossless, the numbering and the numbers themselves must be those of the file too, and "
        "what was proved is said. Each log of a list is checked, against the steps of its own "
-       "times.",
-       "  qtet verify fin.qtet\n  qtet verify fin.qtet --against fin.vtu --json\n"},
-      options, {"LOG"});
+       "times. A log with instants is compared with its own ones, unless --time chooses.\n"
+       "Several logs stand under their names, and --json is an array of these objects, with input "
+       "before the other members: {input, error} for one that failed. The exit code is the worst "
+       "of all.",
+       "  qtet verify fin.qtet\n  qtet verify run.qtet --against run.pvd\n  qtet verify fin.qtet "
+       "--against fin.vtu --json\n"},
+      options, {"LOG..."});
   if (parsed.helped(console)) return kExitOk;
-  const bool asJson = parsed.has("json");
-  const auto path = parsed.get<std::string>("LOG");
   const std::optional<Input> input = inputOf(parsed);
-  if (isSegmentList(path) && input && input->options.time != ReadOptions().time)
-    throw UsageError("'" + path + "' has times of its own; leave out --time");
+  for (const auto& path : parsed.get<std::vector<std::string>>("LOG..."))
+    if (isSegmentList(path) && input && input->options.time != ReadOptions().time)
+      throw UsageError("'" + path + "' has times of its own; leave out --time");
   Progress progress(console);
-  const Result<OrderedJson> report =
-      isSegmentList(path) ? verifyList(path, input, progress) : verifyLog(path, input, progress);
-  progress.clear();
-  if (!report) return reportFailure(report.error(), asJson, console);
-  asJson ? printJson(*report, console) : printReports(*report, console.out);
-  return kExitOk;
+  const auto report = [&](const std::string& path) -> Result<LogReport> {
+    Result<OrderedJson> made =
+        isSegmentList(path) ? verifyList(path, input, progress) : verifyLog(path, input, progress);
+    progress.clear();
+    if (!made) return std::unexpected(made.error());
+    std::ostringstream text;
+    printReports(*made, text);
+    return LogReport{std::move(*made), text.str()};
+  };
+  return reportLogs(parsed, report, console);
 }
 
 }  // namespace qtet

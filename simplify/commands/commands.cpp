@@ -10,6 +10,7 @@
 
 #include "proto/version.h"
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/did_you_mean.h"
 #include "simplify/commands/standard_input.h"
 
 namespace qtet {
@@ -47,8 +48,9 @@ void printHelp(std::ostream& out) {
     out << "  " << std::left << std::setw(13) << command.name << command.summary << "\n";
   out << "  help         say more about one of them, as --help after it does\n";
   out << "\n  qtet --version tells the version.\n"
-         "  - instead of a mesh's or a log's name is the standard input, -o - the standard output\n"
-         "  of extract and convert.\n"
+         "  - instead of a mesh's or a log's name is the standard input, -o - the standard "
+         "output.\n"
+         "  --no-clobber refuses an output that exists.\n"
          "  Every command knows --quiet and --verbose. NO_COLOR in the environment keeps colours "
          "away.\n"
          "\nexamples:\n"
@@ -95,7 +97,7 @@ int runCommand(const Command& command, const Words& given, Console& console) {
   Words words = withoutManners(given, console);
   const auto isAnswer = [](const std::string& word) {
     return word == "--json" || word.starts_with("--help") || word == "-h" || word == "-" ||
-           word.ends_with("=-");
+           word == "-o-" || word.ends_with("=-");
   };
   const bool isAsked = std::ranges::any_of(words, isAnswer);
   std::unique_ptr<GuardedFolder> piped;
@@ -135,12 +137,16 @@ const Command* findCommand(const std::string& name) {
 }
 
 int refuseCommand(const std::string& name, Console& console) {
-  std::string known;
-  for (const Command& candidate : kCommands)
-    known += (known.empty() ? "" : ", ") + std::string(candidate.name);
+  std::string text;
+  std::vector<std::string> known{"help"};
+  for (const Command& candidate : kCommands) {
+    known.emplace_back(candidate.name);
+    text += (text.empty() ? "" : ", ") + known.back();
+  }
+  const std::string near = didYouMean(name, known);
   return refuseWords(
-      (name.empty() ? "a command is missing" : "there is no command '" + name + "'") +
-          "; there are: " + known,
+      (name.empty() ? "a command is missing" : "there is no command '" + name + "'") + near +
+          (near.empty() ? "; there are: " : " There are: ") + text,
       "", console);
 }
 

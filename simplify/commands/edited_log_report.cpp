@@ -1,7 +1,7 @@
 #include "simplify/commands/edited_log_report.h"
 
 #include <numeric>
-#include <ostream>
+#include <sstream>
 
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
@@ -36,17 +36,21 @@ std::size_t bytesOf(const NewField& field) {
                          [](std::size_t sum, const Bytes& b) { return sum + b.size(); });
 }
 
-std::string outputOf(const ParsedWords& parsed) {
-  return parsed.get<std::string>(parsed.has("output") ? "output" : "LOG");
+Output newLogOf(const ParsedWords& parsed, const Console& console) {
+  return parsed.has("output") ? outputOf(parsed, console) : Output{parsed.get<std::string>("LOG")};
 }
 
-Status checkNewLog(const ParsedWords& parsed, const std::string& mesh) {
-  return parsed.has("output") ? checkOutput(parsed.get<std::string>("output"), ".qtet", mesh)
-                              : Status{};
+Status checkNewLog(const ParsedWords& parsed, const std::string& mesh, const Console& console) {
+  if (parsed.has("output")) return checkOutput(outputOf(parsed, console), ".qtet", mesh);
+  if (parsed.has("no-clobber"))
+    throw UsageError(
+        "without -o the log itself is replaced, which --no-clobber refuses; name the new log with "
+        "-o");
+  return {};
 }
 
-Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const LogFile& before,
-                                const EditedLog& edited) {
+Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const Output& output,
+                                const LogFile& before, const EditedLog& edited) {
   const Result<LogIndex> index = LogIndex::parse(edited.head(), edited.later());
   if (!index) return std::unexpected(index.error());
   const Result<Manifest> manifest = manifestOf(*index);
@@ -55,10 +59,10 @@ Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const LogFile& before
   for (std::size_t f = 0; f < manifest->fields.size(); ++f)
     fields.push_back(fieldKey(*manifest, f));
   const Result<WrittenLog> written =
-      writeLog(outputOf(parsed), [&](const ByteSink& sink) { return edited.writeTo(sink); });
+      writeLog(output, [&](const ByteSink& sink) { return edited.writeTo(sink); });
   if (!written) return std::unexpected(written.error());
   return OrderedJson{{"input", parsed.get<std::string>("LOG")},
-                     {"output", outputOf(parsed)},
+                     {"output", output.name()},
                      {"digest", written->digest},
                      {"bytes", written->bytes},
                      {"bytesBefore", before.bytes().size()},
@@ -75,18 +79,20 @@ void printNew(const OrderedJson& report, std::ostream& out) {
 
 Status writeAdded(const ParsedWords& parsed, const LogFile& log,
                   const std::vector<std::uint32_t>& kept, const AddedFields& added,
-                  const OrderedJson& source,
-                  const std::function<void(const std::vector<NewField>&)>& print,
-                  Progress& progress, Console& console) {
+                  const OrderedJson& source, const FieldPrinter& print, Progress& progress,
+                  Console& console) {
   const Result<EditedLog> edited = withFields(log, kept, added.fields);
   if (!edited) return std::unexpected(edited.error());
-  Result<OrderedJson> report = writeNewLog(parsed, log, *edited);
+  const Output output = newLogOf(parsed, console);
+  Result<OrderedJson> report = writeNewLog(parsed, output, log, *edited);
   if (!report) return std::unexpected(report.error());
   progress.clear();
   for (const std::string& note : added.notes) console.note(note);
   if (!parsed.has("json")) {
-    print(added.fields);
-    printNew(*report, console.out);
+    std::ostringstream lines;
+    print(added.fields, lines);
+    printNew(*report, lines);
+    reportOutput(output, lines.str(), console);
     return {};
   }
   report->update(source);

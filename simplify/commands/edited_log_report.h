@@ -9,34 +9,37 @@
 #include <vector>
 
 #include "codec/refine/log_edit.h"
-#include "simplify/commands/command_line.h"
+#include "simplify/commands/output.h"
 #include "simplify/commands/progress.h"
 #include "simplify/log/add_fields.h"
 
 namespace qtet {
 
 /// Where the new log goes: over the old one unless --output says otherwise.
-[[nodiscard]] std::string outputOf(const ParsedWords& parsed);
+[[nodiscard]] Output newLogOf(const ParsedWords& parsed, const Console& console);
 
-/// Refuses a bad --output, which must not be `mesh` (checkOutput).
-[[nodiscard]] Status checkNewLog(const ParsedWords& parsed, const std::string& mesh);
+/// Refuses a bad --output, which must not be `mesh` (checkOutput). Throws UsageError for
+/// --no-clobber without --output.
+[[nodiscard]] Status checkNewLog(const ParsedWords& parsed, const std::string& mesh,
+                                 const Console& console);
 
-/// Writes the new log. Returns the report: {input, output, digest, bytes, bytesBefore, tetrahedra,
-/// vertices, levels, fields}. `fields` are the keys of those that the new log holds. Errors: those
-/// of LogIndex::parse, manifestOf and writeLog.
-[[nodiscard]] Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const LogFile& before,
-                                              const EditedLog& edited);
+/// Writes the new log to `output`. Returns the report: {input, output, digest, bytes, bytesBefore,
+/// tetrahedra, vertices, levels, fields}. `fields` are the keys of those that the new log holds.
+/// Errors: those of LogIndex::parse, manifestOf and writeLog.
+[[nodiscard]] Result<OrderedJson> writeNewLog(const ParsedWords& parsed, const Output& output,
+                                              const LogFile& before, const EditedLog& edited);
 void printNew(const OrderedJson& report, std::ostream& out);
 
+using FieldPrinter = std::function<void(const std::vector<NewField>&, std::ostream&)>;
+
 /// Writes the log with the fields `kept` and then those added. Reports notes, and then what
-/// `print(fields)` says and a line. The report as JSON has also the members of `source`, `added`
-/// and `notes`. The members of an added field are name, association, components, type, bits, step,
-/// minimum, range, missingValues, bytes, and error {rms, max} of the base mesh. Errors:
+/// `print(fields, out)` says and a line. The report as JSON has also the members of `source`,
+/// `added` and `notes`. The members of an added field are name, association, components, type,
+/// bits, step, minimum, range, missingValues, bytes, and error {rms, max} of the base mesh. Errors:
 /// withFields's and writeNewLog's.
 [[nodiscard]] Status writeAdded(const ParsedWords& parsed, const LogFile& log,
                                 const std::vector<std::uint32_t>& kept, const AddedFields& added,
-                                const OrderedJson& source,
-                                const std::function<void(const std::vector<NewField>&)>& print,
+                                const OrderedJson& source, const FieldPrinter& print,
                                 Progress& progress, Console& console);
 
 /// Bytes of all of its blocks.

@@ -1,5 +1,5 @@
-#include "codec/files/atomic_file.h"
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/output.h"
 
 namespace qtet {
 
@@ -14,11 +14,13 @@ void addMeshOutputOptions(boost::program_options::options_description& options) 
       "no-draco",
       "a .glb of plain numbers, larger, for programs without KHR_draco_mesh_compression (VTK)")(
       "json", "print one JSON object");
+  addNoClobber(options);
 }
 
 Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& input,
                                 const std::string& endings) {
-  MeshOutput out{parsed.get<std::string>("output"), {}, false, parsed.has("json")};
+  MeshOutput out{
+      parsed.get<std::string>("output"), {}, false, parsed.has("json"), parsed.has("no-clobber")};
   out.isStandardOutput = out.file == "-";
   if (out.isStandardOutput && out.asJson)
     throw UsageError(
@@ -39,11 +41,12 @@ Result<MeshOutput> meshOutputOf(const ParsedWords& parsed, const std::string& in
   // Judged by a name that has the ending, in the folder that is meant.
   std::filesystem::path judged = out.isStandardOutput ? "standard-output" : out.file;
   judged.replace_extension(out.ending);
-  if (Status checked = checkOutput(
-          out.isStandardOutput ? std::filesystem::temp_directory_path() / judged : judged, endings,
-          input);
-      !checked)
+  if (out.isStandardOutput) judged = std::filesystem::temp_directory_path() / judged;
+  if (Status checked = checkOutput({judged}, endings, input); !checked)
     return std::unexpected(checked.error());
+  if (Status s = out.isStandardOutput ? checkNoTerminal() : checkKeepsOld({out.file, out.keepsOld});
+      !s)
+    return std::unexpected(s.error());
   if (!out.isStandardOutput && judged != out.file) {
     std::error_code code;
     if (std::filesystem::equivalent(out.file, input, code))
@@ -62,7 +65,7 @@ Status writeMeshOutput(const MeshOutput& output, std::span<const std::uint8_t> b
     console.note(report.sentence + ", " + std::to_string(bytes.size()) + " bytes");
     return {};
   }
-  if (Status written = writeFileAtomically(output.file, bytes); !written) return written;
+  if (Status written = writeOutput({output.file, output.keepsOld}, bytes); !written) return written;
   reportMeshOutput(output, bytes.size(), report, console);
   return {};
 }

@@ -1,5 +1,6 @@
 #include "simplify/commands/provided_log.h"
 
+#include "codec/files/unreachable.h"
 #include "simplify/commands/command_read.h"
 
 namespace qtet {
@@ -18,7 +19,12 @@ std::string meshNameOf(const fs::path& file) {
 int provideLog(const fs::path& input, const fs::path& log, const ParsedWords& parsed,
                Console& console) {
   std::error_code code;
-  if (!fs::is_regular_file(input, code))
+  const bool isThere = fs::is_regular_file(input, code);
+  if (isUnreachable(code))
+    return reportFailure(
+        {ErrorCode::kIo, "cannot read " + input.string() + ": " + code.message(), Error::kNoOffset},
+        false, console);
+  if (!isThere)
     return reportFailure(
         {ErrorCode::kNotFound, "there is no file " + input.string() + "; give a mesh or a log",
          Error::kNoOffset},

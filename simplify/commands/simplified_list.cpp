@@ -186,7 +186,7 @@ Status addSegment(const SimplifyRequest& request, std::vector<double> times, Unp
   ofOne.read.namesTime = true;
   if (!times.empty()) ofOne.read.time = timesText(times);
   const fs::path file = logs.next();
-  Result<OrderedJson> made = makeLog(ofOne, file, progress);
+  Result<OrderedJson> made = makeLog(ofOne, Output{file}, progress);
   if (!made) return std::unexpected(made.error());
   const Result<OpenedLog> log = openLog(file);
   if (!log) return std::unexpected(log.error());

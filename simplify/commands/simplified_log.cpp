@@ -239,15 +239,21 @@ std::string fieldTable(const OrderedJson& fields, const OrderedJson& error) {
   return columns(rows) + moreFields(fields.size(), "'qtet info --all' shows them");
 }
 
+/// Beside which file blocks wait until the log is written.
+std::filesystem::path spoolOf(const Output& output) {
+  return output.stream == nullptr ? output.file
+                                  : std::filesystem::temp_directory_path() / "standard-output.qtet";
+}
+
 }  // namespace
 
-Result<OrderedJson> makeLog(const SimplifyRequest& request, const std::filesystem::path& file,
+Result<OrderedJson> makeLog(const SimplifyRequest& request, const Output& output,
                             Progress& progress) {
   Stopwatch watch;
   progress.stage("reading " + request.input);
   PipelineOptions options = request.pipeline;
   options.progress = shownBy(progress);
-  options.spool = [&] { return fileSpoolBeside(file); };
+  options.spool = [&] { return fileSpoolBeside(spoolOf(output)); };
   const Result<ChosenTimes> chosen = chosenTimesOf(request.input, request.read);
   if (!chosen) return std::unexpected(chosen.error());
   const std::vector<double>& times = chosen->times;
@@ -259,7 +265,7 @@ Result<OrderedJson> makeLog(const SimplifyRequest& request, const std::filesyste
   const PipelineOutput* const made = &all->output;
   watch.lap(made->report);
   const Result<WrittenLog> written =
-      writeLog(file, [&](const ByteSink& sink) { return made->log.writeTo(sink); });
+      writeLog(output, [&](const ByteSink& sink) { return made->log.writeTo(sink); });
   if (!written) return std::unexpected(written.error());
   watch.lap("write");
   return reportOf(request, all->read, made->report, *written, watch);

@@ -1,11 +1,10 @@
 // Makes a log of a mesh file and reports on it: the whole of `qtet simplify`, or one log of a list.
 #pragma once
 
-#include <filesystem>
 #include <ostream>
 #include <string>
 
-#include "simplify/commands/command_line.h"
+#include "simplify/commands/output.h"
 #include "simplify/commands/progress.h"
 #include "simplify/pipeline/pipeline.h"
 #include "simplify/read/options/read_options.h"
@@ -19,10 +18,10 @@ struct SimplifyRequest {
   PipelineOptions pipeline;
 };
 
-/// Makes the log and writes it to `file`. Returns what `qtet simplify --json` prints. Errors:
+/// Makes the log and writes it to `output`. Returns what `qtet simplify --json` prints. Errors:
 /// chosenTimesOf's, readMesh's, simplifyToLog's, simplifySeries's, writeLog's.
-[[nodiscard]] Result<OrderedJson> makeLog(const SimplifyRequest& request,
-                                          const std::filesystem::path& file, Progress& progress);
+[[nodiscard]] Result<OrderedJson> makeLog(const SimplifyRequest& request, const Output& output,
+                                          Progress& progress);
 
 /// The same report for people.
 void printMadeLog(const OrderedJson& report, std::ostream& out);

@@ -1,14 +1,13 @@
 #include "simplify/commands/written_log.h"
 
-#include "codec/files/atomic_file.h"
 #include "proto/checksum.h"
 
 namespace qtet {
 
-Result<WrittenLog> writeLog(const std::filesystem::path& path, const ByteSource& log) {
+Result<WrittenLog> writeLog(const Output& output, const ByteSource& log) {
   WrittenLog out;
   Sha256 sha;
-  const Status written = writeFileAtomically(path, [&](const ByteSink& file) {
+  const Status written = writeOutput(output, [&](const ByteSink& file) {
     return log([&](ByteView piece) {
       sha.update(piece);
       out.bytes += piece.size();

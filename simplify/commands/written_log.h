@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include "proto/byte_sink.h"
+#include "simplify/commands/output.h"
 
 namespace qtet {
 
@@ -14,7 +14,7 @@ struct WrittenLog {
   std::uint64_t bytes = 0;
 };
 
-/// Errors: writeFileAtomically's, the log's.
-[[nodiscard]] Result<WrittenLog> writeLog(const std::filesystem::path& path, const ByteSource& log);
+/// Errors: writeOutput's.
+[[nodiscard]] Result<WrittenLog> writeLog(const Output& output, const ByteSource& log);
 
 }  // namespace qtet

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "codec/files/unreachable.h"
 #include "proto/number_text.h"
 #include "proto/series.h"
 
@@ -17,7 +18,10 @@ namespace fs = std::filesystem;
 /// At most one byte more than a list may have.
 Result<std::string> textOf(const fs::path& path) {
   std::error_code code;
-  if (!fs::exists(path, code))
+  const bool isThere = fs::exists(path, code);
+  if (isUnreachable(code))
+    return fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + code.message());
+  if (!isThere)
     return fail(ErrorCode::kNotFound,
                 "there is no list " + path.string() + "; 'qtet simplify -o NAME.json' makes one");
   std::string out(kMaxListBytes + 1, '\0');
@@ -62,7 +66,7 @@ std::string timesText(std::span<const double> times) {
 Result<OpenedLog> openSegment(const fs::path& list, const Segment& segment) {
   const fs::path path = list.parent_path() / segment.log;
   std::error_code code;
-  if (!fs::exists(path, code))
+  if (!fs::exists(path, code) && !isUnreachable(code))
     return fail(ErrorCode::kNotFound, list.string() + " names the log " + segment.log +
                                           ", which is not beside it; copy the list together with "
                                           "its logs, or make both again");

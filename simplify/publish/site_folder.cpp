@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "codec/files/atomic_file.h"
+#include "codec/files/unreachable.h"
 
 namespace qtet {
 namespace {
@@ -55,7 +56,11 @@ Result<std::string> strangerIn(const fs::path& folder) {
 Status checkPlace(const fs::path& place) {
   std::error_code code;
   const fs::path parent = place.parent_path();
-  if (!fs::is_directory(parent, code))
+  const bool isThere = fs::is_directory(parent, code);
+  if (isUnreachable(code))
+    return fail(ErrorCode::kIo, "the folder " + parent.string() + " cannot be reached: " +
+                                    code.message() + "; publish elsewhere");
+  if (!isThere)
     return fail(ErrorCode::kNotFound, "the folder " + parent.string() +
                                           " does not exist; make it first or publish elsewhere");
   if (!fs::exists(place, code)) return {};

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "codec/files/unreachable.h"
 #include "simplify/read/options/check_avs.h"
 
 namespace qtet {
@@ -182,6 +183,8 @@ Status checkMeshFile(const fs::path& path, MeshFormat format) {
   const fs::file_status status = fs::status(path, code);
   if (status.type() == fs::file_type::not_found)
     return fail(ErrorCode::kNotFound, "there is no file " + path.string() + "; check the name");
+  if (isUnreachable(code))
+    return fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + code.message());
   if (!fs::is_regular_file(status))
     return fail(ErrorCode::kIo,
                 path.string() + " is not a readable file; give a mesh file such as .vtu");

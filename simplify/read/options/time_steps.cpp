@@ -80,10 +80,19 @@ std::expected<std::vector<std::size_t>, std::string> stepsAt(const std::string& 
 
 }  // namespace
 
+std::string timeWord(const std::string& asked) {
+  std::string small = asked;
+  std::ranges::transform(small, small.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return small == "first" || small == "last" || small == "all" ? small : asked;
+}
+
 Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
-                                             const std::string& asked,
+                                             const std::string& given,
                                              const std::filesystem::path& path,
                                              std::vector<std::string>& notes) {
+  const std::string asked = timeWord(given);
   std::vector<std::size_t> all(times.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   if (asked == "all" || (times.size() <= 1 && (asked == "first" || asked == "last"))) return all;

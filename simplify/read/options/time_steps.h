@@ -9,8 +9,12 @@
 
 namespace qtet {
 
-/// The numbers of the steps that `asked` means, ascending: "first", "last", "all", or the times of
-/// one or several between commas (placeOfTime). FROM:TO:EVERY means every so many of those between
+/// "first", "last" and "all" in small letters, in whatever case they were given; anything else as
+/// it is.
+[[nodiscard]] std::string timeWord(const std::string& asked);
+
+/// The numbers of the steps that `asked` means, ascending: a timeWord, or the times of one or
+/// several between commas (placeOfTime). FROM:TO:EVERY means every so many of those between
 /// two times. Each part of it may be left out.
 /// A word means all of them where there is one or none. A note says that the last was taken of
 /// several. `times` ascend. Errors: not-found (no such step), with the times that there are;

@@ -76,6 +76,26 @@ TEST_F(AddStepsTool, aCollectionThatGoesOn) {
   expectSteps("log.qtet", kSteps);
 }
 
+TEST_F(AddStepsTool, aLogIsVerifiedAgainstItsOwnInstants) {
+  EXPECT_EQ(run("verify log.qtet --against run.pvd").code, 0) << "three of fourteen";
+  EXPECT_EQ(run("verify log.qtet --against run.pvd --time 0:1").code, 0);
+  expectFailure("verify log.qtet --against run.pvd --time 0.5", 1, "T@0");
+  put("late.pvd", collection(1, kSteps));
+  expectFailure("verify log.qtet --against late.pvd", 1, "no time step 0");
+  ASSERT_EQ(run("sample fin --cells 2000 --steps 3 -o fin.vtu").code, 0);
+  ASSERT_EQ(run("simplify fin.vtu -o fin.qtet").code, 0);
+  EXPECT_EQ(run("verify fin.qtet --against fin.vtu").code, 0) << "instants of a file without times";
+}
+
+TEST_F(AddStepsTool, aWordForATimeIsTakenInAnyCase) {
+  for (const char* word : {"LAST", "First", "ALL"}) {
+    const Ran ran = run(std::string("check run.pvd --time ") + word);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+  }
+  ASSERT_EQ(run("simplify run.pvd --time ALL -o all.qtet --base-cells 600").code, 0);
+  EXPECT_EQ(run("info all.qtet --json").json()["fields"].size(), std::size_t{kSteps});
+}
+
 TEST_F(AddStepsTool, filesThatKnowNoTime) {
   std::string files, times;
   for (int step = 3; step < kSteps; ++step) {

@@ -101,6 +101,7 @@ TEST_F(ExtractTimes, someInstantsAreChosenByARange) {
   ASSERT_EQ(run("extract box.qtet --level 0 --time 0.5: -o late.pvd").code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "late/late_0001.vtu"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "late/late_0002.vtu"));
+  ASSERT_EQ(run("extract box.qtet --level 0 --time LAST -o last.vtu").code, 0);
   expectFailure("extract box.qtet --level 0 --time all -o all.vtu", 2, "3 instants");
   expectFailure("extract box.qtet --level 0 --time 7 -o all.vtu", 1, "no time step 7");
   expectFailure("extract box.qtet --level 0 --to pvd -o -", 2, "NAME.pvd");

@@ -56,6 +56,30 @@ wait
 cp box.vtu nameless
 "$qtet" check nameless --format vtu >/dev/null 2>&1 ||
   fail "--format of a file whose name says nothing"
+# every command that writes one file, with its messages beside it
+for words in "sample box" "simplify box.vtu" "add-field box.qtet --from box.vtu --replace" \
+  "add-steps box.qtet box.vtu --times 1 --fields Scalar" "remove-field box.qtet --fields Scalar"; do
+  ending=qtet
+  [[ $words != sample* ]] || ending=vtu
+  # shellcheck disable=SC2086
+  "$qtet" $words -o beside.$ending >said.txt 2>/dev/null || fail "$words"
+  # shellcheck disable=SC2086
+  "$qtet" $words -o - 2>err.txt | cmp - beside.$ending || fail "$words -o -"
+  grep -q '^qtet: note: the standard output' err.txt || fail "$words -o - says nothing"
+  ! grep -qv '^qtet: ' err.txt || fail "$words -o -: messages without a mark"
+  [[ $(wc -l <said.txt) == $(grep -c '^qtet: note: ' err.txt) ]] || fail "$words -o -: other words"
+done
+[[ ! -e ./- ]] || fail "a file was called -"
+"$qtet" sample box -o - 2>/dev/null | "$qtet" simplify - --format vtu -o - 2>/dev/null |
+  "$qtet" info - | grep -q '3,072 tetrahedra' || fail "three commands in a row"
+refuses 2 'both want' simplify box.vtu -o - --json
+if command -v script >/dev/null; then
+  for words in "sample box -o -" "simplify box.vtu -o -" \
+    "extract box.qtet --level 0 --to vtu -o -"; do
+    script -qec "'$qtet' $words" tty.txt >out.txt </dev/null && fail "$words to a terminal"
+    grep -q 'which is a terminal' out.txt || fail "$words to a terminal: $(head -c 200 out.txt)"
+  done
+fi
 refuses 2 '--format' check -
 refuses 2 'given once' simplify - - --format vtu -o x.qtet
 refuses 2 '--to' extract box.qtet --level 0 -o -

@@ -39,6 +39,10 @@ TEST_F(Tool, helpAndVersionSucceed) {
   EXPECT_NE(often.find("simplify/INPUT.md"), std::string::npos);
   EXPECT_LE(std::ranges::count(often, '\n'), 50);
   EXPECT_EQ(often.find("--plot3d arg"), std::string::npos);
+  for (const char* command : {"simplify", "check", "convert", "extract", "add-field", "add-steps",
+                              "verify", "page", "view"})
+    EXPECT_NE(run(std::string(command) + " --help").out.find("\n  --time arg"), std::string::npos)
+        << command;
   for (const char* words :
        {"\ninput:\n", "\nquality and base mesh:\n", "--plot3d arg", "--fields arg"})
     EXPECT_NE(all.find(words), std::string::npos) << words;
@@ -129,6 +133,31 @@ TEST_F(Tool, infoShowsLevelsWithTheirErrorsOrAll) {
     EXPECT_EQ(contentOf(folder_ / "out.txt").find("\033[1m") != std::string::npos, coloured)
         << word;
   }
+}
+
+TEST_F(Tool, infoAndVerifyOfSeveralLogsNameEachAndEndWithTheWorst) {
+  makeBoxLog();
+  const std::string one = run("info box.qtet").out, verified = run("verify box.qtet").out;
+  std::filesystem::copy(folder_ / "box.qtet", folder_ / "two.qtet");
+  EXPECT_EQ(run("info box.qtet two.qtet").out, "box.qtet:\n" + one + "\ntwo.qtet:\n" + one);
+  EXPECT_EQ(run("verify box.qtet two.qtet").out,
+            "box.qtet:\n" + verified + "\ntwo.qtet:\n" + verified);
+  for (const std::string command : {"info", "verify"}) {
+    const nlohmann::json alone = run(command + " box.qtet --json").json();
+    EXPECT_TRUE(alone.is_object());
+    const Ran ran = run(command + " box.qtet no.qtet two.qtet --json");
+    EXPECT_EQ(ran.code, 1);
+    EXPECT_NE(ran.err.find("no.qtet"), std::string::npos);
+    const nlohmann::json all = ran.json();
+    ASSERT_EQ(all.size(), 3u);
+    EXPECT_EQ(all[0]["input"], "box.qtet");
+    EXPECT_EQ(all[0]["digest"], alone["digest"]);
+    EXPECT_EQ(all[1]["error"]["code"], "io");
+    EXPECT_EQ(all[2]["digest"], alone["digest"]) << "a failure does not end the rest";
+  }
+  EXPECT_EQ(run("verify box.qtet two.qtet --against box.vtu").code, 0);
+  put("bad.qtet", "no log");
+  EXPECT_EQ(run("verify bad.qtet box.qtet").code, 1);
 }
 
 TEST_F(Tool, whatStrangersNamedReachesNoTerminal) {

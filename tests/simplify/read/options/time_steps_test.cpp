@@ -24,6 +24,13 @@ TEST(TimeSteps, aRangeTakesEverySoManyOfTheStepsBetweenTwoTimes) {
   EXPECT_EQ(stepsOf("-1e0:0.:1").value(), (Steps{0, 1}));
 }
 
+TEST(TimeSteps, wordsHaveAnyCase) {
+  EXPECT_EQ(stepsOf("LAST").value(), (Steps{5}));
+  EXPECT_EQ(stepsOf("First").value(), (Steps{0}));
+  EXPECT_EQ(stepsOf("aLL").value().size(), kTimes.size());
+  EXPECT_EQ(timeWord("Later"), "Later");
+}
+
 TEST(TimeSteps, aRangeWithoutStepsSaysWhichThereAre) {
   for (const char* asked : {"6:", "0.11:0.19", "5:0"}) {
     const auto steps = stepsOf(asked);

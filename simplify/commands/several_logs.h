@@ -1,0 +1,25 @@
+// What `info` and `verify` say about one log, or about each of several.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "simplify/commands/command_line.h"
+
+namespace qtet {
+
+/// What there is to say about a log.
+struct LogReport {
+  OrderedJson json;
+  std::string text;
+};
+using LogReporter = std::function<Result<LogReport>(const std::string& path)>;
+
+/// Reports on each word of "LOG..." in order, and goes on after a failure. Prints the text, or with
+/// --json the object. If there are several, each text stands under its name, and --json is one
+/// array of these objects, whose first member is `input`; a failure gives {input, error}. Returns
+/// the worst exit code of all.
+[[nodiscard]] int reportLogs(const ParsedWords& parsed, const LogReporter& report,
+                             Console& console);
+
+}  // namespace qtet
