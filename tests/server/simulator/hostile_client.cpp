@@ -25,8 +25,8 @@ class Hostile final : public Client {
         &Hostile::readsSlowly,     &Hostile::sendsNoise,      &Hostile::sendsBody,
         &Hostile::asksForEver,     &Hostile::asksTooOften,    &Hostile::changesRequest,
         &Hostile::streamsSilently, &Hostile::streamsUnread,   &Hostile::sendsWrongFrames,
-        &Hostile::sendsManyFrames, &Hostile::opensOften,      &Hostile::wantsLevels,
-        &Hostile::halfCloses};
+        &Hostile::sendsManyFrames, &Hostile::opensOften,      &Hostile::asksOddly,
+        &Hostile::wantsLevels,     &Hostile::halfCloses};
     // some break off in the midst of it
     if (random().chance(250)) later(random().between(1ms, 5s), [this] { leave(); });
     (this->*kWays[random().below(kWays.size())])();
@@ -98,6 +98,30 @@ class Hostile final : public Client {
     std::string text;
     const std::size_t count = random().between(50, 400);
     for (std::size_t i = 0; i < count; ++i) text += request(i % 3 == 0 ? "/" : "/v1/meshes");
+    say(text);
+    leaveLater();
+  }
+  /// What only a program asks for.
+  void asksOddly() {
+    constexpr std::array kNumbers = {"0",          "1",          "-1",  "99",
+                                     "4294967295", "4294967296", "1e9", "LAST"};
+    constexpr std::array kEndings = {".vtu", ".glb", ".drc", ".usda", ".msh", "", ".exe"};
+    constexpr std::array kQueries = {"",          "?fields=",    "?fields=density,density",
+                                     "?time=nan", "?time=1e308", "?level=0",
+                                     "?bytes=0"};
+    const auto any = [this](const auto& words) -> std::string {
+      return words[random().below(words.size())];
+    };
+    const std::string log = "/v1/logs/" + anyLog().digest + "/";
+    std::string text;
+    for (int i = 0; i < 5; ++i) {
+      const std::string number = any(kNumbers), query = any(kQueries);
+      const std::array<std::string, 5> targets = {
+          log + "levels/" + number + any(kEndings) + query, log + "levels/fit.vtu" + query,
+          log + "chunks/" + number + query, log + "series/" + number + query,
+          "/v1/meshes?limit=" + number};
+      text += request(targets[random().below(targets.size())]);
+    }
     say(text);
     leaveLater();
   }
