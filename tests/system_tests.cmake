@@ -149,7 +149,7 @@ if(QTET_WEB)
   # The whole of it: the tool's logs, the server, the viewer in a real browser, a list of checks
   # after the other.
   foreach(list IN ITEMS
-      baseline checks edge element legend monkey publish recovery transport volume)
+      baseline checks edge element legend monkey panel publish recovery transport volume)
     # Pictures and random actions are looked at where something that they show has changed.
     set(when "")
     if(list MATCHES "^(baseline|monkey)$")

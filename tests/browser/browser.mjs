@@ -1,7 +1,9 @@
 // Chromium, headless with software WebGL, and the viewer's page in it.
 
+import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join} from 'node:path';
+import {PagePool} from './page_pool.mjs';
 import {readPng} from './png.mjs';
 
 const require = createRequire(new URL('../../web-client/package.json', import.meta.url));
@@ -14,6 +16,9 @@ export const kPhone = {
   isMobile: true,
   hasTouch: true,
 };
+/** Their layouts at a half and a quarter of the pixels, for checks of anything but pictures. */
+export const kSmallDesktop = {viewport: {width: 800, height: 600}};
+export const kCoarsePhone = {...kPhone, deviceScaleFactor: 1};
 /** Only patience: a machine under load needs a minute for work of seconds. */
 export const kTimeoutMs = 180000;
 const kSettleMs = 900;
@@ -26,14 +31,21 @@ export class Browser {
   #browser;
   #out;
   #pages = [];
+  /** Null: each page is a new one. */
+  #pool = null;
 
-  static async launch(out) {
+  /**
+   * `forChecks`: pages serve one check after another, and a processor composes them. Graphics in
+   * software would do that with shaders, at three times the price; only the canvas needs them.
+   */
+  static async launch(out, {forChecks = false} = {}) {
     const args = [
       '--use-gl=angle',
       '--use-angle=swiftshader',
       '--enable-unsafe-swiftshader',
       '--mute-audio',
     ];
+    if (forChecks) args.push('--disable-gpu-compositing');
     if (process.getuid?.() === 0) args.push('--no-sandbox');
     const launched = new Browser();
     launched.#out = out;
@@ -42,6 +54,7 @@ export class Browser {
       headless: true,
       args,
     });
+    if (forChecks) launched.#pool = new PagePool(launched.#browser);
     return launched;
   }
 
@@ -50,13 +63,12 @@ export class Browser {
    * context options; `before` runs before the page's scripts.
    */
   async open(url, device = kDesktop, before = () => undefined) {
-    const context = await this.#browser.newContext(device);
-    const page = await context.newPage();
+    const page = await (this.#pool?.take(device) ?? this.blank(device));
     page.setDefaultTimeout(kTimeoutMs);
     const viewer = new ViewerPage(page, this.#out);
     this.#pages.push(viewer);
-    await page.addInitScript(watchEvents, kOpenedMark);
-    await page.addInitScript(before);
+    viewer.scripts.push(await page.addInitScript(watchEvents, kOpenedMark));
+    viewer.scripts.push(await page.addInitScript(before));
     await page.goto(url);
     await page.waitForFunction(() => window.qtetViewer !== undefined, null, {
       timeout: kTimeoutMs,
@@ -69,6 +81,7 @@ export class Browser {
    * it was opened: {ms, cpuMs} each.
    */
   async trace() {
+    await this.#pool?.empty(); // they have had workers
     await this.#browser.startTracing(undefined, {
       categories: ['-*', 'toplevel', 'blink.user_timing', '__metadata'],
     });
@@ -113,8 +126,15 @@ export class Browser {
         .catch(() => undefined);
   }
 
-  async closePages() {
-    for (const viewer of this.#pages) await viewer.page.context().close();
+  /** `areSound`: the next check may have them. */
+  async closePages({areSound = true} = {}) {
+    for (const {page, scripts} of this.#pages) {
+      if (!this.#pool || !areSound) await page.context().close();
+      else {
+        for (const script of scripts) await script.dispose();
+        await this.#pool.giveBack(page);
+      }
+    }
     this.#pages = [];
   }
 
@@ -126,6 +146,8 @@ export class Browser {
 export class ViewerPage {
   /** Uncaught errors, and console errors except those about a missing network. */
   problems = [];
+  /** They run before the page's own. */
+  scripts = [];
 
   constructor(page, out) {
     this.page = page;
@@ -226,7 +248,8 @@ export class ViewerPage {
    * The violations of WCAG 2.2 AA that axe-core finds, including shadow roots, as "rule: element".
    */
   async accessibilityViolations() {
-    await this.page.addScriptTag({path: require.resolve('axe-core/axe.min.js')});
+    // so that the page's policy does not forbid it
+    await this.page.evaluate(`${readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8')};0`);
     return this.page.evaluate(async () => {
       const {violations} = await window.axe.run(document, {
         runOnly: ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice'],

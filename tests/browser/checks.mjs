@@ -526,7 +526,7 @@ async function isAccessible({server, browser}) {
   for (const colorScheme of ['light', 'dark']) {
     const viewer = await browser.open(
       `${server.url}?mesh=fin&clip=x&iso=Density=2&threshold=Density=1,4&volume=0,0.1,0.4`,
-      {...kDesktop, colorScheme, bypassCSP: true},
+      {...kDesktop, colorScheme},
     );
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
@@ -565,6 +565,7 @@ async function isAccessible({server, browser}) {
       await viewer.page.evaluate(() => window.qtetViewer.shadowRoot.activeElement.name),
       'mesh',
     );
+    await browser.closePages();
   }
   assert.deepEqual(notes, ['Complete', 'Complete']);
 }

@@ -1,7 +1,7 @@
 // The histogram in the colour panel: its handles set the range, with a pointer and with keys.
 
 import assert from 'node:assert/strict';
-import {kDesktop, kPhone} from './browser.mjs';
+import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {differingShare} from './png.mjs';
 import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
@@ -18,10 +18,7 @@ const handle = (viewer, which) =>
 const rangeOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.getAttribute('range'));
 
 async function setsTheRangeByItsHandles(context) {
-  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none', {
-    ...kDesktop,
-    bypassCSP: true,
-  });
+  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none');
   const {page} = viewer;
   const low = handle(viewer, 'first');
   await low.waitFor();
@@ -65,7 +62,7 @@ async function setsTheRangeByItsHandles(context) {
 
 /** A double-click takes the middle, too; the picture is also looked at in the dark. */
 async function takesTheMiddleByADoubleClick(context) {
-  const device = {...kDesktop, colorScheme: 'dark', bypassCSP: true};
+  const device = {...kDesktop, colorScheme: 'dark'};
   const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none&scale=log', device);
   await handle(viewer, 'first').waitFor();
   await viewer.screenshot('histogram-dark');
@@ -76,7 +73,7 @@ async function takesTheMiddleByADoubleClick(context) {
 }
 
 async function hasRoomForFingers(context) {
-  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none', kPhone);
+  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none', kCoarsePhone);
   await viewer.page.getByRole('button', {name: 'Controls'}).tap();
   for (const which of ['first', 'last']) {
     await viewer.page.getByRole('button', {name: 'Middle 98'}).scrollIntoViewIfNeeded();

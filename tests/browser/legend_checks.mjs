@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
-import {kPhone} from './browser.mjs';
+import {kCoarsePhone, kSmallDesktop} from './browser.mjs';
 import {serveMesh} from './programs.mjs';
 import {linearBox, pixelsAt} from './volume_checks.mjs';
 
@@ -36,7 +36,7 @@ async function showsAwkwardFieldsLegibly(context) {
     }),
     ['--field-bits', '20'],
   );
-  const viewer = await browser.open(`${server.url}?mesh=awkward`, kPhone);
+  const viewer = await browser.open(`${server.url}?mesh=awkward`, kCoarsePhone);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const {page} = viewer;
@@ -169,6 +169,7 @@ async function followsTheField({server, browser}) {
 async function saysWhatIsHidden({server, browser}) {
   const viewer = await browser.open(
     `${server.url}?mesh=fin&field=Velocity[1]&scale=log&iso=Density=1.5&clip=1,1,0:0.9`,
+    kSmallDesktop,
   );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {existsSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {kDesktop, kPhone} from './browser.mjs';
+import {kCoarsePhone, kSmallDesktop} from './browser.mjs';
 import {makeLog} from './programs.mjs';
 
 /** Plays the file on a page of its own. Its last instant is also sought. */
@@ -78,7 +78,7 @@ async function opened({server, browser, out, bin}, query, device) {
 
 async function makesAMovieOfASeries(context) {
   const {browser} = context;
-  const viewer = await opened(context, 'time=2', {...kDesktop, bypassCSP: true});
+  const viewer = await opened(context, 'time=2', kSmallDesktop);
   const {page} = viewer;
   await page.locator('qtet-viewer canvas.scene').focus();
   await page.keyboard.press('p');
@@ -110,7 +110,7 @@ async function makesAMovieOfASeries(context) {
 
 /** Nothing is offered then, and the instant of before is shown. */
 async function cancelsAMovieAndTellsWhatFails(context) {
-  const viewer = await opened(context, '', kPhone);
+  const viewer = await opened(context, '', kCoarsePhone);
   const {page} = viewer;
   await page.getByRole('button', {name: 'Controls'}).tap();
   await page.getByRole('button', {name: 'Save picture'}).tap();

@@ -1,7 +1,7 @@
 // The panel and what lies in the picture's corners: found at once, folded, reached by keyboard.
 
 import assert from 'node:assert/strict';
-import {kDesktop, kPhone} from './browser.mjs';
+import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 
@@ -17,7 +17,7 @@ const kActions = ['Reset view', 'Save picture', 'Share', 'Full screen', 'Keys'];
 /** Actions are found without scrolling, with a name and a tooltip, also by keyboard. */
 async function showsItsActionsAtOnce(context) {
   for (const colorScheme of ['light', 'dark']) {
-    const viewer = await opened(context, 'mesh=fin', {...kDesktop, colorScheme, bypassCSP: true});
+    const viewer = await opened(context, 'mesh=fin', {...kDesktop, colorScheme});
     const {page} = viewer;
     await viewer.screenshot(`panel-${colorScheme}`);
     const panel = await page.locator('qtet-viewer .panel').boundingBox();
@@ -28,6 +28,7 @@ async function showsItsActionsAtOnce(context) {
       assert.ok((await button.getAttribute('title')).startsWith(name));
     }
     assert.deepEqual(await viewer.accessibilityViolations(), []);
+    await context.browser.closePages();
   }
   const viewer = await opened(context, 'mesh=fin');
   const {page} = viewer;
@@ -98,7 +99,7 @@ async function keepsHalfOfALowWindow(context) {
   const pulled = await freeShare(viewer);
   await viewer.screenshot('panel-low-pulled');
   assert.ok(folded >= 0.5 && pulled >= 0.5, `free: ${folded} folded, ${pulled} pulled up`);
-  const phone = await opened(context, 'mesh=fin', kPhone);
+  const phone = await opened(context, 'mesh=fin', kCoarsePhone);
   await phone.page.getByRole('button', {name: 'Controls'}).tap();
   await phone.settle();
   await phone.screenshot('panel-phone');
@@ -110,8 +111,7 @@ const cameraOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.camera
 /** A face of the cube looks along its axis, by a click and by the keyboard. */
 async function turnsByTheCube(context) {
   for (const colorScheme of ['light', 'dark']) {
-    const device = {...kDesktop, colorScheme, bypassCSP: true};
-    const viewer = await opened(context, 'mesh=box', device);
+    const viewer = await opened(context, 'mesh=box', {...kDesktop, colorScheme});
     const {page} = viewer;
     await page.getByRole('button', {name: 'View from +x'}).waitFor();
     await viewer.screenshot(`cube-${colorScheme}`);
@@ -129,12 +129,13 @@ async function turnsByTheCube(context) {
     const from = await cameraOf(viewer);
     assert.ok(from[0] < -1 && Math.hypot(from[1], from[2]) < 0.01 * -from[0], `from ${from}`);
     assert.deepEqual(viewer.problems, []);
+    await context.browser.closePages();
   }
 }
 
 /** On phones the whole cube is one target; a tap looks along the nearest face. */
 async function turnsByATapOnTheCube(context) {
-  const viewer = await opened(context, 'mesh=box', kPhone);
+  const viewer = await opened(context, 'mesh=box', kCoarsePhone);
   const {page} = viewer;
   await page.getByRole('button', {name: 'View from +z'}).waitFor();
   const {x, y, width, height} = await page.locator('qtet-viewer .orientation-cube').boundingBox();
@@ -170,7 +171,7 @@ async function showsTheValueAtThePointer(context) {
   await page.mouse.down();
   assert.equal(await label.isVisible(), false);
   await page.mouse.up();
-  const phone = await opened(context, 'mesh=fin&clip=none', kPhone);
+  const phone = await opened(context, 'mesh=fin&clip=none', kCoarsePhone);
   await phone.page.touchscreen.tap(195, 350);
   await phone.settle();
   assert.equal(await phone.page.locator('qtet-viewer .hover').isVisible(), false);

@@ -1,12 +1,11 @@
 // The page before its scripts are there: its name, state and poster, and what is fetched then.
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
-import {rmSync, writeFileSync} from 'node:fs';
+import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {kDesktop, kPhone} from './browser.mjs';
 import {coloredShare} from './png.mjs';
-import {Server} from './programs.mjs';
+import {publishedOnce, Server} from './programs.mjs';
 import {hostFolder} from './static_host.mjs';
 import {kStrictPolicy} from './strict_policy.mjs';
 
@@ -117,17 +116,9 @@ async function aGuardedMeshHasNoPoster({logs, viewer: files, out, bin}) {
   }
 }
 
-async function aPublishedFolderShowsThePosterOfItsAddress({
-  browser,
-  logs,
-  viewer: files,
-  out,
-  bin,
-}) {
-  const folder = join(out, 'poster-site');
-  rmSync(folder, {recursive: true, force: true});
-  const paths = [logs.fin, logs.box].map(({folder: at, name}) => join(at, `${name}.qtet`));
-  execFileSync(join(bin, 'qtet'), ['publish', folder, ...paths, '--viewer', files]);
+async function aPublishedFolderShowsThePosterOfItsAddress(context) {
+  const {browser, logs} = context;
+  const folder = publishedOnce(context);
   // another page's scripts come from the same folder, so this one is not blocked with the modules
   const headers = {'content-security-policy': kStrictPolicy};
   const host = await hostFolder(folder, {nginx: false, headers});

@@ -2,7 +2,7 @@
 // again on its port.
 
 import {execFileSync, spawn} from 'node:child_process';
-import {mkdirSync, writeFileSync} from 'node:fs';
+import {mkdirSync, rmSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {freePort} from '../support/free_port.mjs';
 
@@ -24,6 +24,20 @@ export function makeLog(bin, name, out, sample = [name], options = []) {
   run('simplify', mesh, '-o', log, ...options);
   const report = JSON.parse(run('verify', log, '--json'));
   return {name, folder, meshDigest: report.meshDigest};
+}
+
+/** The folders of publishedOnce. */
+const published = new Set();
+
+/** Publishes the logs to OUT/published, once for all checks: it compresses the viewer's files. */
+export function publishedOnce({bin, logs, viewer, out}) {
+  const folder = join(out, 'published');
+  if (published.has(folder)) return folder;
+  rmSync(folder, {recursive: true, force: true});
+  const paths = [logs.fin, logs.box].map(({folder: at, name}) => join(at, `${name}.qtet`));
+  execFileSync(join(bin, 'qtet'), ['publish', folder, ...paths, '--viewer', viewer]);
+  published.add(folder);
+  return folder;
 }
 
 /** Serves the mesh of a .vtu file's text as NAME, too; the server starts again for it. */

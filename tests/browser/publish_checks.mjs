@@ -1,17 +1,13 @@
 // A folder that `qtet publish` made, on web servers that know nothing about it.
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
-import {rmSync} from 'node:fs';
-import {join} from 'node:path';
 import {expectWhole} from './expect.mjs';
+import {publishedOnce} from './programs.mjs';
 import {hostFolder} from './static_host.mjs';
 
-async function showsAPublishedFolder({bin, browser, logs, viewer: files, out}) {
-  const folder = join(out, 'published');
-  rmSync(folder, {recursive: true, force: true});
-  const paths = [logs.fin, logs.box].map(({folder: at, name}) => join(at, `${name}.qtet`));
-  execFileSync(join(bin, 'qtet'), ['publish', folder, ...paths, '--viewer', files]);
+async function showsAPublishedFolder(context) {
+  const {browser, logs} = context;
+  const folder = publishedOnce(context);
   for (const options of [{}, {nginx: false, ranges: false}]) {
     const host = await hostFolder(folder, options);
     try {
