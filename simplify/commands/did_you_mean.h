@@ -1,4 +1,4 @@
-// What a word that is not known was probably meant to be.
+// The known word that an unknown one was probably meant to be.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 namespace qtet {
 
 /// "; did you mean 'CLOSEST'?", or "" where no known word is near. A known word is near if it
-/// begins with `word`, or if at most two letters, and at most half of them, are missing, too many,
-/// other ones or swapped with the next. Case does not count. `mark` stands before the answer, such
-/// as "--".
+/// begins with `word`. So is one with at most two letters, and at most half of them, missing, too
+/// many, other ones or swapped with the next. Case does not count. `mark` stands before the answer,
+/// such as "--".
 [[nodiscard]] std::string didYouMean(std::string_view word, std::span<const std::string> known,
                                      std::string_view mark = "");
 

@@ -23,12 +23,12 @@ struct Output {
 /// Adds --no-clobber.
 void addNoClobber(boost::program_options::options_description& options);
 
-/// What -o and --no-clobber say. REQUIRES: -o is given. Throws UsageError where --json and the file
+/// The file that -o names, and --no-clobber. REQUIRES: -o is given. Throws UsageError where --json and the file
 /// both want the standard output.
 [[nodiscard]] Output outputOf(const ParsedWords& parsed, const Console& console);
 
 /// Refuses an output before the work is done. Its ending must be one of `extensions`, separated by
-/// blanks (UsageError); its folder must exist and be writable; it must not be the input itself, nor
+/// blanks (UsageError). Its folder must exist and be writable. It must not be the input itself, nor
 /// with --no-clobber any file that is there. The standard output must not be a terminal.
 [[nodiscard]] Status checkOutput(const Output& output, const std::string& extensions,
                                  const std::optional<std::filesystem::path>& input = std::nullopt);

@@ -1,4 +1,4 @@
-// What `info` and `verify` say about one log, or about each of several.
+// The reports of `info` and `verify` on one log, or on each of several.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace qtet {
 
-/// What there is to say about a log.
+/// All that is said about a log.
 struct LogReport {
   OrderedJson json;
   std::string text;
@@ -16,9 +16,9 @@ struct LogReport {
 using LogReporter = std::function<Result<LogReport>(const std::string& path)>;
 
 /// Reports on each word of "LOG..." in order, and goes on after a failure. Prints the text, or with
-/// --json the object. If there are several, each text stands under its name, and --json is one
-/// array of these objects, whose first member is `input`; a failure gives {input, error}. Returns
-/// the worst exit code of all.
+/// --json the object. If there are several, each text stands under its name. With --json they are
+/// one array of objects whose first member is `input`; a failure gives {input, error}. Returns the
+/// worst exit code of all.
 [[nodiscard]] int reportLogs(const ParsedWords& parsed, const LogReporter& report,
                              Console& console);
 

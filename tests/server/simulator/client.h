@@ -21,7 +21,7 @@ struct ServedLog {
   std::vector<std::string> fields;
 };
 
-/// What clients share.
+/// All that clients share.
 struct World {
   Kernel& kernel;
   Random& random;

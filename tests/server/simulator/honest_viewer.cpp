@@ -48,7 +48,7 @@ class Viewer final : public Client {
       wrong(lost ? "the connection broke" : "the server closed the stream");
   }
 
-  /// Opens the log anew with what it has.
+  /// Opens the log again with what it has.
   void open() {
     Have have;
     while (has(have.chunks)) ++have.chunks;

@@ -13,7 +13,7 @@ namespace {
 
 namespace asio = boost::asio;
 constexpr auto kServer = MemoryOf::Whose::kServer;
-/// Of a level that is served. Bytes.
+/// Bytes of a level that is served.
 constexpr std::size_t kMaxLevel = 300'000;
 /// Memory that a level may take: none is that large.
 constexpr std::uint64_t kLevelMemory = 1u << 30;

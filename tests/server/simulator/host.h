@@ -44,7 +44,7 @@ class Host {
   [[nodiscard]] std::uint64_t keptBytes() const { return router_.pageBytes() + points_.bytes(); }
   [[nodiscard]] LevelJobCounts levels() const { return jobs_.counts(); }
   [[nodiscard]] boost::asio::io_context& context() { return context_; }
-  /// What a session threw; "": nothing.
+  /// Says what a session threw; "": nothing.
   std::string fault;
 
  private:

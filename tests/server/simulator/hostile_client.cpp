@@ -101,7 +101,7 @@ class Hostile final : public Client {
     say(text);
     leaveLater();
   }
-  /// What only a program asks for.
+  /// Asks for what only a program asks for.
   void asksOddly() {
     constexpr std::array kNumbers = {"0",          "1",          "-1",  "99",
                                      "4294967295", "4294967296", "1e9", "LAST"};

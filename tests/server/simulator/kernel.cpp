@@ -24,7 +24,7 @@ std::array<Account, 2> accounts;
 Account last;  // of both together, when the account was changed
 MemoryOf::Whose whose = MemoryOf::Whose::kServer;
 
-/// What was allocated since goes to the account in force.
+/// Allocations since the last change go to the account in force.
 void change(MemoryOf::Whose to) {
   const Account now{testing::heldBytes(), testing::allocations()};
   Account& account = accounts[static_cast<std::size_t>(whose)];

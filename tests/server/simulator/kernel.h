@@ -34,7 +34,7 @@ struct Violation {
   std::string what;
 };
 
-/// What lies between a client and the server.
+/// The line between a client and the server.
 struct LineKind {
   Time latency = 20ms;             ///< one way
   double bytesPerSecond = 2e6;     ///< to the client

@@ -86,7 +86,7 @@ ssize_t __wrap_recv(int descriptor, void* into, size_t count, int flags) {
                                              (flags & MSG_PEEK) != 0))
              : __real_recv(descriptor, into, count, flags);
 }
-/// What recv becomes with _FORTIFY_SOURCE.
+/// The compiler calls it for recv with _FORTIFY_SOURCE.
 ssize_t __wrap___recv_chk(int descriptor, void* into, size_t count, size_t /*room*/, int flags) {
   return __wrap_recv(descriptor, into, count, flags);
 }

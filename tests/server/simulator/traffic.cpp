@@ -150,7 +150,7 @@ class Traffic {
     std::erase_if(clients_, [](const auto& client) { return client->over(); });
   }
 
-  /// Sound clients go when they have what they want. What is left then are the others.
+  /// Sound clients go when they have what they want. The others are left then.
   void waitForSound() {
     const bool isOne = std::ranges::any_of(
         clients_, [](const auto& client) { return client->kind() != kHostile && !client->over(); });

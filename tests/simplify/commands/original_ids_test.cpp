@@ -10,6 +10,7 @@
 #include <string>
 
 #include "simplify/read/read_mesh.h"
+#include "tests/simplify/commands/tool_run.h"
 #include "tests/support/meshes.h"
 #include "tests/support/paths/test_paths.h"
 
@@ -17,11 +18,6 @@ namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// The voxels of a cube of side^3 within a ball, row by row, as hexahedra of a legacy file.
 std::string voxelBall(int side) {
