@@ -70,8 +70,7 @@ int runSimplify(const Words& words, Console& console) {
       "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "time-statistics",
       "of each series: its average, least, largest and standard deviation over all instants, as "
-      "the "
-      "fields NAME_average, NAME_minimum, NAME_maximum and NAME_stddev")(
+      "the fields NAME_average, NAME_minimum, NAME_maximum and NAME_stddev")(
       "geometry-codec", po::value<std::string>()->default_value("draco"),
       "how positions and fields are coded: draco, or adaptive, which is 1 to 6 % smaller and which "
       "only qtet can read")("keep-order",
@@ -105,8 +104,8 @@ int runSimplify(const Words& words, Console& console) {
        {{"input", {"format", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
         {"fields", {"field-bits", "field-weight", "time-statistics"}},
         {"quality and base mesh",
-         {"target-ratio", "base-cells", "envelope-tolerance", "placement", "shape-weight",
-          "preserve-regions", "position-bits"}},
+         {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
+          "placement", "shape-weight", "preserve-regions", "position-bits"}},
         {"output", {"geometry-codec", "keep-order", "original-ids", "measure"}},
         {"rare", {"algorithm"}}}},
       options, {"IN"});
