@@ -96,7 +96,7 @@ class Hostile final : public Client {
   }
   void asksTooOften() {
     std::string text;
-    const std::size_t count = random().between(50, 400);
+    const std::size_t count = random().between(50, 1500);
     for (std::size_t i = 0; i < count; ++i) text += request(i % 3 == 0 ? "/" : "/v1/meshes");
     say(text);
     leaveLater();
