@@ -3,6 +3,7 @@
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/process/inflate_file.h"
+#include "simplify/read/process/reading_time.h"
 #include "simplify/read/process/run_meshio.h"
 #include "simplify/read/steps/read_apart.h"
 #include "simplify/read/vtk/run_vtk.h"
@@ -36,6 +37,14 @@ Status throughMeshio(const MeshioInput& input,
                      const std::function<Status(const std::filesystem::path&)>&) {
   return refusal(input.path);
 }
+
+// The module has no clock. Whoever waits for a page can close it.
+ReadingTime::ReadingTime(std::chrono::seconds patience, std::uint64_t) : patience_(patience) {}
+bool ReadingTime::isOver() const { return false; }
+std::string ReadingTime::text() const {
+  return "reading it takes longer than " + std::to_string(patience_.count()) + " s";
+}
+Status ReadingTime::check(const std::filesystem::path&) const { return {}; }
 
 // The page inflates .gz before it hands the file over.
 std::uint64_t maxInflatedBytes() { return 0; }

@@ -16,6 +16,8 @@ ReadingTime::ReadingTime(std::chrono::seconds patience, std::uint64_t fileBytes)
            std::chrono::milliseconds(
                std::min(fileBytes / (kSlowestBytesPerSecond / 1000), kLongestSeconds * 1000))) {}
 
+bool ReadingTime::isOver() const { return Clock::now() > end_; }
+
 std::string ReadingTime::text() const {
   return "reading it takes longer than " + std::to_string(patience_.count()) +
          " s and its size allow, so that it seems to unfold into far more than it holds; if it is "

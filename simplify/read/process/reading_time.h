@@ -23,7 +23,7 @@ class ReadingTime {
   /// Begins now.
   ReadingTime(std::chrono::seconds patience, std::uint64_t fileBytes);
 
-  [[nodiscard]] bool isOver() const { return Clock::now() > end_; }
+  [[nodiscard]] bool isOver() const;
   /// Says why reading ended and what to do, to stand behind the file's name.
   [[nodiscard]] std::string text() const;
   /// Error: bad-input (it is over).
