@@ -194,7 +194,7 @@ class Kernel {
   };
   /// The prices of a system call, of reading the clock, and of an allocation with what is done to
   /// its bytes.
-  static constexpr Time kCall = 1us, kLook = 20ns, kAllocation = 150ns;
+  static constexpr Time kCall = 1us, kLook = 20ns, kAllocation = 800ns;
   void account(std::size_t bytes);
   /// Calls what is due; false: nothing was.
   bool runDue();
