@@ -23,8 +23,8 @@ struct Output {
 /// Adds --no-clobber.
 void addNoClobber(boost::program_options::options_description& options);
 
-/// The file that -o names, and --no-clobber. REQUIRES: -o is given. Throws UsageError where --json and the file
-/// both want the standard output.
+/// The file that -o names, and --no-clobber. REQUIRES: -o is given. Throws UsageError where --json
+/// and the file both want the standard output.
 [[nodiscard]] Output outputOf(const ParsedWords& parsed, const Console& console);
 
 /// Refuses an output before the work is done. Its ending must be one of `extensions`, separated by
