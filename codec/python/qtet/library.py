@@ -169,6 +169,11 @@ def library() -> ctypes.CDLL:
             ("series_count", _u32),
             ("level", _u32),
         ):
+            if not hasattr(c, "qtet_log_" + function):
+                raise QtetError(
+                    f"{name} is older than this module: it has no qtet_log_{function}; "
+                    "install the same version of both"
+                )
             getattr(c, "qtet_log_" + function).restype = result
         _loaded = c
         return c
