@@ -60,7 +60,6 @@ class Client : public ClientEnd {
   [[nodiscard]] bool holds() const { return !over_ && !socket_->closed; }
   [[nodiscard]] const std::string& kind() const { return kind_; }
   [[nodiscard]] const LineKind& line() const { return line_; }
-  [[nodiscard]] std::uint32_t address() const { return address_; }
   /// By then something has to have happened, and that is what.
   struct Due {
     Time when;

@@ -149,7 +149,7 @@ class Reader final : public Client {
     if (asked.mayBeRefused && (status == 503 || status == 429 || status == 500)) return;
     if (status != asked.status)
       wrong("status " + std::to_string(status) + " to " + asked.what + ": " + std::string(body));
-    if (asked.isKnown ? body != asked.body : false) wrong("other bytes for " + asked.what);
+    if (asked.isKnown && body != asked.body) wrong("other bytes for " + asked.what);
     const std::pair said{status, std::hash<std::string_view>()(body)};
     if (world_.bodies.emplace(asked.what, said).first->second != said)
       wrong("another answer than before to " + asked.what);

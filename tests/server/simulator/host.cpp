@@ -107,7 +107,6 @@ bool Host::accept(const SocketPointer& socket) {
 
 void Host::end(std::function<void()> whenEmpty) {
   const MemoryOf server(kServer);
-  ending_ = true;
   connections_.endAll(std::move(whenEmpty));
   kernel_.wake();
 }

@@ -39,10 +39,8 @@ class Host {
   /// Asks all to end; `whenEmpty` as Connections has it.
   void end(std::function<void()> whenEmpty);
   [[nodiscard]] std::size_t open() const { return connections_.open(); }
-  [[nodiscard]] bool ending() const { return ending_; }
   /// Bytes that are kept for later requests.
   [[nodiscard]] std::uint64_t keptBytes() const { return router_.pageBytes() + points_.bytes(); }
-  [[nodiscard]] LevelJobCounts levels() const { return jobs_.counts(); }
   [[nodiscard]] boost::asio::io_context& context() { return context_; }
   /// Says what a session threw; "": nothing.
   std::string fault;
@@ -55,7 +53,6 @@ class Host {
 
   Kernel& kernel_;
   Random random_;
-  bool ending_ = false;
   Router router_;
   Connections connections_;
   AddressLimits addresses_;

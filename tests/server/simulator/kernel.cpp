@@ -90,16 +90,13 @@ void Kernel::at(Time when, std::function<void()> what) {
   events_.push({std::max(when, now_), numbers_++, std::move(what)});
 }
 
-bool Kernel::runDue() {
-  bool any = false;
+void Kernel::runDue() {
   while (!events_.empty() && events_.top().when <= now_) {
     // the queue shows its first element unchangeable, and drops it at once
     const std::function<void()> what = std::move(const_cast<Event&>(events_.top()).what);
     events_.pop();
     what();
-    any = true;
   }
-  return any;
 }
 
 // ---- readiness
@@ -240,6 +237,20 @@ void Kernel::breakOff(const SocketPointer& socket) {
   queue(*socket);
 }
 
+bool Kernel::breaksNow(int descriptor) {
+  if (!random_.chance(faults.broken)) return false;
+  const SocketPointer broken = pointer(descriptor);
+  tellClientLost(broken);
+  breakOff(broken);
+  return true;
+}
+
+void Kernel::reportRoom(Socket& socket) {
+  if (!socket.lacksRoom || !hasRoom(socket)) return;
+  socket.lacksRoom = false;
+  queue(socket);
+}
+
 void Kernel::tellClientLost(const SocketPointer& socket) {
   after(socket->line.latency, [socket] {
     if (socket->client == nullptr) return;
@@ -254,12 +265,7 @@ long Kernel::receive(int descriptor, std::span<char> into, bool peeks) {
   if (socket == nullptr) return -EBADF;
   account(0);
   if (socket->lost) return -ECONNRESET;
-  if (random_.chance(faults.broken)) {
-    const SocketPointer broken = pointer(descriptor);
-    tellClientLost(broken);
-    breakOff(broken);
-    return -ETIMEDOUT;
-  }
+  if (breaksNow(descriptor)) return -ETIMEDOUT;
   if (random_.chance(faults.interrupted)) return random_.chance(500) ? -EINTR : -EAGAIN;
   if (socket->arrived.empty()) return socket->endArrived ? 0 : -EAGAIN;
   std::size_t count = std::min(into.size(), socket->arrived.size());
@@ -293,12 +299,7 @@ long Kernel::sendAll(int descriptor, std::span<const iovec> parts) {
   account(0);
   if (socket->lost) return -ECONNRESET;
   if (socket->shut) return -EPIPE;
-  if (random_.chance(faults.broken)) {
-    const SocketPointer broken = pointer(descriptor);
-    tellClientLost(broken);
-    breakOff(broken);
-    return -ECONNRESET;
-  }
+  if (breaksNow(descriptor)) return -ECONNRESET;
   if (random_.chance(faults.interrupted)) return -EINTR;
   std::size_t room = roomOf(*socket);
   if (room == 0) {
@@ -352,30 +353,22 @@ void Kernel::transmit(const SocketPointer& socket) {
   at(socket->lineFree + 2 * socket->line.latency, [this, socket, count] {
     socket->underWay -= count;
     socket->acknowledged += count;
-    if (socket->lacksRoom && hasRoom(*socket)) {
-      socket->lacksRoom = false;
-      queue(*socket);
-    }
+    reportRoom(*socket);
     transmit(socket);
   });
-  if (socket->lacksRoom && hasRoom(*socket)) {
-    socket->lacksRoom = false;
-    queue(*socket);
-  }
+  reportRoom(*socket);
 }
 
 void Kernel::arrive(const SocketPointer& socket, const std::string& bytes) {
   if (socket->lost) return;
   if (socket->client == nullptr) return breakOff(socket);  // nobody is there: reset
   socket->unread += bytes;
-  if (socket->clientReads) deliver(socket);
+  if (socket->clientReads) readSome(socket, socket->unread.size());
 }
-
-void Kernel::deliver(const SocketPointer& socket) { readSome(socket, socket->unread.size()); }
 
 void Kernel::setReads(const SocketPointer& socket, bool reads) {
   socket->clientReads = reads;
-  if (reads) deliver(socket);
+  if (reads) readSome(socket, socket->unread.size());
 }
 
 void Kernel::readSome(const SocketPointer& socket, std::size_t count) {

@@ -196,16 +196,19 @@ class Kernel {
   /// its bytes.
   static constexpr Time kCall = 1us, kLook = 20ns, kAllocation = 800ns;
   void account(std::size_t bytes);
-  /// Calls what is due; false: nothing was.
-  bool runDue();
+  /// Calls what is due.
+  void runDue();
   void queue(Socket& socket);
   [[nodiscard]] static std::uint32_t readiness(const Socket& socket);
   [[nodiscard]] static bool hasRoom(const Socket& socket);
   void transmit(const SocketPointer& socket);
   void moveComing(const SocketPointer& socket, Time delay);
   void arrive(const SocketPointer& socket, const std::string& bytes);
-  void deliver(const SocketPointer& socket);
   void breakOff(const SocketPointer& socket);
+  /// The fault of a connection that a call finds broken: true, and it is.
+  bool breaksNow(int descriptor);
+  /// The server waits for room, and some is there.
+  void reportRoom(Socket& socket);
   void tellClientLost(const SocketPointer& socket);
   [[nodiscard]] SocketPointer pointer(int descriptor);
 
