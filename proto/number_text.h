@@ -14,4 +14,12 @@ template <class Number>
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
+/// Four digits of it, for a sentence: 0.3333, 1.234e+08.
+[[nodiscard]] inline std::string roundedText(double number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number,
+                                     std::chars_format::general, 4)
+                           .ptr};
+}
+
 }  // namespace qtet

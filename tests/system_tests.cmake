@@ -41,6 +41,9 @@ if(QTET_PYTHON)
   # Network namespaces, and time.
   qtet_system_test(slow_line ROOM server CHANCE
     COMMAND ${QTET_PYTHON} ${here}/server/stream/slow_line_test.py ${bin} ${out}/slow_line)
+  # A log that follows a run, and is killed on the way.
+  qtet_system_test(follow ROOM simplify
+    COMMAND ${QTET_PYTHON} ${here}/simplify/commands/follow_test.py ${bin} ${out}/follow)
   # Plain words in comments and documents.
   qtet_system_test(prose ROOM house COMMAND ${QTET_PYTHON} ${here}/prose/check.py
     ${PROJECT_SOURCE_DIR})

@@ -1,6 +1,7 @@
 #include "codec/log/log_delta.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstring>
 #include <map>
@@ -20,37 +21,115 @@ struct Piece {
 /// Smaller pieces cost more as an instruction than they save.
 constexpr std::uint32_t kMinPieceBytes = 64;
 
-/// The blocks of at least kMinPieceBytes, in file order.
-std::vector<BlockEntry> blocksOf(const LogIndex& index) {
-  std::vector<BlockEntry> out;
-  const auto add = [&out](const BlockEntry& block) {
-    if (block.size >= kMinPieceBytes) out.push_back(block);
+/// A block in file order, and the chunk that it belongs to; that of a closing block is the number
+/// of chunks.
+struct Placed {
+  BlockEntry block;
+  std::size_t chunk = 0;
+};
+
+/// The blocks with bytes.
+std::vector<Placed> blocksOf(const LogIndex& index) {
+  std::vector<Placed> out;
+  const auto add = [&out](const BlockEntry& block, std::size_t chunk) {
+    if (block.size > 0) out.push_back({block, chunk});
   };
-  for (const ChunkEntry& chunk : index.chunks) std::ranges::for_each(chunk.blocks, add);
-  for (const ClosingBlock& closing : index.closing) add(closing.block);
+  for (std::size_t chunk = 0; chunk < index.chunks.size(); ++chunk)
+    for (const BlockEntry& block : index.chunks[chunk].blocks) add(block, chunk);
+  for (const ClosingBlock& closing : index.closing) add(closing.block, index.chunks.size());
   return out;
 }
 
-/// In the order of both logs, neighbours joined.
-std::vector<Piece> commonPieces(const LogIndex& old, const LogIndex& index) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint64_t>> places;
-  for (const BlockEntry& block : blocksOf(old))
-    places[{block.size, block.crc}].push_back(block.offset);
-  std::vector<Piece> out;
-  std::uint64_t oldEnd = 0;
-  for (const BlockEntry& block : blocksOf(index)) {
+/// Collects pieces, which come in the order of both logs, and joins neighbours.
+class Pieces {
+ public:
+  /// Behind the last byte of the old log that is taken.
+  [[nodiscard]] std::uint64_t oldEnd() const { return oldEnd_; }
+  void add(const Piece& piece) {
+    Piece* const last = all_.empty() ? nullptr : &all_.back();
+    if (last && piece.oldOffset == oldEnd_ && piece.offset == last->offset + last->bytes)
+      last->bytes += piece.bytes;
+    else
+      all_.push_back(piece);
+    oldEnd_ = piece.oldOffset + piece.bytes;
+  }
+  /// Those that are worth an instruction.
+  [[nodiscard]] std::vector<Piece> take() {
+    std::erase_if(all_, [](const Piece& piece) { return piece.bytes < kMinPieceBytes; });
+    return std::move(all_);
+  }
+
+ private:
+  std::vector<Piece> all_;
+  std::uint64_t oldEnd_ = 0;
+};
+
+/// The blocks of the logs that agree. A small one counts where the block before it agreed, or one
+/// of the same chunk: many small blocks look alike.
+void addBlocks(const LogIndex& old, const LogIndex& index, Pieces& out) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Placed>> places;
+  for (const Placed& placed : blocksOf(old))
+    places[{placed.block.size, placed.block.crc}].push_back(placed);
+  for (const auto& [block, chunk] : blocksOf(index)) {
     const auto found = places.find({block.size, block.crc});
     if (found == places.end()) continue;
-    const auto place = std::ranges::lower_bound(found->second, oldEnd);
+    const auto place = std::ranges::lower_bound(
+        found->second, out.oldEnd(), {}, [](const Placed& there) { return there.block.offset; });
     if (place == found->second.end()) continue;
-    Piece* last = out.empty() ? nullptr : &out.back();
-    if (last && *place == oldEnd && block.offset == last->offset + last->bytes)
-      last->bytes += block.size;
-    else
-      out.push_back({block.offset, *place, block.size});
-    oldEnd = *place + block.size;
+    if (block.size >= kMinPieceBytes || place->block.offset == out.oldEnd() ||
+        place->chunk == chunk)
+      out.add({block.offset, place->block.offset, block.size});
   }
-  return out;
+}
+
+/// Bytes by which equal places of two lists of later instants are found. Their checksums are as
+/// good as random, and a name has more.
+constexpr std::size_t kWordBytes = 16;
+
+/// The runs of bytes that stand in both logs' lists of later instants. The lists begin at
+/// `oldOffset` and `offset`.
+void addLater(ByteView old, std::uint64_t oldOffset, ByteView later, std::uint64_t offset,
+              Pieces& out) {
+  const auto wordAt = [](ByteView bytes, std::size_t at) {
+    std::array<std::uint64_t, kWordBytes / sizeof(std::uint64_t)> word{};
+    std::memcpy(word.data(), bytes.data() + at, kWordBytes);
+    return word;
+  };
+  std::map<std::array<std::uint64_t, 2>, std::vector<std::size_t>> places;
+  for (std::size_t at = 0; at + kWordBytes <= old.size(); at += kWordBytes)
+    places[wordAt(old, at)].push_back(at);
+  std::size_t oldEnd = 0;
+  for (std::size_t at = 0; at + kWordBytes <= later.size();) {
+    const auto found = places.find(wordAt(later, at));
+    const auto place = found == places.end()
+                           ? std::vector<std::size_t>::const_iterator{}
+                           : std::ranges::lower_bound(std::as_const(found->second), oldEnd);
+    if (found == places.end() || place == found->second.end()) {
+      ++at;
+      continue;
+    }
+    std::size_t begin = at, oldBegin = *place, end = at + kWordBytes, oldStop = *place + kWordBytes;
+    while (begin > 0 && oldBegin > oldEnd && later[begin - 1] == old[oldBegin - 1])
+      --begin, --oldBegin;
+    while (end < later.size() && oldStop < old.size() && later[end] == old[oldStop])
+      ++end, ++oldStop;
+    if (end - begin < kMinPieceBytes) {
+      ++at;
+      continue;
+    }
+    out.add({offset + begin, oldOffset + oldBegin, end - begin});
+    at = end, oldEnd = oldStop;
+  }
+}
+
+/// In the order of both logs.
+std::vector<Piece> commonPieces(const LogIndex& old, const LogIndex& index, ByteView log) {
+  Pieces out;
+  addBlocks(old, index, out);
+  const Bytes before = old.encodeLater();
+  const std::size_t later = index.encodeLater().size();
+  addLater(before, old.fileBytes - before.size(), log.last(later), log.size() - later, out);
+  return out.take();
 }
 
 }  // namespace
@@ -58,7 +137,7 @@ std::vector<Piece> commonPieces(const LogIndex& old, const LogIndex& index) {
 std::optional<Bytes> makeDelta(const LogIndex& old, const LogIndex& index, ByteView log,
                                std::uint64_t first, std::uint64_t most) {
   assert(old.unreadBytes() == 0 && index.unreadBytes() == 0 && first <= log.size());
-  std::vector<Piece> pieces = commonPieces(old, index);
+  std::vector<Piece> pieces = commonPieces(old, index, log);
   std::erase_if(pieces, [&](const Piece& p) { return p.offset + p.bytes <= first; });
   if (!pieces.empty() && pieces.front().offset < first) {
     const std::uint64_t there = first - pieces.front().offset;

@@ -4,15 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/predicates.h"
 #include "proto/limits.h"
-#include "proto/series.h"
+#include "simplify/clean/field_scales.h"
 #include "simplify/clean/float_spacing.h"
-#include "simplify/clean/quantise_field.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/volume_sign.h"
@@ -143,12 +141,13 @@ void placePoints(const TetMesh& mesh, const Bounds& box, const std::stop_token& 
 }
 
 Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, QuantisedMesh& out) {
-  const std::vector<FieldExtents> extents = extentsOfAll(mesh.fields);
+  const FieldScales all = scalesOf(mesh.fields);
+  out.report.warnings = all.outlying.warnings();
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const MeshField& field = mesh.fields[f];
     throwIfStopped(stop);
     const std::string name = (isCellField(field) ? "cell field " : "field ") + field.name;
-    Result<QuantisedField> quantised = quantiseField(field, extents[f], bits);
+    Result<QuantisedField> quantised = quantiseBy(all.scales[f], field, bits);
     if (!quantised) return std::unexpected(quantised.error());
     out.report.nonFiniteOf.push_back(quantised->nonFinite);
     if (quantised->nonFinite > 0) {

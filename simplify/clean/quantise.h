@@ -29,6 +29,7 @@ struct QuantiseReport {
   std::vector<std::uint64_t> nonFiniteOf;  ///< the same, one a field
   /// The same and more in sentences, empty when there is nothing to say.
   std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< values that lead far away from those of their series
 };
 
 struct QuantisedMesh {

@@ -5,10 +5,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "proto/limits.h"
-#include "proto/series.h"
 
 namespace qtet {
 namespace {
@@ -80,15 +78,13 @@ FieldExtents extentsOf(const MeshField& field) {
   return out;
 }
 
-std::vector<FieldExtents> extentsOfAll(const std::vector<MeshField>& fields) {
-  std::vector<FieldExtents> out;
-  for (const MeshField& field : fields) out.push_back(extentsOf(field));
-  for (const Series& series : seriesOf(std::span(fields))) {
-    FieldExtents all = out[series.fields[0]];
-    for (const std::size_t f : series.fields) all.include(out[f]);
-    for (const std::size_t f : series.fields)
-      if (isFloatType(fields[f].type) || all.fitsExactly() || !out[f].fitsExactly()) out[f] = all;
-  }
+bool haveOneScale(const FieldInfo& a, const FieldInfo& b) {
+  return a.step == b.step && a.minimum == b.minimum;
+}
+
+FieldExtents extentsOf(const FieldInfo& scale) {
+  FieldExtents out{scale.minimum, scale.minimum};
+  for (double& most : out.maximum) most += scale.step * (std::ldexp(1.0, scale.bits) - 1);
   return out;
 }
 
@@ -145,7 +141,26 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
   return out;
 }
 
-std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField& field) {
+Result<QuantisedField> quantiseFiner(const MeshField& field, const FieldExtents& extents,
+                                     int bits) {
+  Result<QuantisedField> others = quantiseField({.name = field.name,
+                                                 .components = field.components,
+                                                 .type = field.type,
+                                                 .values = {},
+                                                 .association = field.association},
+                                                extents, bits);
+  if (!others) return others;
+  if (std::optional<QuantisedField> there = quantiseAs(others->info, field)) return *there;
+  const FieldExtents own = extentsOf(field);
+  int needed = bits;
+  while (needed < kMaxFieldBits &&
+         own.largest() > others->info.step * (std::ldexp(1.0, needed) - 1))
+    ++needed;
+  return quantiseField(field, own, needed);
+}
+
+std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField& field,
+                                         int maxBits) {
   if (scale.components != field.components || scale.type != field.type) return std::nullopt;
   const FieldExtents extents = extentsOf(field);
   int bits = scale.bits;
@@ -153,7 +168,7 @@ std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField
     const auto isBeyond = [&] {
       return extents.maximum[c] - scale.minimum[c] > scale.step * (std::ldexp(1.0, bits) - 0.5);
     };
-    while (isBeyond() && bits < kMaxScaleBits) ++bits;
+    while (isBeyond() && bits < maxBits) ++bits;
     if (isBeyond() || extents.minimum[c] < scale.minimum[c] - 0.5 * scale.step) return std::nullopt;
   }
   QuantisedField out;

@@ -43,19 +43,25 @@ struct FieldExtents {
 };
 [[nodiscard]] FieldExtents extentsOf(const MeshField& field);
 
-/// Each field's own box of values, or that of its series, whose instants have one scale. Integers
-/// that the series' box is too large for keep their own where that stores them exactly.
-[[nodiscard]] std::vector<FieldExtents> extentsOfAll(const std::vector<MeshField>& fields);
-
 /// See quantise(). The integers are those of `extents`, the field's own or those of its series.
 /// Errors: bad-input (an extent above the largest double).
 [[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field,
                                                    const FieldExtents& extents, int bits);
+/// For a field with values outside of the box `extents`, to which `bits` give a step. The field
+/// gets as many bits as it needs for a step no larger, at most kMaxFieldBits. Errors:
+/// quantiseField's. REQUIRES: a field of floats.
+[[nodiscard]] Result<QuantisedField> quantiseFiner(const MeshField& field,
+                                                   const FieldExtents& extents, int bits);
 /// With step and minimum of `scale`, and its bits or as many more as values above it need. Nullopt
-/// where a value lies below it or needs more than kMaxScaleBits, or where the fields differ in
+/// where a value lies below it or needs more than `maxBits`, or where the fields differ in
 /// components or type.
 [[nodiscard]] std::optional<QuantisedField> quantiseAs(const FieldInfo& scale,
-                                                       const MeshField& field);
+                                                       const MeshField& field,
+                                                       int maxBits = kMaxScaleBits);
+/// Equal integers of both are equal values.
+[[nodiscard]] bool haveOneScale(const FieldInfo& a, const FieldInfo& b);
+/// The box of the values that the scale holds in its bits.
+[[nodiscard]] FieldExtents extentsOf(const FieldInfo& scale);
 [[nodiscard]] inline Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
   return quantiseField(field, extentsOf(field), bits);
 }

@@ -38,11 +38,13 @@ Result<std::vector<std::uint32_t>> keptBeside(const OpenedLog& log, const TetMes
   return kept;
 }
 
-void printAdded(const std::vector<NewField>& fields, std::ostream& out) {
-  for (const NewField& field : fields) {
-    out << field.info.association << " field " << printable(field.info.name) << ": "
-        << bytesOf(field) << " bytes, " << field.info.bits << " bits, step " << field.info.step;
-    if (!field.errors.empty()) out << "; base mesh rms " << 100 * field.errors.front().rms << " %";
+void printAdded(const std::vector<const NewField*>& fields, std::ostream& out) {
+  for (const NewField* const field : fields) {
+    const ManifestField& info = field->info;
+    out << info.association << " field " << printable(info.name) << ": " << bytesOf(*field)
+        << " bytes, " << info.bits << " bits, step " << info.step;
+    if (!field->errors.empty())
+      out << "; base mesh rms " << 100 * field->errors.front().rms << " %";
     out << "\n";
   }
 }
@@ -71,8 +73,7 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   options.progress = [&](double fraction) { progress.update(fraction); };
   const Result<AddedFields> added = addFields(log->file, read->mesh, options);
   if (!added) return std::unexpected(added.error());
-  return writeAdded(parsed, log->file, *kept, *added, {{"from", from}}, printAdded, progress,
-                    console);
+  return writeAdded(parsed, log->file, *added, {{"from", from}}, printAdded, progress, console);
 }
 
 Status removeField(const ParsedWords& parsed, Console& console) {

@@ -1,32 +1,31 @@
-#include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "proto/field_key.h"
 #include "proto/limits.h"
-#include "proto/number_text.h"
-#include "proto/series.h"
-#include "simplify/clean/clean_mesh.h"
+#include "simplify/commands/added_steps.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/edited_log_report.h"
+#include "simplify/commands/follow_files.h"
 #include "simplify/commands/progress.h"
-#include "simplify/log/add_fields.h"
+#include "simplify/commands/push_log.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/mesh/workers.h"
-#include "simplify/read/options/time_steps.h"
-#include "simplify/read/read_mesh.h"
-#include "simplify/series/series.h"
 #include "simplify/series/time_statistics.h"
 
 namespace qtet {
 namespace {
+
+// Seconds between two looks: files are not written more often, and nobody waits for longer.
+constexpr double kMinInterval = 0.1, kMaxInterval = 3600;
 
 /// --times: one number a file. Throws UsageError.
 std::vector<double> timesOf(const ParsedWords& parsed, std::size_t files) {
@@ -48,166 +47,15 @@ std::vector<double> timesOf(const ParsedWords& parsed, std::size_t files) {
   return out;
 }
 
-/// The end of a series: its last time, and what its instants have in common.
-struct SeriesEnd {
-  double time = 0;
-  std::uint32_t components = 1;
-  std::string type;
-};
-/// By association and name.
-using SeriesEnds = std::map<std::pair<std::string, std::string>, SeriesEnd>;
-
-SeriesEnds seriesEndsOf(const Manifest& manifest) {
-  SeriesEnds out;
-  for (const ManifestField& field : manifest.fields) {
-    const auto name = instantName(field.name);
-    if (!name) continue;
-    const auto at = out.try_emplace({field.association, std::string(name->series)},
-                                    SeriesEnd{name->time, field.components, field.type});
-    at.first->second.time = std::max(at.first->second.time, name->time);
-  }
-  return out;
-}
-
-/// Gives fields without a time that of their file. Errors: bad-input (neither knows a time, or both
-/// do).
-Status nameInstants(TetMesh& mesh, const std::string& file, std::optional<double> time) {
-  for (MeshField& field : mesh.fields) {
-    const bool isNamed = instantName(field.name).has_value();
-    if (isNamed && time)
-      return fail(ErrorCode::kBadInput,
-                  file + " has times of its own (" + field.name + "); leave --times out");
-    if (!isNamed && !time)
-      return fail(ErrorCode::kBadInput, file + " knows no time; give it with --times");
-    if (!isNamed) field.name += "@" + shortestText(*time);
-  }
-  return {};
-}
-
-/// Puts an instant behind the end of its series. Errors: bad-input (another type or number of
-/// components), bad-value (an instant that is not behind the last one).
-Status append(MeshField& field, const std::string& file, SeriesEnds& ends) {
-  const auto name = instantName(field.name);
-  const auto at = ends.try_emplace({field.association, std::string(name->series)},
-                                   SeriesEnd{name->time, field.components, field.type});
-  SeriesEnd& end = at.first->second;
-  if (at.second) return {};
-  const bool areFloats = isFloatType(field.type) && isFloatType(end.type);
-  if (field.components != end.components || (field.type != end.type && !areFloats))
-    return fail(ErrorCode::kBadInput, file + ": " + field.name + " has " +
-                                          std::to_string(field.components) + " components of " +
-                                          field.type + ", its series in the log " +
-                                          std::to_string(end.components) + " of " + end.type +
-                                          "; write it as the earlier steps are");
-  if (name->time <= end.time || isSameTime(name->time, end.time))
-    return fail(ErrorCode::kBadValue,
-                file + ": " + field.name + " is not behind the last instant, " +
-                    shortestText(end.time) + "; give steps in the order of their times");
-  if (field.type != end.type && end.type == "float32")
-    for (double& value : field.values) value = static_cast<float>(value);
-  field.type = end.type;
-  end.time = name->time;
-  return {};
-}
-
-/// Leaves the fields of which the log has a series; all where they were `asked` for. Errors:
-/// not-found (none is left), append's.
-Status keepInstants(TetMesh& mesh, const std::string& file, bool asked, SeriesEnds& ends,
-                    std::vector<std::string>& notes) {
-  std::string left;
-  std::erase_if(mesh.fields, [&](const MeshField& field) {
-    const auto name = instantName(field.name);
-    const bool stays = asked || ends.contains({field.association, std::string(name->series)});
-    if (!stays) left += (left.empty() ? "" : ", ") + field.name;
-    return !stays;
-  });
-  if (mesh.fields.empty())
-    return fail(ErrorCode::kNotFound, file + " holds no instant of a series of the log" +
-                                          (left.empty() ? "" : " (it has " + left + ")") +
-                                          "; name others with --fields");
-  if (!left.empty())
-    notes.push_back(file + ": left out, since the log has no such series: " + left +
-                    "; --fields adds them");
-  std::ranges::sort(mesh.fields, {}, [](const MeshField& field) {
-    return std::tuple(instantName(field.name)->time, field.association, field.name);
-  });
-  for (MeshField& field : mesh.fields)
-    if (Status s = append(field, file, ends); !s) return s;
-  return {};
-}
-
-/// Adds files in windows, so that the values of no more than one window are in memory at once.
-class Windows {
- public:
-  explicit Windows(FieldAdder& adder) : adder_(adder) {}
-
-  Status take(TetMesh&& mesh) {
-    const bool isSame = mesh.points == pending_.points && mesh.tetrahedra == pending_.tetrahedra;
-    if (!isSame)
-      if (Status s = flush(); !s) return s;
-    if (pending_.fields.empty()) {
-      pending_ = std::move(mesh);
-    } else {
-      std::ranges::move(mesh.fields, std::back_inserter(pending_.fields));
-    }
-    return ++steps_ < kWindow ? Status{} : flush();
-  }
-  Status flush() {
-    steps_ = 0;
-    if (pending_.fields.empty()) return {};
-    const Status added = adder_.add(pending_);
-    pending_.fields.clear();
-    return added;
-  }
-
- private:
-  FieldAdder& adder_;
-  TetMesh pending_;
-  std::size_t steps_ = 0;
-};
-
-struct Request {
-  std::vector<std::string> files;
-  std::vector<double> times;
-  ReadOptions reading;
-  AddFieldsOptions adding;
-};
-
-Result<AddedFields> addFiles(const OpenedLog& log, const Request& request, Progress& progress) {
-  Result<FieldAdder> adder = FieldAdder::make(log.file, request.adding);
-  if (!adder) return std::unexpected(adder.error());
-  SeriesEnds ends = seriesEndsOf(log.manifest);
-  std::vector<std::string> notes;
-  Windows windows(*adder);
-  for (std::size_t i = 0; i < request.files.size(); ++i) {
-    const std::string& file = request.files[i];
-    progress.stage("adding " + file);
-    Result<ReadMesh> read = readMesh(file, request.reading);
-    if (!read) return std::unexpected(read.error());
-    const auto time = request.times.empty() ? std::nullopt : std::optional(request.times[i]);
-    if (Status s = nameInstants(read->mesh, file, time); !s) return std::unexpected(s.error());
-    if (Status s = keepInstants(read->mesh, file, request.reading.fields.has_value(), ends, notes);
-        !s)
-      return std::unexpected(s.error());
-    if (const auto cleaned = cleanMesh(read->mesh); !cleaned)
-      return std::unexpected(cleaned.error());
-    if (Status s = windows.take(std::move(read->mesh)); !s) return std::unexpected(s.error());
-  }
-  if (Status s = windows.flush(); !s) return std::unexpected(s.error());
-  AddedFields out = adder->take();
-  out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
-  return out;
-}
-
 /// A line a series: its new instants and their bytes.
-void printSeries(const std::vector<NewField>& added, std::ostream& out) {
+void printSeries(const std::vector<const NewField*>& added, std::ostream& out) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> sums;
-  for (const NewField& field : added) {
-    auto& [instants, bytes] =
-        sums[field.info.association + " field " +
-             std::string(nameWithoutStep(field.info.name).value_or(field.info.name))];
+  for (const NewField* const field : added) {
+    const ManifestField& info = field->info;
+    auto& [instants, bytes] = sums[info.association + " field " +
+                                   std::string(nameWithoutStep(info.name).value_or(info.name))];
     ++instants;
-    bytes += bytesOf(field);
+    bytes += bytesOf(*field);
   }
   for (const auto& [name, sum] : sums)
     out << printable(name) << ": " << sum.first << (sum.first == 1 ? " instant, " : " instants, ")
@@ -232,29 +80,122 @@ void warnOfStatistics(const Manifest& manifest, const std::vector<NewField>& add
                "--time-statistics', or remove them with 'qtet remove-field'");
 }
 
-Status addSteps(const ParsedWords& parsed, Progress& progress, Console& console) {
-  Request request;
-  request.files = parsed.get<std::vector<std::string>>("FILE...");
-  request.times = timesOf(parsed, request.files.size());
-  request.reading = readOptionsOf(parsed);
-  request.reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
-  request.reading.namesTime = true;
-  request.adding.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
-  request.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
-  request.adding.progress = [&](double fraction) { progress.update(fraction); };
+StepsRequest requestOf(const ParsedWords& parsed, Progress& progress) {
+  StepsRequest out;
+  out.files = parsed.get<std::vector<std::string>>("FILE...");
+  out.times = timesOf(parsed, out.files.size());
+  out.reading = readOptionsOf(parsed);
+  out.reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
+  out.adding.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  out.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
+  out.adding.progress = [&](double fraction) { progress.update(fraction); };
+  return out;
+}
+
+/// A log that has all steps already, where -o names another: it is written there as it is.
+Status reportNothing(const ParsedWords& parsed, const OpenedLog& log, const AddedSteps& none,
+                     const OrderedJson& source, Progress& progress, Console& console) {
+  AddedFields same = none.added;
+  same.kept.resize(log.manifest.fields.size());
+  std::iota(same.kept.begin(), same.kept.end(), 0U);
+  if (parsed.has("output"))
+    return writeAdded(parsed, log.file, same, source, printSeries, progress, console);
+  progress.clear();
+  for (const std::string& note : same.notes) console.note(note);
+  const auto name = parsed.get<std::string>("LOG");
+  if (!parsed.has("json")) {
+    console.out << printable(name) << ": nothing to add\n";
+    return {};
+  }
+  OrderedJson report{{"input", name}, {"output", name}, {"digest", log.file.digest()}};
+  report.update(source);
+  report["added"] = OrderedJson::array();
+  report["notes"] = same.notes;
+  report["warnings"] = OrderedJson::array();
+  printJson(report, console);
+  return {};
+}
+
+/// Adds what the files have and the log does not. Returns how many steps that are; reports none
+/// only where `reportsNone`.
+Result<std::size_t> addSteps(const ParsedWords& parsed, const StepsRequest& request,
+                             bool reportsNone, Progress& progress, Console& console) {
+  const auto name = parsed.get<std::string>("LOG");
+  const Result<OpenedLog> log = openLog(name);
+  if (!log) return std::unexpected(log.error());
+  progress.stage("decoding " + name);
+  const Result<AddedSteps> steps = addedSteps(*log, request, progress);
+  if (!steps) return std::unexpected(steps.error());
+  const OrderedJson source{{"files", request.files}, {"skipped", steps->skipped}};
+  if (steps->steps == 0 && !reportsNone) return 0;
+  Status written =
+      steps->steps == 0
+          ? reportNothing(parsed, *log, *steps, source, progress, console)
+          : writeAdded(parsed, log->file, steps->added, source, printSeries, progress, console);
+  if (!written) return std::unexpected(written.error());
+  warnOfStatistics(log->manifest, steps->added.fields, console);
+  return steps->steps;
+}
+
+/// Sends the log as it lies there.
+Status push(const std::string& file, const PushTarget& target, bool asJson, Console& console) {
+  const Result<LogFile> log = LogFile::open(file);
+  if (!log) return std::unexpected(log.error());
+  const Result<Pushed> pushed = pushLog(*log, target, console);
+  if (!pushed) return std::unexpected(pushed.error());
+  reportPushed(*log, *pushed, asJson, console);
+  return {};
+}
+
+/// Adds steps as they come, and pushes the log when it has changed.
+void follow(const ParsedWords& parsed, StepsRequest request,
+            const std::optional<PushTarget>& target, Progress& progress, Console& console) {
+  const auto file = parsed.get<std::string>("LOG");
+  bool isPushed = !target.has_value();
+  const auto pass = [&]() -> Result<bool> {
+    request.most = std::numeric_limits<std::size_t>::max();
+    Result<std::size_t> steps = addSteps(parsed, request, false, progress, console);
+    if (!steps) {  // the steps before the one at fault
+      request.most = 1;
+      steps = addSteps(parsed, request, false, progress, console);
+    }
+    progress.clear();
+    if (!steps) return std::unexpected(steps.error());
+    if (*steps > 0 && target) isPushed = false;
+    if (!isPushed)
+      if (Status s = push(file, *target, parsed.has("json"), console); !s)
+        return std::unexpected(s.error());
+    isPushed = true;
+    return *steps > 0;
+  };
+  const auto seconds = parsed.number("every", kMinInterval, kMaxInterval);
+  followFiles(request.files, std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds)),
+              pass, console);
+}
+
+Status addOrFollow(const ParsedWords& parsed, Progress& progress, Console& console) {
+  const StepsRequest request = requestOf(parsed, progress);
   for (const std::string& file : request.files)
     if (Status checked = checkNewLog(parsed, file, console); !checked) return checked;
-  const Result<OpenedLog> log = openLog(parsed.get<std::string>("LOG"));
-  if (!log) return std::unexpected(log.error());
-  progress.stage("decoding " + parsed.get<std::string>("LOG"));
-  const Result<AddedFields> added = addFiles(*log, request, progress);
-  if (!added) return std::unexpected(added.error());
-  std::vector<std::uint32_t> kept(log->manifest.fields.size());
-  std::iota(kept.begin(), kept.end(), 0u);
-  Status written = writeAdded(parsed, log->file, kept, *added, {{"files", request.files}},
-                              printSeries, progress, console);
-  if (written) warnOfStatistics(log->manifest, added->fields, console);
-  return written;
+  const auto log = parsed.get<std::string>("LOG");
+  const auto output = parsed.has("output") ? parsed.get<std::string>("output") : log;
+  std::optional<PushTarget> target;
+  if (parsed.has("push")) {
+    if (output == "-") throw UsageError("--push sends a file; give -o a name");
+    Result<PushTarget> read = pushTargetOf(parsed, parsed.get<std::string>("push"), output);
+    if (!read) return std::unexpected(read.error());
+    target = std::move(*read);
+  }
+  if (parsed.has("follow")) {
+    if (parsed.has("output")) throw UsageError("--follow extends the log itself; leave -o out");
+    if (const Result<OpenedLog> opened = openLog(log); !opened)
+      return std::unexpected(opened.error());
+    follow(parsed, request, target, progress, console);
+    return {};
+  }
+  const Result<std::size_t> steps = addSteps(parsed, request, true, progress, console);
+  if (!steps) return std::unexpected(steps.error());
+  return target ? push(output, *target, parsed.has("json"), console) : Status{};
 }
 
 }  // namespace
@@ -273,26 +214,36 @@ int runAddSteps(const Words& words, Console& console) {
       "bits of a float field's values that a series' own scale does not hold, 1 to 28")(
       "threads", po::value<int>()->default_value(1),
       "threads for measuring, as many as there are processors at most; the result does not depend "
-      "on it")("json", "print one JSON object");
+      "on it")("follow",
+               "waits for steps and adds each as soon as it is there, until Ctrl-C or SIGTERM")(
+      "every", po::value<double>()->default_value(1),
+      "seconds between two looks at the files with --follow, 0.1 to 3600")(
+      "push", po::value<std::string>(),
+      "sends the log to this URL, as qtet push does, whenever it has changed")(
+      "json", "print one JSON object; with --follow one whenever steps were added");
+  addPushOptions(options);
   addNoClobber(options);
   addReadOptions(options, "all");
   const ParsedWords parsed(
       words,
       {"add-steps", "add-steps LOG.qtet FILE... [--times T,T] [-o OUT.qtet]",
-       "Adds time steps of a simulation that goes on behind those that the log has. Each file "
-       "holds "
-       "one step or several, of the log's own mesh.\n"
+       "Adds time steps of a simulation that goes on. Each file holds one step or several, of the "
+       "log's own mesh. Steps of a time that the\n"
+       "log has are left out, so the same command may be given again and again.\n"
        "Steps are read in windows of eight, and coded as differences to each other and to the "
-       "log's "
-       "last one. All blocks of the log stay as they\nare, byte for byte.\n"
+       "log's last one. Where they make a window of\n"
+       "eight full, that is coded once more as one. All other blocks of the log stay as they are, "
+       "byte for byte.\n"
        "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
-       "(keys), files, added [as of add-field], notes.",
-       "  qtet add-steps run.qtet later.pvd\n  qtet add-steps run.qtet step-17.vtu step-18.vtu "
-       "--times 1.7,1.8\n"},
+       "(keys), files, skipped, added [as of\n"
+       "add-field], notes, warnings.",
+       "  qtet add-steps run.qtet run.pvd\n  qtet add-steps run.qtet step-17.vtu step-18.vtu "
+       "--times 1.7,1.8\n  QTET_TOKEN=... qtet add-steps run.qtet run.pvd --follow --push "
+       "http://127.0.0.1:8080/\n"},
       options, {"LOG", "FILE..."});
   if (parsed.helped(console)) return kExitOk;
   Progress progress(console);
-  const Status done = addSteps(parsed, progress, console);
+  const Status done = addOrFollow(parsed, progress, console);
   progress.clear();
   return done ? kExitOk : reportFailure(done.error(), parsed.has("json"), console);
 }

@@ -1,5 +1,6 @@
 #include "simplify/commands/edited_log_report.h"
 
+#include <algorithm>
 #include <numeric>
 #include <sstream>
 
@@ -77,28 +78,32 @@ void printNew(const OrderedJson& report, std::ostream& out) {
       << report["bytesBefore"] << "\n";
 }
 
-Status writeAdded(const ParsedWords& parsed, const LogFile& log,
-                  const std::vector<std::uint32_t>& kept, const AddedFields& added,
+Status writeAdded(const ParsedWords& parsed, const LogFile& log, const AddedFields& added,
                   const OrderedJson& source, const FieldPrinter& print, Progress& progress,
                   Console& console) {
-  const Result<EditedLog> edited = withFields(log, kept, added.fields);
+  const Result<EditedLog> edited = withFields(log, added.kept, added.fields);
   if (!edited) return std::unexpected(edited.error());
   const Output output = newLogOf(parsed, console);
   Result<OrderedJson> report = writeNewLog(parsed, output, log, *edited);
   if (!report) return std::unexpected(report.error());
   progress.clear();
   for (const std::string& note : added.notes) console.note(note);
+  for (const std::string& warning : withOptionNames(added.warnings)) console.warn(warning);
+  std::vector<const NewField*> come;
+  for (std::size_t i = 0; i < added.fields.size(); ++i)
+    if (std::ranges::find(added.again, i) == added.again.end()) come.push_back(&added.fields[i]);
   if (!parsed.has("json")) {
     std::ostringstream lines;
-    print(added.fields, lines);
+    print(come, lines);
     printNew(*report, lines);
     reportOutput(output, lines.str(), console);
     return {};
   }
   report->update(source);
   (*report)["added"] = OrderedJson::array();
-  for (const NewField& field : added.fields) (*report)["added"].push_back(toJson(field));
+  for (const NewField* const field : come) (*report)["added"].push_back(toJson(*field));
   (*report)["notes"] = added.notes;
+  (*report)["warnings"] = withOptionNames(added.warnings);
   printJson(*report, console);
   return {};
 }

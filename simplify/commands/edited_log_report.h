@@ -30,17 +30,16 @@ namespace qtet {
                                               const LogFile& before, const EditedLog& edited);
 void printNew(const OrderedJson& report, std::ostream& out);
 
-using FieldPrinter = std::function<void(const std::vector<NewField>&, std::ostream&)>;
+using FieldPrinter = std::function<void(const std::vector<const NewField*>&, std::ostream&)>;
 
-/// Writes the log with the fields `kept` and then those added. Reports notes, and then what
-/// `print(fields, out)` says and a line. The report as JSON has also the members of `source`,
-/// `added` and `notes`. The members of an added field are name, association, components, type,
-/// bits, step, minimum, range, missingValues, bytes, and error {rms, max} of the base mesh. Errors:
-/// withFields's and writeNewLog's.
+/// Writes the log with the fields that `added` keeps and then those added. Reports notes and
+/// warnings, and then what `print(fields, out)` says and a line. The report as JSON has also the
+/// members of `source`, `added`, `notes` and `warnings`. The members of an added field are name,
+/// association, components, type, bits, step, minimum, range, missingValues, bytes, and error {rms,
+/// max} of the base mesh. Errors: withFields's and writeNewLog's.
 [[nodiscard]] Status writeAdded(const ParsedWords& parsed, const LogFile& log,
-                                const std::vector<std::uint32_t>& kept, const AddedFields& added,
-                                const OrderedJson& source, const FieldPrinter& print,
-                                Progress& progress, Console& console);
+                                const AddedFields& added, const OrderedJson& source,
+                                const FieldPrinter& print, Progress& progress, Console& console);
 
 /// Bytes of all of its blocks.
 [[nodiscard]] std::size_t bytesOf(const NewField& field);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <ranges>
+#include <set>
 #include <span>
 
 #include "codec/log/log_manifest.h"
@@ -13,7 +15,6 @@
 #include "simplify/clean/verify.h"
 #include "simplify/mesh/history_levels.h"
 #include "simplify/mesh/missing_values.h"
-#include "simplify/series/series.h"
 #include "simplify/series/time_differences.h"
 
 namespace qtet {
@@ -58,6 +59,20 @@ std::vector<std::size_t> decodingOrderOf(const std::vector<FieldInfo>& before,
   return out;
 }
 
+/// The same step, and whole ranges of room below, one at least and as many as the box needs.
+FieldInfo withRoomBelow(FieldInfo scale, const FieldExtents& box) {
+  const auto isBelow = [&] {
+    for (std::size_t c = 0; c < scale.components; ++c)
+      if (box.minimum[c] < scale.minimum[c]) return true;
+    return false;
+  };
+  do {
+    for (double& minimum : scale.minimum) minimum -= scale.step * std::ldexp(1.0, scale.bits);
+    ++scale.bits;
+  } while (isBelow() && scale.bits < kMaxScaleBits);
+  return scale;
+}
+
 }  // namespace
 
 FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest manifest,
@@ -72,18 +87,20 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
   levels.moveTo(levels.finest());
   finest_.assign(h.cells.begin(), h.cells.begin() + history_->tetrahedra);
   levels.moveTo(0);
+  if (options_.kept) {
+    added_.kept = *options_.kept;
+  } else {
+    added_.kept.resize(manifest_.fields.size());
+    std::iota(added_.kept.begin(), added_.kept.end(), 0U);
+  }
   for (std::size_t f = 0; f < manifest_.fields.size(); ++f) {
     depths_.push_back(depthOf(log_.fields()[f].prediction, depths_));
     const FieldInfo info = fieldInfoOf(manifest_.fields[f]);
     const auto name = instantName(info.name);
-    const bool stays =
-        !options_.kept || std::ranges::find(*options_.kept, f) != options_.kept->end();
     if (!name) continue;
-    const SeriesKey key{info.association, std::string(name->series)};
-    if (!stays) keepScale(key, info);
-    if (!stays) continue;
-    const auto at = last_.find(key);
-    if (at == last_.end() || at->second.time < name->time) last_[key] = {info, name->time, f, {}};
+    const bool stays = std::ranges::find(added_.kept, f) != added_.kept.end();
+    if (stays || options_.scalesOfOthers) keepScale(info, stays);
+    if (stays) keepInstant(info, name->time, f);
   }
 }
 
@@ -111,48 +128,134 @@ Status FieldAdder::matchTo(const TetMesh& mesh) {
   return {};
 }
 
-void FieldAdder::keepScale(const SeriesKey& key, FieldInfo info) {
-  // the step of a constant field means nothing
-  if (!options_.scalesOfOthers || !isFloatType(info.type) || info.step == 1 ||
-      info.bits >= kMaxScaleBits)
+/// The series of an instant; nullptr of another field.
+FieldAdder::SeriesState* FieldAdder::seriesOf(const FieldInfo& info) {
+  const auto name = instantName(info.name);
+  return name ? &series_[{info.association, std::string(name->series)}] : nullptr;
+}
+
+void FieldAdder::keepScale(FieldInfo info, bool stays) {
+  if (!stays) {
+    // the step of a constant field means nothing
+    if (!isFloatType(info.type) || info.step == 1 || info.bits >= kMaxScaleBits) return;
+    info = withRoomBelow(info, extentsOf(info));
+  }
+  std::vector<Scale>& scales = seriesOf(info)->scales;
+  const auto same = std::ranges::find_if(
+      scales, [&](const Scale& scale) { return haveOneScale(scale.info, info); });
+  if (same == scales.end()) {
+    scales.push_back({std::move(info), 1});
     return;
-  for (double& minimum : info.minimum) minimum -= info.step * std::ldexp(1.0, info.bits);
-  ++info.bits;
-  scales_.try_emplace(key, std::move(info));
+  }
+  ++same->instants;
+  if (info.bits < same->info.bits) same->info = std::move(info);
 }
 
-/// The scale that an instant's series has already.
-const FieldInfo* FieldAdder::scaleOf(const FieldInfo& info) {
-  if (const Last* const last = lastBefore(info)) return &last->info;
-  const auto name = instantName(info.name);
-  if (!name) return nullptr;
-  const auto at = scales_.find({info.association, std::string(name->series)});
-  return at == scales_.end() ? nullptr : &at->second;
+void FieldAdder::keepInstant(const FieldInfo& info, double time, std::size_t number) {
+  std::vector<Instant>& instants = seriesOf(info)->instants;
+  const auto behind = std::ranges::upper_bound(instants, time, {}, &Instant::time);
+  instants.insert(behind, {time, number, info});
 }
 
-/// The series' last instant, if the field is an instant behind it.
-FieldAdder::Last* FieldAdder::lastBefore(const FieldInfo& info) {
-  const auto name = instantName(info.name);
-  if (!name) return nullptr;
-  const auto at = last_.find({info.association, std::string(name->series)});
-  return at != last_.end() && at->second.time < name->time ? &at->second : nullptr;
+/// The last instant before this one that has its scale.
+const FieldAdder::Instant* FieldAdder::parentOf(const FieldInfo& info) {
+  SeriesState* const series = seriesOf(info);
+  if (series == nullptr) return nullptr;
+  const double time = instantName(info.name)->time;
+  const auto behind = std::ranges::lower_bound(series->instants, time, {}, &Instant::time);
+  const auto rest = std::ranges::subrange(series->instants.begin(), behind);
+  for (const Instant& instant : std::views::reverse(rest))
+    if (haveOneScale(instant.info, info)) return &instant;
+  return nullptr;
+}
+
+/// The scale that a series goes on with: the last instant's, or that of most where it is far away
+/// from it. nullptr: it has none.
+const FieldInfo* FieldAdder::scaleOf(const SeriesState& series) {
+  if (series.scales.empty()) return nullptr;
+  const FieldInfo& usual = std::ranges::max_element(series.scales, {}, &Scale::instants)->info;
+  if (series.instants.empty()) return &usual;
+  const FieldInfo& last = series.instants.back().info;
+  const auto same = std::ranges::find_if(
+      series.scales, [&](const Scale& scale) { return haveOneScale(scale.info, last); });
+  if (same == series.scales.end() || !isFloatType(last.type)) return &usual;
+  if (last.step == usual.step) return &same->info;
+  const FieldExtents here = extentsOf(same->info), there = extentsOf(usual);
+  return isOutlying(here, there) || isOutlying(there, here) ? &usual : &same->info;
+}
+
+/// The scale for the instants of a series in a mesh: the one that the series goes on with. Where
+/// values lie below it, it gets room for more of them.
+std::optional<FieldInfo> FieldAdder::commonScale(const SeriesState& series,
+                                                 std::span<const MeshField* const> fields) {
+  const FieldInfo* const scale = scaleOf(series);
+  if (scale == nullptr) return std::nullopt;
+  const FieldExtents there = extentsOf(*scale);
+  FieldExtents box = there;
+  for (const MeshField* const field : fields) {
+    if (field->components != scale->components || field->type != scale->type ||
+        !isFloatType(field->type))
+      return *scale;
+    if (const FieldExtents own = extentsOf(*field); !isOutlying(own, there)) box.include(own);
+  }
+  const auto isBelow = [&](std::size_t c) {
+    return box.minimum[c] < scale->minimum[c] - 0.5 * scale->step;
+  };
+  const auto components = std::views::iota(std::size_t{0}, std::size_t{scale->components});
+  return std::ranges::any_of(components, isBelow) ? withRoomBelow(*scale, box) : *scale;
+}
+
+/// The field by the scale of its series, if its values are of that size; else by `own`.
+Result<QuantisedField> FieldAdder::quantised(const MeshField& field, const FieldScale& own,
+                                             const std::optional<FieldInfo>& scale) {
+  if (!scale) return quantiseBy(own, field, options_.fieldBits);
+  const bool isComparable =
+      isFloatType(field.type) && scale->components == field.components && scale->type == field.type;
+  const FieldExtents extents = extentsOf(field), others = extentsOf(*scale);
+  const bool isFar = isComparable && isOutlying(extents, others);
+  const bool areFew = isFar && areFewOutlying(field, others);
+  if (isFar) outlying_.add(field, extents, others);
+  if (!isFar || areFew)
+    if (std::optional<QuantisedField> there = quantiseAs(*scale, field)) return std::move(*there);
+  if (areFew) return quantiseFiner(field, others, scale->bits);
+  if (!isFar) return quantiseBy(own, field, options_.fieldBits);
+  FieldInfo named;
+  named.name = field.name, named.association = field.association;
+  for (const Scale& other : seriesOf(named)->scales) {
+    const FieldExtents box = extentsOf(other.info);
+    if (isOutlying(extents, box) || isOutlying(box, extents)) continue;
+    if (std::optional<QuantisedField> there = quantiseAs(other.info, field))
+      return std::move(*there);
+  }
+  return quantiseBy({extents}, field, options_.fieldBits);
+}
+
+/// The scales of the mesh's series.
+std::map<const FieldAdder::SeriesState*, std::optional<FieldInfo>> FieldAdder::commonScales(
+    const TetMesh& mesh) {
+  std::map<const SeriesState*, std::vector<const MeshField*>> fields;
+  for (const MeshField& field : mesh.fields) {
+    FieldInfo named;
+    named.name = field.name, named.association = field.association;
+    if (const SeriesState* const series = seriesOf(named)) fields[series].push_back(&field);
+  }
+  std::map<const SeriesState*, std::optional<FieldInfo>> out;
+  for (const auto& [series, all] : fields) out[series] = commonScale(*series, all);
+  return out;
 }
 
 Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
-  const std::vector<FieldExtents> extents = extentsOfAll(mesh.fields);
+  const FieldScales all = scalesOf(mesh.fields);
+  const auto common = commonScales(mesh);
   std::vector<Item> out;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const MeshField& field = mesh.fields[f];
     FieldInfo named;
     named.name = field.name, named.association = field.association;
-    const FieldInfo* const scale = scaleOf(named);
-    std::optional<QuantisedField> quantised =
-        scale != nullptr ? quantiseAs(*scale, field) : std::nullopt;
-    if (!quantised) {
-      Result<QuantisedField> own = quantiseField(field, extents[f], options_.fieldBits);
-      if (!own) return std::unexpected(own.error());
-      quantised = std::move(*own);
-    }
+    const auto scale = common.find(seriesOf(named));
+    Result<QuantisedField> quantised =
+        this->quantised(field, all.scales[f], scale == common.end() ? std::nullopt : scale->second);
+    if (!quantised) return std::unexpected(quantised.error());
     const FieldInfo& info = quantised->info;
     if (quantised->nonFinite > 0) {
       fillMissing(mesh.tetrahedra, info, quantised->missing, quantised->values);
@@ -200,50 +303,132 @@ Status FieldAdder::measure(std::span<Item> items) {
   return {};
 }
 
-/// A long row of predictions would make seeking slow.
-bool FieldAdder::mayBeParent(const Last& last) const {
-  return depths_[last.number] < kAnchorsInARow;
-}
-
-Status FieldAdder::fetch(Last& last) {
-  if (!last.values.empty()) return {};
-  Result<std::vector<std::int32_t>> values =
-      historyValues(log_, *history_, static_cast<std::uint32_t>(last.number));
-  if (!values) return std::unexpected(values.error());
-  last.values = std::move(*values);
-  return {};
-}
-
-/// The history gets the log's instants that the items may be predicted from.
+/// The history gets the log's instants that the items may be predicted from. A long row of
+/// predictions would make seeking slow.
 Status FieldAdder::addParents(const std::vector<Item>& items, Numbers& numbers) {
   FusionHistory& h = history_->history;
   for (const Item& item : items) {
-    Last* const last = lastBefore(item.info);
-    if (last == nullptr || !mayBeParent(*last) ||
-        std::ranges::find(numbers.all, last->number) != numbers.all.end())
+    const Instant* const parent = parentOf(item.info);
+    if (parent == nullptr || depths_[parent->number] >= kAnchorsInARow ||
+        std::ranges::find(numbers.all, parent->number) != numbers.all.end())
       continue;
-    if (Status s = fetch(*last); !s) return s;
-    h.fields.push_back(last->info), h.values.push_back(last->values);
-    numbers.all.push_back(last->number), numbers.rows.push_back(depths_[last->number]);
+    std::vector<std::int32_t>& values = values_[parent->number];
+    if (values.empty()) {
+      auto fetched = historyValues(log_, *history_, static_cast<std::uint32_t>(parent->number));
+      if (!fetched) return std::unexpected(fetched.error());
+      values = std::move(*fetched);
+    }
+    h.fields.push_back(parent->info), h.values.push_back(values);
+    numbers.all.push_back(parent->number), numbers.rows.push_back(depths_[parent->number]);
   }
   return {};
 }
 
-/// The items' missing values are missing, and the items are numbered and known as last instants.
+/// An instant of the log as if it came.
+Result<FieldAdder::Item> FieldAdder::itemOf(const Instant& instant) const {
+  Result<std::vector<std::int32_t>> values =
+      historyValues(log_, *history_, static_cast<std::uint32_t>(instant.number));
+  if (!values) return std::unexpected(values.error());
+  Item out{instant.info, std::move(*values), {}, {}, true};
+  if (!instant.info.hasMissing) return out;
+  const std::size_t n = instant.info.components;
+  const std::size_t finest =
+      n * (isCellField(instant.info) ? history_->tetrahedra : history_->vertices);
+  std::vector<std::int32_t> filled(out.values.begin(),
+                                   out.values.begin() + static_cast<std::ptrdiff_t>(finest));
+  for (std::int32_t& value : filled) {
+    out.missing.push_back(value == kMissing);
+    if (value == kMissing) value = 0;
+  }
+  fillMissing(finest_, instant.info, out.missing, filled);
+  std::ranges::copy(filled, out.values.begin());
+  if (isCellField(instant.info)) return out;
+  for (const Fusion& fusion : history_->history.fusions)
+    for (std::size_t c = 0; c < n; ++c)
+      if (std::int32_t& value = out.values[fusion.fused * n + c]; value == kMissing)
+        value = out.values[fusion.prey[0] * n + c];
+  return out;
+}
+
+/// Takes instants out of the log, to code them again. Leaves them where another field rests on one.
+Status FieldAdder::takeBack(std::span<const Instant> instants, std::vector<Item>& items) {
+  const auto isOne = [&](std::size_t number) {
+    return std::ranges::find(instants, number, &Instant::number) != instants.end();
+  };
+  for (const std::uint32_t f : added_.kept)
+    for (const TimePrediction::Parent& parent : log_.fields()[f].prediction.all())
+      if (isOne(parent.field) && !isOne(f)) return {};
+  for (const Instant& instant : instants) {
+    Result<Item> item = itemOf(instant);
+    if (!item) return std::unexpected(item.error());
+    items.push_back(std::move(*item));
+  }
+  std::erase_if(added_.kept, isOne);
+  return {};
+}
+
+/// Adds the instants of windows that the items make full.
+Status FieldAdder::takeUnfinished(std::vector<Item>& items) {
+  std::map<SeriesState*, std::size_t> come;
+  for (const Item& item : items) {
+    SeriesState* const series = seriesOf(item.info);
+    if (series == nullptr || series->instants.empty()) continue;
+    const bool isBehind = series->instants.back().time < instantName(item.info.name)->time;
+    if (!std::exchange(series->isExtended, true) || come.contains(series)) come[series] += isBehind;
+  }
+  for (const auto& [series, count] : come) {
+    std::vector<Instant>& all = series->instants;
+    const std::size_t unfinished = (all.size() - 1) % kWindow;
+    if (unfinished == 0 || unfinished + count < kWindow) continue;
+    const std::size_t before = items.size();
+    if (Status s = takeBack(std::span(all).last(unfinished), items); !s) return s;
+    if (items.size() > before) all.resize(all.size() - unfinished);
+  }
+  return {};
+}
+
+/// The items' missing values are missing, and the items are numbered and known as instants.
 void FieldAdder::complete(std::vector<Item>& items, Numbers& numbers) {
   FusionHistory& h = history_->history;
   for (Item& item : items) {
     std::vector<std::int32_t>& values = h.values[numbers.all.size()];
     if (!item.missing.empty())
       values = withMissing(h, item.info, std::move(item.missing), std::move(values));
-    numbers.all.push_back(manifest_.fields.size() + added_.fields.size());
+    const std::size_t number = manifest_.fields.size() + added_.fields.size();
+    numbers.all.push_back(number);
+    if (item.wasThere) added_.again.push_back(added_.fields.size());
     added_.fields.push_back({manifestFieldOf(item.info), {}, std::move(item.errors), {}});
     const auto name = instantName(item.info.name);
     if (!name) continue;
-    Last& last = last_[{item.info.association, std::string(name->series)}];
-    if (last.info.name.empty() || last.time < name->time)
-      last = {item.info, name->time, numbers.all.back(), values};
+    keepScale(item.info, true);
+    keepInstant(item.info, name->time, number);
+    values_[number] = values;
   }
+  forgetValues();
+}
+
+/// Leaves the values of the last instant of each scale.
+void FieldAdder::forgetValues() {
+  std::set<std::size_t> last;
+  for (const auto& [key, series] : series_)
+    for (const Scale& scale : series.scales) {
+      const auto place = std::ranges::find_if(
+          series.instants.rbegin(), series.instants.rend(),
+          [&](const Instant& instant) { return haveOneScale(instant.info, scale.info); });
+      if (place != series.instants.rend()) last.insert(place->number);
+    }
+  std::erase_if(values_, [&](const auto& entry) { return !last.contains(entry.first); });
+}
+
+std::size_t FieldAdder::roomInWindow() const {
+  std::size_t most = 0;
+  for (const auto& [key, series] : series_) most = std::max(most, series.instants.size());
+  return most == 0 ? kWindow + 1 : kWindow - (most - 1) % kWindow;
+}
+
+AddedFields FieldAdder::take() {
+  added_.warnings = outlying_.warnings();
+  return std::move(added_);
 }
 
 /// The blocks of the history's fields that the log does not have.
@@ -284,11 +469,12 @@ Status FieldAdder::code(std::vector<Item> items) {
 }
 
 Status FieldAdder::add(const TetMesh& mesh) {
-  const std::size_t kept = options_.kept ? options_.kept->size() : manifest_.fields.size();
-  if (Status s = checkFieldCount(kept + added_.fields.size() + mesh.fields.size()); !s) return s;
+  const std::size_t there = added_.kept.size() + added_.fields.size();
+  if (Status s = checkFieldCount(there + mesh.fields.size()); !s) return s;
   if (Status s = matchTo(mesh); !s) return s;
   Result<std::vector<Item>> items = itemsOf(mesh);
   if (!items) return std::unexpected(items.error());
+  if (Status s = takeUnfinished(*items); !s) return s;
   return code(std::move(*items));
 }
 

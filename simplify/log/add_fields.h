@@ -13,10 +13,12 @@
 
 #include "codec/refine/log_edit.h"
 #include "codec/refine/log_history.h"
+#include "simplify/clean/field_scales.h"
 #include "simplify/log/fused_values.h"
 #include "simplify/log/match_mesh.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/mesh/tet_mesh.h"
+#include "simplify/series/series.h"
 
 namespace qtet {
 
@@ -30,15 +32,20 @@ struct AddFieldsOptions {
   /// The log's fields that stay, as withFields takes them; all without it. Nothing is predicted
   /// from another one.
   std::optional<std::vector<std::uint32_t>> kept{};
-  /// Instants take the step of those of their series that do not stay, and have room below and
+  /// Instants take the steps of those of their series that do not stay, and have room below and
   /// above their range.
   bool scalesOfOthers = false;
   std::function<void(double)> progress{};  ///< fraction done, of make() and of each add()
 };
 
 struct AddedFields {
+  /// The log's fields that stay, as withFields takes them. Instants of an unfinished window are
+  /// coded again, among `fields`, when it has become full.
+  std::vector<std::uint32_t> kept;
   std::vector<NewField> fields;
+  std::vector<std::size_t> again;  ///< numbers of such instants in `fields`
   std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< instants that lead far away from the others
 };
 
 class FieldAdder {
@@ -48,13 +55,17 @@ class FieldAdder {
 
   /// Adds the fields of `mesh` as blocks for the log, whose last level must be the mesh; its
   /// geometry stays as it is. Instants NAME@TIME are coded as differences to each other, and to the
-  /// last instant before them that the log has or that was added. Only this mesh's values are held
-  /// in memory, and those of such last instants. Errors: matchMesh's, quantiseField's, bad-value (a
-  /// position off the log's lattice), limit-exceeded (too many fields), and all that decoding
-  /// gives; after one the adder is of no use. REQUIRES: a mesh that cleanMesh has passed.
+  /// last earlier instant of their scale. Where they fill the log's last window, that is coded as
+  /// one. Only this mesh's values are held in memory, those of such a window, and those of such
+  /// earlier instants. Errors: matchMesh's, quantiseField's, bad-value (a position off the log's
+  /// lattice), limit-exceeded (too many fields), and all that decoding gives; after one the adder
+  /// is of no use. REQUIRES: a mesh that cleanMesh has passed.
   [[nodiscard]] Status add(const TetMesh& mesh);
+  /// Instants that fill the window of the longest series: add() does best with so many at first,
+  /// and with kWindow each time thereafter. 1 to kWindow + 1.
+  [[nodiscard]] std::size_t roomInWindow() const;
   /// All that was added. REQUIRES: called once and last.
-  [[nodiscard]] AddedFields take() { return std::move(added_); }
+  [[nodiscard]] AddedFields take();
 
  private:
   /// A field on its way into the log.
@@ -63,13 +74,23 @@ class FieldAdder {
     std::vector<std::int32_t> values;   // of the history's elements, a number everywhere
     std::vector<std::uint8_t> missing;  // of the last level's elements; empty if none is
     std::vector<FieldError> errors;     // one a level
+    bool wasThere = false;              // an instant that is coded again
   };
-  /// The last instant of a series: `number` as NewField::prediction counts.
-  struct Last {
+  /// A scale of a series, of the fewest bits that an instant has.
+  struct Scale {
     FieldInfo info;
+    std::size_t instants = 0;
+  };
+  /// An instant that the log keeps or that was added: `number` as NewField::prediction counts.
+  struct Instant {
     double time = 0;
     std::size_t number = 0;
-    std::vector<std::int32_t> values;  // completed; empty until they are needed
+    FieldInfo info;
+  };
+  struct SeriesState {
+    std::vector<Scale> scales;
+    std::vector<Instant> instants;  // by time
+    bool isExtended = false;        // instants have come to it
   };
   /// The fields of the history while new ones are coded: those that the log has come first.
   struct Numbers {
@@ -87,11 +108,21 @@ class FieldAdder {
   void complete(std::vector<Item>& items, Numbers& numbers);
   [[nodiscard]] Status encode(const Numbers& numbers);
   [[nodiscard]] Status code(std::vector<Item> items);
-  void keepScale(const SeriesKey& key, FieldInfo info);
-  [[nodiscard]] Last* lastBefore(const FieldInfo& info);
-  [[nodiscard]] const FieldInfo* scaleOf(const FieldInfo& info);
-  [[nodiscard]] bool mayBeParent(const Last& last) const;
-  [[nodiscard]] Status fetch(Last& last);
+  [[nodiscard]] SeriesState* seriesOf(const FieldInfo& info);
+  void keepScale(FieldInfo info, bool stays);
+  void keepInstant(const FieldInfo& info, double time, std::size_t number);
+  [[nodiscard]] static const FieldInfo* scaleOf(const SeriesState& series);
+  [[nodiscard]] static std::optional<FieldInfo> commonScale(
+      const SeriesState& series, std::span<const MeshField* const> fields);
+  [[nodiscard]] std::map<const SeriesState*, std::optional<FieldInfo>> commonScales(
+      const TetMesh& mesh);
+  [[nodiscard]] Result<QuantisedField> quantised(const MeshField& field, const FieldScale& own,
+                                                 const std::optional<FieldInfo>& scale);
+  [[nodiscard]] const Instant* parentOf(const FieldInfo& info);
+  [[nodiscard]] Status takeUnfinished(std::vector<Item>& items);
+  [[nodiscard]] Status takeBack(std::span<const Instant> instants, std::vector<Item>& items);
+  [[nodiscard]] Result<Item> itemOf(const Instant& instant) const;
+  void forgetValues();
 
   const LogFile& log_;
   AddFieldsOptions options_;
@@ -101,10 +132,11 @@ class FieldAdder {
   std::vector<Tetrahedron> finest_;  // the last level's cells
   TetMesh matched_;                  // the mesh that `match_` is of, without fields
   MeshMatch match_;
-  std::map<SeriesKey, Last> last_;
-  std::map<SeriesKey, FieldInfo> scales_;  // of series without a last instant
+  std::map<SeriesKey, SeriesState> series_;
+  std::map<std::size_t, std::vector<std::int32_t>> values_;  // completed, of parents by number
+  OutlyingInstants outlying_;
   std::vector<std::size_t> depths_;  // by number: how many predictions a field rests on in a row
-  AddedFields added_;
+  AddedFields added_;                // `kept` from the beginning
 };
 
 /// The same for one mesh.

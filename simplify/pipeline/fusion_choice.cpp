@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "proto/field_key.h"
+#include "proto/number_text.h"
 #include "simplify/cost/boundary_weight.h"
 #include "simplify/mesh/tet_mesh.h"
 
@@ -41,7 +42,10 @@ std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed) 
   const FieldInfo& info = quantised.mesh.fields[f];
   const auto& values = quantised.mesh.values[f];
   if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }))
-    return "is constant";
+    return info.range[0] == info.range[1]
+               ? "is constant"
+               : "varies by less than its step, " + roundedText(info.step) +
+                     ", and is stored as one value (more `fieldBits` make a finer step)";
   if (!isFloatType(info.type) && !isNamed)
     return "is one of integers, which may be labels (`fieldWeights` " + info.name +
            "=1 makes it count)";

@@ -200,6 +200,8 @@ void warn(Run& run) {
         {run.report.clean, run.wallThickness, options.measure->bounds.boundary.value_or(0),
          options.fusion.targetRatio.has_value(), !options.measure->base && baseRuleOf(options)});
   if (const auto warning = run.flips.warning()) run.report.warnings.push_back(*warning);
+  const std::vector<std::string>& outlying = run.report.quantise.warnings;
+  run.report.warnings.insert(run.report.warnings.end(), outlying.begin(), outlying.end());
 }
 
 Status badValue(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }

@@ -70,7 +70,8 @@ struct PipelineReport {
   Manifest manifest;
   /// Changes made and unusual findings, one sentence each, in the order of doing.
   std::vector<std::string> notes;
-  /// Large losses of the base mesh (loss_warnings.h); one sentence each.
+  /// Large losses of the base mesh (loss_warnings.h), and instants that lead far away from the
+  /// others (field_scales.h); one sentence each.
   std::vector<std::string> warnings;
   std::vector<std::pair<Stage, double>> seconds;  ///< wall time, in the order of doing
 };

@@ -149,7 +149,7 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
   if (!adder) return std::unexpected(adder.error());
   if (Status s = addAll(steps, read, options, *adder); !s) return std::unexpected(s.error());
   const AddedFields added = adder->take();
-  const Result<EditedLog> edited = withFields(*log, *adding.kept, added.fields);
+  const Result<EditedLog> edited = withFields(*log, added.kept, added.fields);
   if (!edited) return std::unexpected(edited.error());
   PipelineReport& report = out->report;
   std::erase(report.notes, differencesNote(report.index));
@@ -160,6 +160,11 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
                          std::to_string(kWindow) + "; the base mesh is that of " +
                          std::to_string(sampledSteps(steps).size()) + " of them");
   report.notes.insert(report.notes.end(), added.notes.begin(), added.notes.end());
+  // those of the sample's instants alone give way to those of all
+  const std::vector<std::string> narrower = std::exchange(report.quantise.warnings, {});
+  const auto place = std::ranges::search(report.warnings, narrower);
+  report.warnings.erase(place.begin(), place.end());
+  report.warnings.insert(report.warnings.end(), added.warnings.begin(), added.warnings.end());
   report.seconds.emplace_back(
       Stage::kEncode,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

@@ -26,8 +26,8 @@ inline constexpr std::size_t kSampledInstants = 8;
 using InstantsReader = std::function<Result<TetMesh>(std::span<const std::size_t> steps)>;
 
 /// As simplifyToLog, for a series of so many steps. `sample` holds the instants of sampledSteps().
-/// Fields that are no instants come from it. Float instants have two scales' room: values may lie
-/// one range of the sample below it, and far above it. Memory holds the values of one window.
+/// Fields that are no instants come from it. Float instants have room: values may lie one range of
+/// the sample below it, and some above. Memory holds the values of one window.
 /// Statistics read all steps once more, before the first fusion. Errors: simplifyToLog's, `read`'s,
 /// checkTimeStatistics's, FieldAdder's; bad-value (exact values are to be kept).
 [[nodiscard]] Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,

@@ -52,11 +52,6 @@ void eachPair(const FusionHistory& history, std::size_t f, const Visit& visit) {
   }
 }
 
-/// Equal integers of both are equal values.
-bool haveOneScale(const FieldInfo& a, const FieldInfo& b) {
-  return a.step == b.step && a.minimum == b.minimum;
-}
-
 /// A fused vertex's value is an estimate that may be another by a little.
 bool maySettle(const FieldInfo& field) {
   const auto name = instantName(field.name);
@@ -110,16 +105,18 @@ class Chooser {
     if (step.around.size() > 2) tryOut(step.around, step.instant);
   }
 
-  /// Prediction from these instants, if all are fields that come before.
+  /// Prediction from those of these instants that have the same scale, if all come before.
   void tryOut(const std::vector<std::size_t>& instants, std::size_t instant) {
     std::vector<double> times;
     std::vector<std::uint16_t> parents;
     for (const std::size_t i : instants) {
       const std::size_t parent = series_.fields[i];
-      if (parent >= f_ || !haveOneScale(history_.fields[parent], history_.fields[f_])) return;
+      if (parent >= f_) return;
+      if (!haveOneScale(history_.fields[parent], history_.fields[f_])) continue;
       parents.push_back(static_cast<std::uint16_t>(parent));
       times.push_back(series_.times[i]);
     }
+    if (parents.empty()) return;
     tryWeights(parents, polynomialWeights(times, series_.times[instant]));
     const std::vector<double> even = fitted(parents, WeightFit(parents.size()));
     tryWeights(parents, even);

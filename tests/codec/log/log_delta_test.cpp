@@ -3,10 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "codec/log/log_index.h"
+#include "codec/log/log_writer.h"
 #include "codec/refine/log_edit.h"
 #include "codec/refine/log_file.h"
+#include "simplify/fuse/qtetfusion.h"
+#include "simplify/series/time_differences.h"
 #include "tests/support/meshes.h"
+#include "tests/support/series_mesh.h"
 #include "tests/support/written_log.h"
 
 namespace qtet {
@@ -86,6 +92,33 @@ TEST_F(LogDelta, givesTheRestFromAnyByteOn) {
 TEST_F(LogDelta, ofTheSameLogIsItsHeadAlone) {
   const Bytes made = makeDelta(new_.index(), new_.index(), new_.bytes(), 0, 1 << 20).value();
   EXPECT_LT(made.size(), new_.headBytes() + 512);
+}
+
+/// A log of `steps` instants of a quantity that hardly changes, so that blocks are small.
+LogFile logOfSteps(std::size_t steps) {
+  FusionHistory history = simplify(testing::seriesMesh(5, 1, steps), {}).value();
+  (void)predictInTime(history).value();
+  toTimeDifferences(history);
+  LogWriterOptions writer;
+  writer.chunkBytes = 4000;
+  return *LogFile::fromBytes(encodeLog(history, writer).value().bytes);
+}
+
+// A run that goes on: each push sends a step, whatever came before.
+TEST(LogDeltaOfSeries, sendsAStepAndNotTheListOfAll) {
+  const LogFile log = logOfSteps(400);
+  const auto fields = static_cast<std::uint32_t>(log.fields().size());
+  std::vector<std::uint32_t> kept(fields - 1);
+  std::iota(kept.begin(), kept.end(), 0U);
+  const Bytes before = withFields(log, kept, {})->together();
+  const LogFile old = *LogFile::fromBytes(before);
+  std::uint64_t step = 0;
+  for (const ChunkEntry& chunk : log.chunks()) step += chunk.blocks.back().size;
+  const Bytes made = makeDelta(old.index(), log.index(), log.bytes(), 0, 1 << 30).value();
+  EXPECT_LT(made.size(), step + log.headBytes() + 200 + 120 * log.chunks().size());
+  EXPECT_GT(log.index().encodeLater().size(), 20'000u);
+  const Outcome out = apply(made, old.bytes(), log.bytes().size(), 4096);
+  EXPECT_TRUE(out.isWhole && std::ranges::equal(out.bytes, log.bytes()));
 }
 
 TEST_F(LogDelta, isMadeUpToTheLimit) {

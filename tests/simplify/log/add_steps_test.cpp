@@ -10,6 +10,7 @@
 
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
+#include "codec/log/manifest_field.h"
 #include "codec/mesh/time_prediction.h"
 #include "codec/refine/log_edit.h"
 #include "codec/refine/log_file.h"
@@ -66,9 +67,7 @@ class AddSteps : public ::testing::Test {
   [[nodiscard]] LogFile log() const { return LogFile::fromBytes(bytes_).value(); }
 
   static Bytes with(const LogFile& log, const AddedFields& added) {
-    std::vector<std::uint32_t> kept(log.fields().size());
-    std::iota(kept.begin(), kept.end(), 0u);
-    return withFields(log, kept, added.fields).value().together();
+    return withFields(log, added.kept, added.fields).value().together();
   }
   static std::size_t bytesOf(const AddedFields& added) {
     std::size_t out = 0;
@@ -133,21 +132,22 @@ TEST_F(AddSteps, theHistorysValuesAreThoseOfTheWriter) {
 
 TEST_F(AddSteps, aWindowIsCodedAsDifferences) {
   const LogFile file = log();
-  const AddedFields added = addFields(file, steps(kBefore, 11)).value();
+  const AddedFields added = addFields(file, steps(kBefore, 8)).value();
+  EXPECT_TRUE(added.again.empty());
   EXPECT_EQ(
       std::ranges::count_if(added.fields, [](const NewField& f) { return f.prediction.isNone(); }),
       0);
   EXPECT_LT(added.fields.front().prediction.parents[0].field, file.fields().size());
   std::size_t alone = 0;
-  for (std::size_t i = kBefore; i < 11; ++i) {
+  for (std::size_t i = kBefore; i < 8; ++i) {
     TetMesh one = steps(i, i + 1);
     one.fields[0].name = "Alone";
     alone += bytesOf(addFields(file, one).value());
   }
-  EXPECT_LT(bytesOf(added), alone - alone / 5) << "blocks of some ten bytes each";
+  EXPECT_LT(bytesOf(added), alone - alone / 8) << "blocks of some ten bytes each";
   const Bytes all = with(file, added);
   const LogFile after = LogFile::fromBytes(all).value();
-  expectAll(after, 11);
+  expectAll(after, 8);
   for (std::uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk)
     for (std::uint32_t part = 0; part < kFirstFieldPart + file.fields().size(); ++part)
       ASSERT_TRUE(std::ranges::equal(file.block(chunk, part), after.block(chunk, part)));
@@ -163,7 +163,13 @@ TEST_F(AddSteps, aStepAtATimeKeepsRowsOfPredictionsShort) {
   Bytes bytes = bytes_;
   for (std::size_t i = kBefore; i < kInstants; ++i) {
     const LogFile file = LogFile::fromBytes(bytes).value();
-    bytes = with(file, addFields(file, steps(i, i + 1)).value());
+    FieldAdder adder = FieldAdder::make(file, {}).value();
+    EXPECT_EQ(adder.roomInWindow(), i <= 8 ? 9 - i : 17 - i);
+    ASSERT_TRUE(adder.add(steps(i, i + 1)));
+    const AddedFields added = adder.take();
+    EXPECT_EQ(added.again.size(), i == 8 ? 7u : 0u) << i;
+    EXPECT_EQ(added.kept.size() + added.again.size(), file.fields().size());
+    bytes = with(file, added);
   }
   const LogFile after = LogFile::fromBytes(std::move(bytes)).value();
   expectAll(after, kInstants);
@@ -190,7 +196,7 @@ TEST_F(AddSteps, severalWindowsOfOneAdderAreOneLog) {
   expectAll(LogFile::fromBytes(with(file, added)).value(), kInstants);
 }
 
-TEST_F(AddSteps, valuesAboveTheSeriesScaleTakeMoreBitsAndThoseBelowTheirOwnScale) {
+TEST_F(AddSteps, valuesAboveTheSeriesScaleTakeMoreBitsAndThoseBelowAnotherMinimum) {
   const LogFile file = log();
   const AddedFields above = addFields(file, steps(kBefore, kBefore + 1, 3)).value();
   EXPECT_EQ(above.fields[0].info.step, 0.25);
@@ -198,9 +204,60 @@ TEST_F(AddSteps, valuesAboveTheSeriesScaleTakeMoreBitsAndThoseBelowTheirOwnScale
   const AddedFields below = addFields(file, steps(kBefore, kBefore + 1, -3)).value();
   ASSERT_EQ(below.fields.size(), 1u);
   EXPECT_TRUE(below.fields[0].prediction.isNone());
-  EXPECT_NE(below.fields[0].info.step, 0.25);
+  EXPECT_EQ(below.fields[0].info.step, 0.25);
+  EXPECT_LT(below.fields[0].info.minimum[0], -2000);
   const AddedFields within = addFields(file, steps(kBefore, kBefore + 1)).value();
   EXPECT_EQ(within.fields[0].info.step, 0.25);
+}
+
+// One scale goes on: a fallen minimum ends it once, and not with every instant that falls more.
+TEST_F(AddSteps, aMinimumThatFallsGetsRoomOnce) {
+  Bytes bytes = bytes_;
+  std::vector<FieldInfo> infos;
+  for (std::size_t i = kBefore; i < kBefore + 4; ++i) {
+    const LogFile file = LogFile::fromBytes(bytes).value();
+    TetMesh mesh = steps(i, i + 1);
+    std::vector<double>& values = mesh.fields[0].values;
+    const double fall = std::ranges::min(values) + 100.0 * static_cast<double>(i - 2);
+    for (double& value : values) value -= fall;
+    const AddedFields added = addFields(file, mesh).value();
+    bytes = with(file, added);
+    infos.push_back(fieldInfoOf(added.fields[0].info));
+    EXPECT_TRUE(haveOneScale(infos.back(), infos.front())) << i;
+    EXPECT_EQ(added.fields[0].prediction.isNone(), i == kBefore) << i;
+    EXPECT_TRUE(added.warnings.empty());
+  }
+}
+
+TEST_F(AddSteps, theRunGoesOnBehindADivergedStep) {
+  LogFile file = log();
+  const AddedFields far = addFields(file, steps(kBefore, kBefore + 1, 1e6)).value();
+  ASSERT_EQ(far.warnings.size(), 1u);
+  EXPECT_NE(far.warnings[0].find("its values at time 1.5 span"), std::string::npos);
+  file = LogFile::fromBytes(with(file, far)).value();
+  const AddedFields added = addFields(file, steps(kBefore + 1, kBefore + 2)).value();
+  EXPECT_EQ(added.fields[0].info.step, 0.25);
+  EXPECT_FALSE(added.fields[0].prediction.isNone()) << "it rests on the one before";
+  EXPECT_TRUE(added.warnings.empty());
+}
+
+TEST_F(AddSteps, missingValuesStayMissingWhereAWindowIsCodedAgain) {
+  Bytes bytes = bytes_;
+  for (std::size_t i = kBefore; i < 9; ++i) {
+    const LogFile file = LogFile::fromBytes(bytes).value();
+    TetMesh mesh = steps(i, i + 1);
+    mesh.fields[0].values[i] = std::nan("");
+    bytes = with(file, addFields(file, mesh).value());
+  }
+  const LogFile after = LogFile::fromBytes(std::move(bytes)).value();
+  const LatticeMesh finest =
+      meshAtLevel(after, after.chunks().back().lastLevel, std::nullopt).value();
+  for (std::size_t i = kBefore; i < 9; ++i) {
+    const auto at =
+        std::ranges::find(finest.fields, steps(i, i + 1).fields[0].name, &FieldInfo::name);
+    const auto& values = finest.values[static_cast<std::size_t>(at - finest.fields.begin())];
+    EXPECT_EQ(std::ranges::count(values, kMissing), 1) << i;
+  }
 }
 
 }  // namespace

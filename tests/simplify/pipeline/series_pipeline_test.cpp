@@ -109,12 +109,30 @@ TEST_F(SeriesPipeline, allInstantsOfASeriesHaveOneStepAndMostArePredicted) {
   EXPECT_LE(alone, 3u);
 }
 
-TEST_F(SeriesPipeline, instantsBelowTheRoomOfTheSampleHaveTheirOwnStep) {
+TEST_F(SeriesPipeline, instantsBelowTheRoomOfTheSampleGetRoomForTheirWindow) {
   jump_ = 5, factor_ = -5;
   const PipelineOutput made = make().value();
   const auto jump = std::ranges::find(made.report.manifest.fields, "T@0.5", &ManifestField::name);
   ASSERT_NE(jump, made.report.manifest.fields.end());
-  EXPECT_NE(jump->step, made.report.manifest.fields[0].step);
+  EXPECT_EQ(jump->step, made.report.manifest.fields[0].step);
+  EXPECT_EQ(jump->minimum, made.report.manifest.fields[0].minimum);
+  EXPECT_LT(jump->minimum[0], jump->range[0]);
+  EXPECT_TRUE(made.report.warnings.empty());
+}
+
+TEST_F(SeriesPipeline, aDivergedInstantHasItsOwnScaleAndIsToldOnce) {
+  for (const std::size_t jump : {std::size_t{5}, kSteps - 1}) {  // beside the sample, and in it
+    jump_ = jump, factor_ = 1e6;
+    const PipelineOutput made = make().value();
+    const std::string time = shortestText(0.1 * static_cast<double>(jump));
+    const auto far =
+        std::ranges::find(made.report.manifest.fields, "T@" + time, &ManifestField::name);
+    EXPECT_GT(far->step, 1e3 * made.report.manifest.fields[0].step);
+    ASSERT_EQ(made.report.warnings.size(), 1u);
+    EXPECT_NE(made.report.warnings[0].find("its values at time " + time + " span"),
+              std::string::npos)
+        << made.report.warnings[0];
+  }
 }
 
 /// A static field at the last level: what it is, and its integers by place, or sorted of cells.

@@ -1,0 +1,288 @@
+#include "simplify/commands/added_steps.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "proto/field_key.h"
+#include "proto/number_text.h"
+#include "proto/series.h"
+#include "simplify/clean/clean_mesh.h"
+#include "simplify/mesh/moved_place.h"
+#include "simplify/read/read_mesh.h"
+#include "simplify/read/read_times.h"
+#include "simplify/series/series.h"
+
+namespace qtet {
+namespace {
+
+/// The instants of a series, and what they have in common.
+struct KnownSeries {
+  std::set<double> times;
+  std::uint32_t components = 1;
+  std::string type;
+};
+
+bool hasTime(const std::set<double>& times, double time) {
+  const auto behind = times.lower_bound(time);
+  return (behind != times.end() && isSameTime(*behind, time)) ||
+         (behind != times.begin() && isSameTime(*std::prev(behind), time));
+}
+
+/// What the log has, and what came to it.
+class KnownInstants {
+ public:
+  explicit KnownInstants(const Manifest& manifest) {
+    for (const ManifestField& field : manifest.fields)
+      if (const auto name = instantName(field.name)) {
+        KnownSeries& series = series_[{field.association, std::string(name->series)}];
+        series.components = field.components, series.type = field.type;
+        series.times.insert(name->time);
+        times_.insert(name->time);
+        last_ = std::max(last_.value_or(name->time), name->time);
+      }
+  }
+
+  /// Some series has an instant of that time.
+  [[nodiscard]] bool knows(double time) const { return hasTime(times_, time); }
+  [[nodiscard]] const KnownSeries* find(const MeshField& field) const {
+    const auto at = series_.find({field.association, std::string(instantName(field.name)->series)});
+    return at == series_.end() ? nullptr : &at->second;
+  }
+  /// Adds the field to its series, as which it is. Errors: bad-input (another type or number of
+  /// components).
+  Status add(MeshField& field, const std::string& file) {
+    const auto name = instantName(field.name);
+    KnownSeries& series = series_[{field.association, std::string(name->series)}];
+    if (series.times.empty()) series.components = field.components, series.type = field.type;
+    const bool areFloats = isFloatType(field.type) && isFloatType(series.type);
+    if (field.components != series.components || (field.type != series.type && !areFloats))
+      return fail(ErrorCode::kBadInput, file + ": " + field.name + " has " +
+                                            std::to_string(field.components) + " components of " +
+                                            field.type + ", its series in the log " +
+                                            std::to_string(series.components) + " of " +
+                                            series.type + "; write it as the earlier steps are");
+    if (field.type != series.type && series.type == "float32")
+      for (double& value : field.values) value = static_cast<float>(value);
+    field.type = series.type;
+    series.times.insert(name->time);
+    times_.insert(name->time);
+    if (last_ && name->time < *last_) between_.insert(name->time);
+    return {};
+  }
+  /// A sentence about instants before the log's last one; empty without any.
+  [[nodiscard]] std::string warning() const {
+    if (between_.empty()) return {};
+    return std::to_string(between_.size()) + (between_.size() == 1 ? " step lies" : " steps lie") +
+           " before time " + shortestText(*last_) +
+           ", the last one of the log, and between others that it has: do they belong to one "
+           "run? " +
+           (between_.size() == 1 ? "It is " : "The first is ") + shortestText(*between_.begin());
+  }
+
+ private:
+  std::map<std::pair<std::string, std::string>, KnownSeries> series_;  // by association and name
+  std::set<double> times_, between_;
+  std::optional<double> last_;  // of the log
+};
+
+/// Gives fields without a time that of their file. Errors: bad-input (neither knows a time, or both
+/// do).
+Status nameInstants(TetMesh& mesh, const std::string& file, const std::optional<double>& time) {
+  for (MeshField& field : mesh.fields) {
+    const bool isNamed = instantName(field.name).has_value();
+    if (isNamed && time)
+      return fail(ErrorCode::kBadInput,
+                  file + " has times of its own (" + field.name + "); leave --times out");
+    if (!isNamed && !time)
+      return fail(ErrorCode::kBadInput, file + " knows no time; give it with --times");
+    if (!isNamed) field.name += "@" + shortestText(*time);
+  }
+  return {};
+}
+
+/// Adds meshes in windows, so that the values of no more than one window are in memory at once. The
+/// log is decoded before the first one.
+class Windows {
+ public:
+  Windows(const LogFile& log, const AddFieldsOptions& options) : log_(log), options_(options) {}
+
+  /// Decodes the log, if that is not done.
+  Status prepare() {
+    if (adder_) return {};
+    Result<FieldAdder> adder = FieldAdder::make(log_, options_);
+    if (!adder) return std::unexpected(adder.error());
+    adder_.emplace(std::move(*adder));
+    return {};
+  }
+  /// Steps that fill the window. REQUIRES: prepared.
+  [[nodiscard]] std::size_t room() const { return adder_->roomInWindow() - steps_.size(); }
+  /// REQUIRES: prepared.
+  Status take(TetMesh&& mesh) {
+    const bool isSame = mesh.points == pending_.points && mesh.tetrahedra == pending_.tetrahedra;
+    if (!isSame)
+      if (Status s = flush(); !s) return s;
+    for (const MeshField& field : mesh.fields) steps_.insert(instantName(field.name)->time);
+    if (pending_.fields.empty()) {
+      pending_ = std::move(mesh);
+    } else {
+      std::ranges::move(mesh.fields, std::back_inserter(pending_.fields));
+    }
+    return steps_.size() < adder_->roomInWindow() ? Status{} : flush();
+  }
+  Status flush() {
+    if (pending_.fields.empty()) return {};
+    const Status added = adder_->add(pending_);
+    pending_.fields.clear();
+    steps_.clear();
+    return added;
+  }
+  AddedFields finish() { return adder_ ? adder_->take() : AddedFields{}; }
+
+ private:
+  const LogFile& log_;
+  const AddFieldsOptions& options_;
+  std::optional<FieldAdder> adder_;
+  TetMesh pending_;
+  std::set<double> steps_;  // of `pending_`
+};
+
+class Adding {
+ public:
+  Adding(const OpenedLog& log, const StepsRequest& request, Progress& progress)
+      : request_(request),
+        progress_(progress),
+        reading_(request.reading),
+        known_(log.manifest),
+        windows_(log.file, request.adding) {
+    reading_.namesTime = true;
+    reading_.moves = std::ranges::any_of(log.manifest.fields, [](const ManifestField& field) {
+      const auto name = instantName(field.name);
+      return name && name->series == kDisplacement;
+    });
+  }
+
+  Status takeAll() {
+    for (std::size_t i = 0; i < request_.files.size() && out_.steps < request_.most; ++i) {
+      const auto time = request_.times.empty() ? std::nullopt : std::optional(request_.times[i]);
+      if (Status s = take(request_.files[i], time); !s) return s;
+    }
+    return windows_.flush();
+  }
+  AddedSteps finish() {
+    AddedFields added = windows_.finish();
+    added.notes.insert(added.notes.begin(), notes_.begin(), notes_.end());
+    if (out_.skipped > 0)
+      added.notes.push_back(
+          std::to_string(out_.skipped) + (out_.skipped == 1 ? " step was" : " steps were") +
+          " left out, since the log has " + (out_.skipped == 1 ? "its time" : "their times"));
+    if (std::string between = known_.warning(); !between.empty())
+      added.warnings.push_back(std::move(between));
+    out_.added = std::move(added);
+    return std::move(out_);
+  }
+
+ private:
+  Status take(const std::string& file, const std::optional<double>& time) {
+    progress_.stage("adding " + file);
+    if (time && mayLeave() && known_.knows(*time)) {
+      ++out_.skipped;
+      return {};
+    }
+    if (!time) {
+      const Result<ChosenTimes> chosen = chosenTimesOf(file, reading_);
+      if (!chosen) return std::unexpected(chosen.error());
+      if (!chosen->times.empty()) return takeTimes(file, chosen->times);
+    }
+    Result<ReadMesh> read = readMesh(file, reading_);
+    if (!read) return std::unexpected(read.error());
+    return take(std::move(*read), file, time);
+  }
+
+  /// Steps need not be read to be left out: no field is asked for that the log may lack.
+  [[nodiscard]] bool mayLeave() const { return !request_.reading.fields.has_value(); }
+
+  Status takeTimes(const std::string& file, const std::vector<double>& all) {
+    std::vector<double> times = all;
+    if (mayLeave()) std::erase_if(times, [&](double time) { return known_.knows(time); });
+    out_.skipped += all.size() - times.size();
+    if (times.empty()) return {};
+    if (Status s = windows_.prepare(); !s) return s;
+    for (std::size_t at = 0; at < times.size() && out_.steps < request_.most;) {
+      const std::size_t count =
+          std::min({windows_.room(), times.size() - at, request_.most - out_.steps});
+      Result<ReadMesh> read = readTimes(file, reading_, std::span(times).subspan(at, count),
+                                        reading_.moves ? std::optional(all.front()) : std::nullopt);
+      if (!read) return std::unexpected(read.error());
+      if (Status s = take(std::move(*read), file, std::nullopt); !s) return s;
+      at += count;
+    }
+    return {};
+  }
+
+  Status take(ReadMesh&& read, const std::string& file, const std::optional<double>& time) {
+    if (Status s = nameInstants(read.mesh, file, time); !s) return s;
+    if (Status s = keepInstants(read.mesh, file); !s) return s;
+    if (read.mesh.fields.empty()) return {};
+    if (const auto cleaned = cleanMesh(read.mesh); !cleaned)
+      return std::unexpected(cleaned.error());
+    if (Status s = windows_.prepare(); !s) return s;
+    return windows_.take(std::move(read.mesh));
+  }
+
+  /// Leaves the fields of which the log has a series, or all that are asked for, without instants
+  /// that it has.
+  Status keepInstants(TetMesh& mesh, const std::string& file) {
+    std::string others;
+    std::set<double> skipped, come;
+    std::erase_if(mesh.fields, [&](const MeshField& field) {
+      const KnownSeries* const series = known_.find(field);
+      const double time = instantName(field.name)->time;
+      if (series == nullptr && mayLeave()) {
+        others += (others.empty() ? "" : ", ") + field.name;
+        return true;
+      }
+      const bool isThere = series != nullptr && hasTime(series->times, time);
+      (isThere ? skipped : come).insert(time);
+      return isThere;
+    });
+    for (const double time : come) skipped.erase(time);
+    out_.steps += come.size(), out_.skipped += skipped.size();
+    if (come.empty() && skipped.empty())
+      return fail(ErrorCode::kNotFound, file + " holds no instant of a series of the log" +
+                                            (others.empty() ? "" : " (it has " + others + ")") +
+                                            "; name others with --fields");
+    if (!others.empty())
+      notes_.push_back(file + ": left out, since the log has no such series: " + others +
+                       "; --fields adds them");
+    std::ranges::sort(mesh.fields, {}, [](const MeshField& field) {
+      return std::tuple(instantName(field.name)->time, field.association, field.name);
+    });
+    for (MeshField& field : mesh.fields)
+      if (Status s = known_.add(field, file); !s) return s;
+    return {};
+  }
+
+  const StepsRequest& request_;
+  Progress& progress_;
+  ReadOptions reading_;
+  KnownInstants known_;
+  Windows windows_;
+  std::vector<std::string> notes_;
+  AddedSteps out_;
+};
+
+}  // namespace
+
+Result<AddedSteps> addedSteps(const OpenedLog& log, const StepsRequest& request,
+                              Progress& progress) {
+  Adding adding(log, request, progress);
+  if (Status s = adding.takeAll(); !s) return std::unexpected(s.error());
+  return adding.finish();
+}
+
+}  // namespace qtet
