@@ -24,6 +24,8 @@ inline constexpr std::uint32_t kMaxFields = 8192;
 inline constexpr std::uint32_t kMaxRequestFields = 1024;
 /// Instants that one request can ask for behind another: with that one as many as it could name.
 inline constexpr std::uint32_t kMaxAhead = kMaxRequestFields - 1;
+/// Bytes of a unit: it stands in one line beside a field's name.
+inline constexpr std::uint32_t kMaxUnitBytes = 64;
 /// The highest number of a field that a manifest's opening can name, in a byte.
 inline constexpr std::uint32_t kMaxOpeningField = 255;
 /// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is

@@ -33,6 +33,19 @@ Error noSuchField(const Manifest& manifest, std::string_view key) {
           "the log has no field '" + std::string(key) + "'; it has: " + fieldList(keys)};
 }
 
+std::string_view unitOf(const Manifest& manifest, std::string_view name) {
+  const std::string_view series = nameWithoutStep(name).value_or(name);
+  if (const auto at = manifest.units.find(series); at != manifest.units.end()) return at->second;
+  const std::size_t open = series.rfind(" [");
+  if (open == std::string_view::npos || open == 0 || !series.ends_with(']')) return {};
+  return series.substr(open + 2, series.size() - open - 3);
+}
+
+std::string_view timeUnit(const Manifest& manifest) {
+  const auto at = manifest.units.find("");
+  return at == manifest.units.end() ? std::string_view() : at->second;
+}
+
 std::array<double, 6> focusCorners(const Manifest& manifest) {
   std::array<double, 6> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -60,6 +73,7 @@ std::string manifestToJson(const Manifest& manifest) {
                     {"origin", manifest.latticeOrigin}};
   if (manifest.focus) out["focus"] = focusCorners(manifest);
   if (manifest.opening) out["opening"] = openingJson(manifest);
+  if (const auto unit = timeUnit(manifest); !unit.empty()) out["timeUnit"] = unit;
   out["fields"] = Json::array();
   for (const ManifestField& f : manifest.fields)
     out["fields"].push_back({{"name", f.name},
@@ -70,8 +84,11 @@ std::string manifestToJson(const Manifest& manifest) {
                              {"step", f.step},
                              {"minimum", f.minimum},
                              {"range", f.range}});
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f)
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
     if (manifest.fields[f].hasMissing) out["fields"][f]["gaps"] = true;
+    if (const auto unit = unitOf(manifest, manifest.fields[f].name); !unit.empty())
+      out["fields"][f]["unit"] = unit;
+  }
   out["levels"] = Json::array();
   for (const ManifestLevel& l : manifest.levels) {
     out["levels"].push_back({{"level", l.level},

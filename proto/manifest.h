@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -64,6 +65,8 @@ struct Manifest {
   /// None: the first field on the boundary.
   std::optional<Opening> opening = std::nullopt;
   std::vector<ManifestField> fields;
+  /// By a field's name without @TIME; that of times by the empty name. None is empty.
+  std::map<std::string, std::string, std::less<>> units;
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
 };
 
@@ -77,6 +80,12 @@ struct Manifest {
                                                       std::string_view key);
 /// not-found: no field is meant by `key`. The message has the keys of those that are there.
 [[nodiscard]] Error noSuchField(const Manifest& manifest, std::string_view key);
+
+/// The unit of the field of this name or of its series: that of the manifest, else the "K" of a
+/// name "T [K]". Empty: unknown.
+[[nodiscard]] std::string_view unitOf(const Manifest& manifest, std::string_view name);
+/// That of the times of instants. Empty: unknown.
+[[nodiscard]] std::string_view timeUnit(const Manifest& manifest);
 
 /// The corners of the manifest's focus in the mesh's own coordinates. REQUIRES: there is one.
 [[nodiscard]] std::array<double, 6> focusCorners(const Manifest& manifest);

@@ -34,6 +34,9 @@ qtet_status take(qtet_log* log, Result<LogFile> file, const std::string& path) {
   }
   log->series = qtet::seriesOf(std::span(std::as_const(manifest->fields)));
   log->manifest = std::move(*manifest);
+  for (const ManifestField& field : log->manifest.fields)
+    log->units.emplace_back(qtet::unitOf(log->manifest, field.name));
+  log->units.emplace_back(qtet::timeUnit(log->manifest));
   log->file = std::move(*file);
   return QTET_OK;
 }
@@ -43,9 +46,10 @@ void close(qtet_log* log) {
   log->file.reset();
   log->manifest = {};
   log->series.clear();
+  log->units.clear();
 }
 
-/// Bytes of the structs' first versions: to the end of the last member. No caller has fewer.
+/// Bytes of the structs' first versions: to the end of their last member. No caller has fewer.
 template <class Info>
 constexpr std::size_t kFirstBytes = 0;
 template <>
@@ -96,6 +100,7 @@ qtet_log_info infoOf(const qtet_log& log) {
   info.digest = file.digest().c_str();
   info.source = log.manifest.source.c_str();
   info.generator = log.manifest.generator.c_str();
+  info.timeUnit = log.units.back().c_str();
   return info;
 }
 
@@ -117,6 +122,7 @@ qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
     info.bytes += chunk.blocks[qtet::kFirstFieldPart + field].size;
   info.name = f.name.c_str();
   info.type = f.type.c_str();
+  info.unit = log.units[field].c_str();
   return info;
 }
 

@@ -121,6 +121,7 @@ typedef struct {
   const char* digest;    /* SHA-256 of the log, 64 lower-case hexadecimal digits */
   const char* source;    /* file name of the mesh that it was made from */
   const char* generator; /* "qtet 0.3.0" */
+  const char* timeUnit;  /* Since 0.4: of the times of instants; "": unknown */
 } qtet_log_info;
 
 typedef struct {
@@ -134,6 +135,7 @@ typedef struct {
   uint64_t bytes;  /* of its blocks in the log */
   const char* name;
   const char* type; /* of the input: float32, float64, int8 ... uint64 */
+  const char* unit; /* Since 0.4; "": unknown */
 } qtet_field_info;
 
 typedef struct {

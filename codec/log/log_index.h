@@ -26,6 +26,8 @@ struct LogIndex {
   static constexpr std::uint16_t kMinorOfFirstView = 2;
   /// The minor version of a log that has known errors, since not all levels need have one.
   static constexpr std::uint16_t kMinorOfSomeErrors = 3;
+  /// The minor version of a log whose manifest has units.
+  static constexpr std::uint16_t kMinorOfUnits = 4;
 
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;

@@ -101,22 +101,42 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
 // ---- what follows the fields
 
 constexpr unsigned kAllErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4,
-                   kSomeErrorsFollow = 8;
-constexpr unsigned kKnownFlags = 2 * kSomeErrorsFollow - 1;
+                   kSomeErrorsFollow = 8, kUnitsFollow = 16;
+constexpr unsigned kKnownFlags = 2 * kUnitsFollow - 1;
 constexpr std::uint8_t kNoCut = 3;
 
 unsigned flagsOf(const Manifest& manifest) {
   return (manifest.levels.front().error ? kSomeErrorsFollow : 0) |
-         (manifest.focus ? kFocusFollows : 0) | (manifest.opening ? kOpeningFollows : 0);
+         (manifest.focus ? kFocusFollows : 0) | (manifest.opening ? kOpeningFollows : 0) |
+         (manifest.units.empty() ? 0 : kUnitsFollow);
 }
 
 void writeFirstView(ByteWriter& w, const Manifest& manifest) {
   w.write(static_cast<std::uint8_t>(flagsOf(manifest)));
   if (manifest.focus)
     for (const std::uint16_t end : *manifest.focus) w.write(end);
-  if (!manifest.opening) return;
-  w.write(manifest.opening->field);
-  w.write(manifest.opening->cut.value_or(kNoCut));
+  if (manifest.opening) {
+    w.write(manifest.opening->field);
+    w.write(manifest.opening->cut.value_or(kNoCut));
+  }
+  if (manifest.units.empty()) return;
+  w.writeVarint(static_cast<std::uint32_t>(manifest.units.size()));
+  for (const auto& [name, unit] : manifest.units) writeText(w, name), writeText(w, unit);
+}
+
+std::map<std::string, std::string, std::less<>> readUnits(ByteReader& r) {
+  std::map<std::string, std::string, std::less<>> out;
+  const std::uint32_t count = r.readVarint();
+  for (std::uint32_t i = 0; i < count && !r.failed(); ++i) {
+    std::string name = readText(r), unit = readText(r);
+    const bool isBehind = out.empty() || out.rbegin()->first < name;
+    if (!isBehind || unit.empty() || unit.size() > kMaxUnitBytes)
+      r.fail(ErrorCode::kBadValue,
+             "the manifest's units are not in the order of their names, or one is empty or longer "
+             "than 64 bytes; build the log again");
+    out.emplace_hint(out.end(), std::move(name), std::move(unit));
+  }
+  return out;
 }
 
 Focus readFocus(ByteReader& r) {
@@ -139,6 +159,7 @@ Opening readOpening(ByteReader& r, std::size_t fields) {
 }
 
 std::uint16_t minorOfFlags(unsigned flags) {
+  if ((flags & kUnitsFollow) != 0) return LogIndex::kMinorOfUnits;
   if ((flags & kSomeErrorsFollow) != 0) return LogIndex::kMinorOfSomeErrors;
   return flags > kAllErrorsFollow ? LogIndex::kMinorOfFirstView : 0;
 }
@@ -155,6 +176,7 @@ KnownErrors readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
            "log again");
   if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
   if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, out.fields.size());
+  if ((flags & kUnitsFollow) != 0) out.units = readUnits(r);
   if ((flags & kSomeErrorsFollow) != 0) return KnownErrors::kSome;
   return (flags & kAllErrorsFollow) != 0 ? KnownErrors::kAll : KnownErrors::kNone;
 }
@@ -401,6 +423,12 @@ Status setManifest(LogIndex& index, Manifest manifest) {
   index.laterFields = index.hasSeries() ? static_cast<std::uint32_t>(isLater.end() - first) : 0;
   if (manifest.opening && manifest.opening->field >= manifest.fields.size() - index.laterFields)
     manifest.opening.reset();
+  std::erase_if(manifest.units, [&](const auto& entry) {
+    return !entry.first.empty() &&
+           std::ranges::none_of(manifest.fields, [&](const ManifestField& field) {
+             return nameWithoutStep(field.name).value_or(field.name) == entry.first;
+           });
+  });
   Result<Bytes> front = manifestBlock(manifest, index.laterFields);
   if (!front) return std::unexpected(front.error());
   index.manifest = std::move(*front);

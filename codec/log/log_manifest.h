@@ -16,8 +16,8 @@ struct LogIndex;
 
 /// Puts the manifest into the index, in the two parts that a log has (FORMAT.md, "Later
 /// instants"). The first of the later fields is the first instant that is not its series' first. An
-/// opening that names a later field goes. Errors: manifestBlock's. REQUIRES: an index that has the
-/// shapes of these fields.
+/// opening that names a later field goes, and so does a unit of no field. Errors: manifestBlock's.
+/// REQUIRES: an index that has the shapes of these fields.
 [[nodiscard]] Status setManifest(LogIndex& index, Manifest manifest);
 
 /// LogIndex::encodeLater, if a log may have so large a part. Errors: limit-exceeded.

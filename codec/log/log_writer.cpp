@@ -105,6 +105,7 @@ Manifest manifestFor(const FusionHistory& history, const LogWriterOptions& optio
   m.latticeOrigin = history.lattice.origin;
   m.focus = options.focus;
   m.opening = options.opening;
+  m.units = options.units;
   for (const FieldInfo& f : history.fields) m.fields.push_back(manifestFieldOf(f));
   m.levels = levelsOf(added, options.errors);
   return m;

@@ -41,6 +41,7 @@ struct LogWriterOptions {
   LevelErrors errors;
   std::optional<Focus> focus = std::nullopt;      ///< for the manifest
   std::optional<Opening> opening = std::nullopt;  ///< the same
+  decltype(Manifest::units) units{};              ///< the same
   /// Gives the closing blocks, once the chunks are written; none without it.
   std::function<Status(const FinestMesh&, const ClosingSink&)> closing{};
   std::function<void(double)> progress{};  ///< fraction done, 0..1

@@ -34,20 +34,24 @@ OrderedJson infoJson(const OpenedLog& log) {
                       {"range", field.range},
                       {"missingValues", field.hasMissing},
                       {"bytes", bytes}});
+    if (const auto unit = unitOf(manifest, field.name); !unit.empty()) fields.back()["unit"] = unit;
   }
-  return {{"digest", log.file.digest()},
-          {"generator", manifest.generator},
-          {"source", manifest.source},
-          {"bytes", log.file.bytes().size()},
-          {"headBytes", log.file.headBytes()},
-          {"chunks", log.file.chunks().size()},
-          {"lattice",
-           {{"bits", manifest.latticeBits},
-            {"step", manifest.latticeStep},
-            {"origin", manifest.latticeOrigin}}},
-          {"fields", fields},
-          {"kept", closingJson(log.file.closingBlocks(), manifest)},
-          {"levels", levelsJson(log.manifest, log.file.index())}};
+  OrderedJson out = {{"digest", log.file.digest()},
+                     {"generator", manifest.generator},
+                     {"source", manifest.source},
+                     {"bytes", log.file.bytes().size()},
+                     {"headBytes", log.file.headBytes()},
+                     {"chunks", log.file.chunks().size()},
+                     {"lattice",
+                      {{"bits", manifest.latticeBits},
+                       {"step", manifest.latticeStep},
+                       {"origin", manifest.latticeOrigin}}},
+                     {"timeUnit", timeUnit(manifest)},
+                     {"fields", fields},
+                     {"kept", closingJson(log.file.closingBlocks(), manifest)},
+                     {"levels", levelsJson(log.manifest, log.file.index())}};
+  if (timeUnit(manifest).empty()) out.erase("timeUnit");
+  return out;
 }
 
 constexpr std::size_t kShownLevels = 20;  ///< without --all
@@ -112,7 +116,8 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
   for (const Series& series : seriesOf(std::span<const ManifestField>(log.manifest.fields)))
     line(console, "series",
          series.name + ": " + std::to_string(series.fields.size()) + " instants, " +
-             brief(series.times.front()) + " to " + brief(series.times.back()));
+             brief(series.times.front()) + " to " + brief(series.times.back()) +
+             (timeUnit(log.manifest).empty() ? "" : " ") + std::string(timeUnit(log.manifest)));
   if (info["fields"].empty()) return;
   console.out << "\n";
   std::vector<std::vector<std::string>> rows{
@@ -127,6 +132,12 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
                     brief(field["range"][0]), brief(field["range"][1]),
                     std::to_string(field["bits"].get<int>()), brief(field["step"]),
                     grouped(field["bytes"])});
+  }
+  if (std::ranges::any_of(info["fields"],
+                          [](const OrderedJson& f) { return f.contains("unit"); })) {
+    rows[0].emplace_back("unit");
+    for (std::size_t row = 1; row < rows.size(); ++row)
+      rows[row].push_back(printable(info["fields"][row - 1].value("unit", "")));
   }
   console.out << columns(rows);
   if (mostFields == kShownFields)
@@ -174,8 +185,8 @@ int runInfo(const Words& words, Console& console) {
        "lost and gained in per cent of the original's, and of each field in per cent of its range: "
        "its max is sampled.\n"
        "--json: digest, generator, source, bytes, headBytes, chunks, lattice {bits, step, "
-       "origin}, fields [{name, components, type, association, bits,\n"
-       "step, minimum, range, missingValues, bytes}], kept, and levels [{level, tetrahedra, "
+       "origin}, timeUnit, fields [{name, components, type, association, bits,\n"
+       "step, minimum, range, missingValues, bytes, unit}], kept, and levels [{level, tetrahedra, "
        "vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
        "fractions and of some levels only: boundary {toLevel {mean, max}, toOriginal {mean, max}}, "
        "volumeLost, volumeGained, fields [{rms, max}] in the order of the fields above.\n"

@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "proto/limits.h"
+#include "proto/utf8.h"
 #include "simplify/commands/command_fusion.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
@@ -25,6 +26,27 @@ Algorithm algorithmOf(const std::string& name) {
   throw UsageError("--algorithm '" + name + "' is not known; give qtet or paper");
 }
 
+/// NAME=UNIT of each --unit, and --time-unit under the empty name. Throws UsageError.
+decltype(Manifest::units) unitsOf(const ParsedWords& parsed) {
+  decltype(Manifest::units) out;
+  const auto add = [&](const std::string& option, std::string name, std::string unit) {
+    if (unit.empty() || unit.size() > kMaxUnitBytes || !isUtf8(unit))
+      throw UsageError(option + ": a unit is a text of 1 to " + std::to_string(kMaxUnitBytes) +
+                       " bytes of UTF-8, such as K or m/s");
+    if (!out.emplace(std::move(name), std::move(unit)).second)
+      throw UsageError(option + ": this field has a unit already");
+  };
+  if (parsed.has("unit"))
+    for (const std::string& text : parsed.get<std::vector<std::string>>("unit")) {
+      const std::size_t equals = text.rfind('=');
+      if (equals == std::string::npos || equals == 0)
+        throw UsageError("--unit '" + text + "' is no field's name and its unit such as T=K");
+      add("--unit '" + text + "'", text.substr(0, equals), text.substr(equals + 1));
+    }
+  if (parsed.has("time-unit")) add("--time-unit", "", parsed.get<std::string>("time-unit"));
+  return out;
+}
+
 SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   SimplifyRequest request;
   request.input = parsed.get<std::string>("IN");
@@ -41,6 +63,7 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   if (Status checked = checkOptions(options); !checked)
     throw UsageError(withOptionNames(checked.error().message));
   options.measure = measureOptionsOf(parsed);
+  options.units = unitsOf(parsed);
   options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
   request.read.originalIds = parsed.has("original-ids");
   options.timeStatistics = parsed.has("time-statistics");
@@ -71,6 +94,11 @@ int runSimplify(const Words& words, Console& console) {
       "time-statistics",
       "of each series: its average, least, largest and standard deviation over all instants, as "
       "the fields NAME_average, NAME_minimum, NAME_maximum and NAME_stddev")(
+      "unit", po::value<std::vector<std::string>>(),
+      "NAME=UNIT: the unit of a field or of a series, for the legend, plots and tables; may be "
+      "given "
+      "several times. Names such as \"T [K]\" have theirs")("time-unit", po::value<std::string>(),
+                                                            "the unit of times")(
       "geometry-codec", po::value<std::string>()->default_value("draco"),
       "how positions and fields are coded: draco, or adaptive, which is 1 to 6 % smaller and which "
       "only qtet can read")("keep-order",
@@ -102,7 +130,7 @@ int runSimplify(const Words& words, Console& console) {
        "--time all -o run.qtet\n"
        "  qtet simplify remeshed.pvd --time all -o remeshed.json\n",
        {{"input", {"format", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
-        {"fields", {"field-bits", "field-weight", "time-statistics"}},
+        {"fields", {"field-bits", "field-weight", "time-statistics", "unit", "time-unit"}},
         {"quality and base mesh",
          {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
           "placement", "shape-weight", "preserve-regions", "position-bits"}},

@@ -27,6 +27,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`threshold`", "--threshold"},
     {"`time`", "--time"},
     {"`timeStatistics`", "--time-statistics"},
+    {"`units`", "--unit"},
     {"`weld`", "--weld"},
 };
 

@@ -80,8 +80,21 @@ struct Run {
   }
 };
 
+/// Errors: not-found (a unit of no field).
+Status checkUnits(const PipelineOptions& options, const std::vector<MeshField>& fields) {
+  for (const auto& [name, unit] : options.units) {
+    const auto isMeantBy = [&](const MeshField& field) {
+      return nameWithoutStep(field.name).value_or(field.name) == name;
+    };
+    if (!name.empty() && std::ranges::none_of(fields, isMeantBy))
+      return fail(ErrorCode::kNotFound, "`units`: the mesh carries no field '" + name + "'");
+  }
+  return {};
+}
+
 Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   TetMesh mesh = std::move(given);
+  if (Status s = checkUnits(run.options, mesh.fields); !s) return std::unexpected(s.error());
   if (run.options.timeStatistics)
     if (Status added = addTimeStatistics(mesh.fields); !added)
       return std::unexpected(added.error());
@@ -179,6 +192,7 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& ru
   options.errors = std::move(errors);
   options.focus = run.focus;
   options.opening = run.opening;
+  options.units = run.options.units;
   options.valueCodec = run.options.valueCodec;
   if (run.options.keep.any())
     options.closing = [&](const FinestMesh& finest, const ClosingSink& give) -> Status {

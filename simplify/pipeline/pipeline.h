@@ -46,6 +46,7 @@ struct PipelineOptions {
   std::optional<MeasureOptions> measure{std::in_place};
   CodecId valueCodec = CodecId::kDraco;
   KeepOptions keep{};
+  decltype(Manifest::units) units{};
   /// Each series gives four more fields, its statistics over all instants (time_statistics.h).
   bool timeStatistics = false;
   /// Makes the place where the log's blocks wait for its head; in memory without it.
@@ -99,7 +100,7 @@ struct PipelineOutput {
 /// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and
 /// options give the same bytes, whatever the number of threads. Errors: checkOptions's,
 /// addTimeStatistics's, cleanMesh's, quantise's, simplify's, measureLevels's, the spool's and
-/// encodeLog's; not-found (a weight or regions name no field); cancelled. REQUIRES: a mesh that
+/// encodeLog's; not-found (a weight, a unit or regions name no field); cancelled. REQUIRES: a mesh that
 /// checkArrays or readMesh has passed.
 [[nodiscard]] Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options);
 

@@ -153,6 +153,17 @@ Bytes withFirstView(const Bytes& log, const Focus& focus, const Opening& opening
   return parts.together();
 }
 
+/// With a unit of the first field and one of times.
+Bytes withUnits(const Bytes& log, const std::string& unit,
+                std::uint16_t minor = LogIndex::kMinorOfUnits) {
+  testing::TakenApart parts = testing::takeApart(log);
+  Manifest m = manifestOf(parts.index).value();
+  m.units = {{"", "s"}, {m.fields[0].name, unit}};
+  parts.index.manifest = manifestBlock(m).value();
+  parts.index.manifestMinor = minor;
+  return parts.together();
+}
+
 /// With the errors of levels 0, 3, 4, 9 and the last.
 Bytes withSomeErrors(const Bytes& log) {
   testing::TakenApart parts = testing::takeApart(log);
@@ -215,6 +226,9 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
         withFirstView(good, kSomeFocus, Opening{2, 2}));
   write(folder / "bad-value.manifest-opening-cut.qtet",
         withFirstView(good, kSomeFocus, Opening{1, 4}));
+  write(folder / "bad-value.manifest-empty-unit.qtet", withUnits(good, ""));
+  write(folder / "bad-value.manifest-unit-length.qtet", withUnits(good, std::string(65, 'K')));
+  write(folder / "bad-value.manifest-units-of-an-older-version.qtet", withUnits(good, "K", 3));
   write(folder / "bad-value.first-view-in-the-manifest-alone.qtet",
         withFirstView(good, kSomeFocus, kSomeOpening, false));
   // The figures of all levels in the bytes of none.
@@ -408,6 +422,7 @@ int main(int argc, char** argv) {
   qtet::write(folder / "valid" / "first-view.qtet",
               qtet::withFirstView(solid, qtet::kSomeFocus, qtet::kSomeOpening));
   qtet::write(folder / "valid" / "some-errors.qtet", qtet::withSomeErrors(solid));
+  qtet::write(folder / "valid" / "units.qtet", qtet::withUnits(solid, "kg/m^3"));
   qtet::write(folder / "valid" / "tunnel.qtet",
               qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
   qtet::write(

@@ -28,6 +28,14 @@ test('theShownQuantityIsNamedWithItsValue', () => {
   expect(hoverText(pick, {field: 1, component: 1}, kFields)).toMatch(/^v, y 4(\.00?)?$/);
 });
 
+test('theUnitStandsBehindTheValue', () => {
+  const fields = [{...kFields[0]!, unit: 'K'}];
+  expect(hoverText(pickOf([0, [2.5]]), {field: 0, component: -1}, fields)).toMatch(
+    /^p 2\.50?\u00a0K$/,
+  );
+  expect(hoverText(pickOf([0, [NaN]]), {field: 0, component: -1}, fields)).toBe('p no value');
+});
+
 test('aMissingValueIsSaid', () => {
   expect(hoverText(pickOf([0, [NaN]]), {field: 0, component: -1}, kFields)).toBe('p no value');
 });

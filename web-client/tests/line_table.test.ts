@@ -37,6 +37,10 @@ test('eachRowOverTimeIsAnInstantWithItsComponents', async () => {
   const fields = ['u@0', 'u@0.5'].map((name) => ({...info(name, 2), minimum: [0, 0]}));
   markSeries(fields);
   const table = {field: 1, times: [0, 0.5], values: [[1, 2], []]};
+  const inUnits = fields.map((its) => ({...its, unit: 'm/s'}));
+  expect((await timeTableOf(table, inUnits, 'ms').text()).split('\r\n')[0]).toBe(
+    '"time [ms]","u, x [m/s]","u, y [m/s]"',
+  );
   expect((await timeTableOf(table, fields).text()).split('\r\n')).toEqual([
     '"time","u, x","u, y"',
     '0,1,2',

@@ -30,6 +30,7 @@ class CLogInfo(ctypes.Structure):
         ("digest", _text),
         ("source", _text),
         ("generator", _text),
+        ("timeUnit", _text),
     ]
 
 
@@ -45,6 +46,7 @@ class CFieldInfo(ctypes.Structure):
         ("bytes", _u64),
         ("name", _text),
         ("type", _text),
+        ("unit", _text),
     ]
 
 
@@ -85,6 +87,7 @@ class LogInfo:
     digest: str
     source: str
     generator: str
+    timeUnit: str  # "" where it is unknown
 
 
 @dataclass(frozen=True)
@@ -98,6 +101,7 @@ class FieldInfo:
     bytes: int
     name: str
     type: str
+    unit: str  # "" where it is unknown
 
 
 @dataclass(frozen=True)

@@ -114,6 +114,36 @@ TEST(LogManifest, itsOpeningComesBack) {
   }
 }
 
+TEST(LogManifest, itsUnitsComeBack) {
+  Manifest m = sample();
+  m.fields[0].name = "T@0.5", m.fields[1].name = "U [m/s]";
+  m.units = {{"", "s"}, {"T", "K"}};
+  LogIndex index = indexOf(m);
+  index.manifestMinor = minorOf(m);
+  EXPECT_EQ(index.manifestMinor, LogIndex::kMinorOfUnits);
+  const Result<Manifest> read = manifestOf(index);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->units, m.units);
+  EXPECT_EQ(timeUnit(*read), "s");
+  EXPECT_EQ(unitOf(*read, "T@0.5"), "K");
+  EXPECT_EQ(unitOf(*read, "U [m/s]"), "m/s");
+  for (const char* name : {"V", "[K]", " [K]", "T[K]", "T [K] ", "T ]"})
+    EXPECT_EQ(unitOf(*read, name), "") << name;
+  EXPECT_NE(manifestToJson(m).find(R"("unit":"K")"), std::string::npos) << manifestToJson(m);
+  index.manifestMinor = LogIndex::kMinorOfSomeErrors;
+  expectRefused(index, ErrorCode::kBadValue, "does not know");
+  for (const std::size_t bytes :
+       {std::size_t{0}, kMaxUnitBytes + std::size_t{0}, kMaxUnitBytes + std::size_t{1}}) {
+    m.units = {{"T", std::string(bytes, 'K')}};
+    index = indexOf(m);
+    index.manifestMinor = LogIndex::kMinorOfUnits;
+    if (bytes == kMaxUnitBytes)
+      EXPECT_TRUE(manifestOf(index));
+    else
+      expectRefused(index, ErrorCode::kBadValue, "units");
+  }
+}
+
 TEST(LogManifest, aFocusIsABoxThatTheHeaderKnowsOf) {
   Manifest m = sample(false);
   m.focus = {0, 1, 2, 1, 0x8000, 0xffff};

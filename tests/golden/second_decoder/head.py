@@ -102,9 +102,10 @@ class Log:
         self.step, *self.origin = reader.unpack("4d")
         self.infos = [self.read_info(reader, shape) for shape in self.shapes]
         flags = self.flags = reader.u8()
-        refuse_unless(flags < 16 and flags & 9 != 9, "flags of the manifest")
+        refuse_unless(flags < 32 and flags & 9 != 9, "flags of the manifest")
         refuse_unless(flags <= 1 or self.minor >= 2, "a first view in an older version")
-        refuse_unless(flags < 8 or self.minor >= 3, "errors of some levels in an older version")
+        refuse_unless(not flags & 8 or self.minor >= 3, "errors of some levels in an older version")
+        refuse_unless(flags < 16 or self.minor >= 4, "units in an older version")
         six = "6B" if self.misreading == "a focus has six bytes" else "6H"
         self.focus = reader.unpack(six) if flags & 2 else None
         if self.focus:
@@ -114,6 +115,14 @@ class Log:
         if flags & 4:
             field, cut = reader.unpack("BB")
             refuse_unless(field < len(self.shapes) and cut <= 3, "the opening's field or axis")
+        if flags & 16:
+            names, pairs = [], reader.varint()
+            if self.misreading == "units are as many texts as the varint says":
+                pairs //= 2
+            for _ in range(pairs):
+                names.append(reader.text())
+                refuse_unless(1 <= len(reader.text().encode()) <= 64, "a unit's length")
+            refuse_unless(names == sorted(set(names)), "units in another order")
         self.columns = self.columns_of(reader, flags, len(self.shapes))
 
     def read_info(self, reader, shape):

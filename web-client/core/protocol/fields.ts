@@ -30,6 +30,8 @@ export interface FieldInfo {
   isWhole?: boolean;
   /** of the values; of the magnitudes if components > 1; of all instants of a series */
   range: [number, number];
+  /** The manifest's; absent where it has none. */
+  unit?: string;
   /** Only a series' instants have it. */
   instant?: Instant;
 }

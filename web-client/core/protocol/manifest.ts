@@ -2,7 +2,7 @@
 
 import {QtetError} from './errors';
 import type {FieldInfo} from './fields';
-import {markSeries} from './series';
+import {instantName, markSeries} from './series';
 
 /** A mean or rms, and a maximum. */
 export interface Spread {
@@ -47,6 +47,8 @@ export interface Manifest {
   focus?: number[];
   /** The first picture that shows something; absent: the first field on the surface. */
   opening?: Opening;
+  /** By a field's name without @TIME; that of times by ''. Absent without any. */
+  units?: ReadonlyMap<string, string>;
   fields: FieldInfo[];
   levels: LevelInfo[];
   /** How many fields are to come (addLater). */
@@ -67,6 +69,7 @@ const kMajorOfSeries = 3;
 const kMinorAt = 10;
 const kMinorOfFirstView = 2;
 const kMinorOfSomeErrors = 3;
+const kMinorOfUnits = 4;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
@@ -91,6 +94,8 @@ const kAllErrorsFollow = 1;
 const kFocusFollows = 2;
 const kOpeningFollows = 4;
 const kSomeErrorsFollow = 8;
+const kUnitsFollow = 16;
+const kMaxUnitBytes = 64;
 const kNoCut = 3;
 const kShareBytes = 2;
 const kCountColumns = 3;
@@ -159,9 +164,16 @@ export function readManifest(
     throw damaged('has flags that its version does not know');
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
+  const units = flags & kUnitsFollow ? readUnits(reader) : undefined;
   const levels = readLevels(reader.rest(), errors, fields.length, levelColumns);
-  const manifest = {source, lattice, ...(focus && {focus}), ...(opening && {opening})};
-  settle(fields, later, least);
+  const manifest = {
+    source,
+    lattice,
+    ...(units && {units}),
+    ...(focus && {focus}),
+    ...(opening && {opening}),
+  };
+  settle(fields, units, later, least);
   return {...manifest, fields, levels, later};
 }
 
@@ -184,7 +196,7 @@ export function addLater(
   if (!levels[0]!.error && reader.rest().length > 0) throw damaged('has bytes behind its end');
   if (more.some(({error}, level) => !error !== !levels[level]!.error))
     throw damaged('has errors of other levels');
-  settle(fields, 0, least);
+  settle(fields, manifest.units, 0, least);
   // from here on nothing throws
   manifest.fields = fields;
   manifest.later = 0;
@@ -192,9 +204,13 @@ export function addLater(
 }
 
 /** Once the fields are known, `later` more of them to come. */
-function settle(fields: FieldInfo[], later: number, least = 2): void {
+function settle(fields: FieldInfo[], units: Manifest['units'], later: number, least = 2): void {
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
+  for (const info of fields) {
+    const unit = units?.get(instantName(info.name)?.series ?? info.name);
+    if (unit !== undefined) info.unit = unit;
+  }
   markSeries(fields, later > 0 ? 1 : least);
 }
 
@@ -214,12 +230,13 @@ function readLevels(
 
 function knownErrorsOf(flags: number): KnownErrors {
   const both = kAllErrorsFollow | kSomeErrorsFollow;
-  if (flags >= 2 * kSomeErrorsFollow || (flags & both) === both)
+  if (flags >= 2 * kUnitsFollow || (flags & both) === both)
     throw damaged('has flags that this viewer does not know');
   return flags & kSomeErrorsFollow ? 'some' : flags & kAllErrorsFollow ? 'all' : 'none';
 }
 
 function minorOf(flags: number): number {
+  if (flags & kUnitsFollow) return kMinorOfUnits;
   if (flags & kSomeErrorsFollow) return kMinorOfSomeErrors;
   return flags > kAllErrorsFollow ? kMinorOfFirstView : 0;
 }
@@ -234,6 +251,18 @@ function readOpening(reader: ManifestReader, fields: number): Opening {
   if (field >= fields || cut > kNoCut)
     throw damaged('opens with a field or an axis that is not there');
   return {field, cut: cut === kNoCut ? null : cut};
+}
+
+function readUnits(reader: ManifestReader): Map<string, string> {
+  const units = new Map<string, string>();
+  for (let left = reader.varint(); left > 0; --left) {
+    const [name, unit] = [reader.text(), reader.text()];
+    const {length} = new TextEncoder().encode(unit);
+    if (length < 1 || length > kMaxUnitBytes || units.has(name))
+      throw damaged('has a unit that is empty, too long, or there twice');
+    units.set(name, unit);
+  }
+  return units;
 }
 
 /** In shares of the lattice's span in the file. */

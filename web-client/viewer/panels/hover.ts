@@ -6,7 +6,7 @@ import type {FieldInfo} from '../../core/protocol/fields';
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
 import {formatTo, resolutionOf} from '../page/format';
-import {scalarTitle} from './panel';
+import {scalarName} from './panel';
 
 /** So long the pointer has to rest. */
 const kRestMs = 150;
@@ -35,10 +35,10 @@ export function hoverText(
     : component === kMagnitude
       ? Math.hypot(...found)
       : found[component]!;
-  const text = Number.isNaN(value)
-    ? 'no value'
-    : formatTo(value, resolutionOf(fields[scalar.field]!));
-  return `${scalarTitle(scalar, fields)} ${text}`;
+  const info = fields[scalar.field]!;
+  const unit = info.unit === undefined ? '' : `\u00a0${info.unit}`;
+  const text = Number.isNaN(value) ? 'no value' : formatTo(value, resolutionOf(info)) + unit;
+  return `${scalarName(scalar, fields)} ${text}`;
 }
 
 export class Hover {

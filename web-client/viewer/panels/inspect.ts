@@ -239,8 +239,10 @@ export class Inspect {
   private async saveTable(): Promise<void> {
     const {client, manifest} = this.host;
     const {tableOf, timeTableOf} = await import('./probe_plot'); // the plot has loaded it
-    if (this.overTime.isOpen)
-      return save(timeTableOf(this.overTime.table(), manifest!.fields), 'over-time.csv');
+    if (this.overTime.isOpen) {
+      const {fields, units} = manifest!;
+      return save(timeTableOf(this.overTime.table(), fields, units?.get('')), 'over-time.csv');
+    }
     const [from, to] = this.points.map(({lattice}) => lattice);
     const places = await client?.line(from!, to!);
     if (places) save(tableOf(places, manifest!.fields), 'line.csv');

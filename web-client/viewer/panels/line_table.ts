@@ -29,7 +29,11 @@ export interface TimeTable {
 }
 
 /** Each row is an instant: its time, and each component. */
-export function timeTableOf({field, times, values}: TimeTable, infos: readonly FieldInfo[]): Blob {
+export function timeTableOf(
+  {field, times, values}: TimeTable,
+  infos: readonly FieldInfo[],
+  timeUnit?: string,
+): Blob {
   const titles = infos[field]!.minimum.map((_, component) =>
     scalarTitle({field, component}, infos),
   );
@@ -37,7 +41,7 @@ export function timeTableOf({field, times, values}: TimeTable, infos: readonly F
     time,
     ...titles.map((_, component) => values[i]![component] ?? NaN),
   ]);
-  return csvOf([['time', ...titles], ...rows]);
+  return csvOf([[timeUnit ? `time [${timeUnit}]` : 'time', ...titles], ...rows]);
 }
 
 function csvOf(table: (string | number)[][]): Blob {

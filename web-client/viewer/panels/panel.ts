@@ -22,8 +22,15 @@ export interface Panel {
 
 const kAxes = ['x', 'y', 'z'];
 
+/** scalarName, with the unit that the log knows beside it: "Velocity, x [m/s]". */
+export function scalarTitle(scalar: Scalar, fields: readonly FieldInfo[]): string {
+  const {unit} = fields[scalar.field]!;
+  const name = scalarName(scalar, fields);
+  return unit === undefined ? name : `${name} [${unit}]`;
+}
+
 /** "Velocity, x", or "Velocity, magnitude" for a vector without a component. Without a time. */
-export function scalarTitle({field, component}: Scalar, fields: readonly FieldInfo[]): string {
+export function scalarName({field, component}: Scalar, fields: readonly FieldInfo[]): string {
   const info = fields[field]!;
   const twins = fields.filter(({name}) => name === info.name).length > 1;
   const plain = info.instant?.series.replace(/^cell:/, '') ?? info.name;

@@ -155,7 +155,8 @@ export class TimeBar {
     const {text} = this.times[this.seen]!;
     slider.value = String(this.seen);
     slider.setAttribute('aria-valuetext', text);
-    setText(find(this.bar, 'output'), `t = ${text}`);
+    const unit = this.host.mesh.manifest?.units?.get('');
+    setText(find(this.bar, 'output'), `t = ${text}${unit === undefined ? '' : `\u00a0${unit}`}`);
   }
 
   /** The host may change the time at once. */

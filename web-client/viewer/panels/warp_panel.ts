@@ -9,7 +9,7 @@ import type {Attributes} from '../page/page';
 import {fillSelect} from '../page/select';
 import type {Settings} from '../settings/settings';
 import {largestScale, warpFields, warpOf} from '../settings/warp';
-import {scalarTitle, type Panel, type Scene} from './panel';
+import {scalarName, type Panel, type Scene} from './panel';
 
 const kSteps = 400;
 
@@ -63,7 +63,7 @@ export class WarpPanel implements Panel {
     this.body.hidden = warp === null;
     this.restEdges.checked = settings.restEdges;
     if (!warp) return;
-    const titles = usable.map((scalar) => scalarTitle(scalar, fields).replace(/, magnitude$/, ''));
+    const titles = usable.map((scalar) => scalarName(scalar, fields).replace(/, magnitude$/, ''));
     fillSelect(
       this.select,
       this.keys.map((value, i) => ({value, title: titles[i]!})),
