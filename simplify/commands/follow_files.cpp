@@ -38,7 +38,7 @@ class SignalNotice {
   std::array<struct sigaction, kSignals.size()> before_{};
 };
 
-/// What a file looks like from outside; nothing of one that is not there.
+/// How a file looks from outside; nothing of one that is not there.
 struct Sight {
   std::optional<std::filesystem::file_time_type> changed, folderChanged;
   std::uintmax_t bytes = 0;
