@@ -33,7 +33,7 @@ bool hasTime(const std::set<double>& times, double time) {
          (behind != times.begin() && isSameTime(*std::prev(behind), time));
 }
 
-/// What the log has, and what came to it.
+/// The instants that the log has, and those that came to it.
 class KnownInstants {
  public:
   explicit KnownInstants(const Manifest& manifest) {

@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <set>
 
+#include "proto/field_key.h"
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/instant_collection.h"
 #include "simplify/commands/output.h"
 #include "simplify/log/write_mesh.h"
+#include "simplify/mesh/moved_place.h"
 #include "simplify/samples/samples.h"
 
 namespace qtet {
@@ -20,15 +24,54 @@ std::string listOfSamples() {
   return out;
 }
 
+/// What a solver writes at one time: the fields without @TIME, and points that have moved.
+TetMesh stepOf(const TetMesh& mesh, double time) {
+  TetMesh out{mesh.points, mesh.tetrahedra, {}, mesh.pointType};
+  for (const MeshField& field : mesh.fields) {
+    const auto name = instantName(field.name);
+    if (!name || name->time != time) continue;
+    if (name->series == kDisplacement) {
+      for (std::size_t i = 0; i < out.points.size(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          out.points[i][axis] += field.values[3 * i + axis];
+      continue;
+    }
+    out.fields.push_back(field);
+    out.fields.back().name = name->series;
+  }
+  return out;
+}
+
+/// A file for each instant. Returns the bytes of all.
+Result<std::uint64_t> writeSteps(const TetMesh& mesh, const std::filesystem::path& file) {
+  InstantCollection steps(file);
+  std::set<double> times;
+  for (const MeshField& field : mesh.fields) times.insert(instantName(field.name)->time);
+  for (const double time : times)
+    if (Status s = steps.add(time, vtuBytes(stepOf(mesh, time))); !s)
+      return std::unexpected(s.error());
+  if (Status s = steps.finish(); !s) return std::unexpected(s.error());
+  return steps.bytes();
+}
+
+/// Returns the bytes that were written.
+Result<std::uint64_t> writeSample(const TetMesh& mesh, const Output& output) {
+  if (output.file.extension() == ".pvd") return writeSteps(mesh, output.file);
+  const Bytes bytes = vtuBytes(mesh);
+  if (Status s = writeOutput(output, bytes); !s) return std::unexpected(s.error());
+  return bytes.size();
+}
+
 }  // namespace
 
 int runSample(const Words& words, Console& console) {
   namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(),
-                        "required: the .vtu file to write; or - for the standard output")(
+                        "required: the .vtu file to write; with --steps also NAME.pvd, a series "
+                        "with a file a step, whose points move; or - for the standard output")(
       "cells", po::value<double>(),
-      "at least so many tetrahedra, for samples that come in sizes (fin: up to 100,000,000)")(
+      "at least so many tetrahedra, for samples that come in sizes (fin: 2,400 to 100,000,000)")(
       "steps", po::value<int>(),
       ("so many time steps of each field, 2 to " + std::to_string(kMaxSampleInstants) +
        " (fin, beam)")
@@ -36,15 +79,16 @@ int runSample(const Words& words, Console& console) {
   addNoClobber(options);
   const ParsedWords parsed(
       words,
-      {"sample", "sample NAME -o FILE.vtu [--cells N] [--steps N]", listOfSamples(),
+      {"sample", "sample NAME -o FILE.vtu|FILE.pvd [--cells N] [--steps N]", listOfSamples(),
        "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"
-       "  qtet sample fin --steps 40 -o run.vtu\n"
+       "  qtet sample fin --steps 40 -o run.vtu\n  qtet sample fin --cells 5000 --steps 8 -o "
+       "run.pvd\n"
        "  qtet sample beam --steps 40 -o swing.vtu\n"},
       options, {"NAME"});
   if (parsed.helped(console)) return kExitOk;
 
   const Output output = outputOf(parsed, console);
-  if (Status checked = checkOutput(output, ".vtu"); !checked)
+  if (Status checked = checkOutput(output, ".vtu .pvd"); !checked)
     return reportFailure(checked.error(), false, console);
   std::optional<std::uint64_t> cells;
   if (parsed.has("cells")) cells = static_cast<std::uint64_t>(parsed.number("cells", 1, 1e12));
@@ -52,18 +96,18 @@ int runSample(const Words& words, Console& console) {
       parsed.has("steps")
           ? static_cast<std::uint32_t>(parsed.integer("steps", 2, kMaxSampleInstants))
           : 0;
+  if (steps == 0 && output.file.extension() == ".pvd")
+    throw UsageError("a series needs --steps N; or write a .vtu file");
   const Result<TetMesh> mesh = makeSample(parsed.get<std::string>("NAME"), cells, steps);
   if (!mesh) throw UsageError(mesh.error().message);
-  const Bytes bytes = vtuBytes(*mesh);
-  if (Status written = writeOutput(output, bytes); !written)
-    return reportFailure(written.error(), false, console);
-  reportOutput(output,
-               output.name() + ": " +
-                   counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra") + ", " +
-                   counted(mesh->points.size(), "point", "points") + ", " +
-                   counted(mesh->fields.size(), "field", "fields") + ", " + grouped(bytes.size()) +
-                   " bytes\n",
-               console);
+  const Result<std::uint64_t> bytes = writeSample(*mesh, output);
+  if (!bytes) return reportFailure(bytes.error(), false, console);
+  reportOutput(
+      output,
+      output.name() + ": " + counted(mesh->tetrahedra.size(), "tetrahedron", "tetrahedra") + ", " +
+          counted(mesh->points.size(), "point", "points") + ", " +
+          counted(mesh->fields.size(), "field", "fields") + ", " + grouped(*bytes) + " bytes\n",
+      console);
   return kExitOk;
 }
 

@@ -14,7 +14,7 @@
 namespace qtet {
 namespace {
 
-/// How many quads along x and y, along z, and layers; the first size and the shape of all others.
+/// How many quads along x and y, along z, and layers; the usual size and the shape of all others.
 struct Grid {
   VertexId across = 18;
   VertexId up = 16;
@@ -25,7 +25,11 @@ struct Grid {
            (4 * std::uint64_t{up} * across + std::uint64_t{across} * across);
   }
 };
-constexpr double kLayerGrowth = 1.17;  ///< from layer to layer of the first size
+constexpr double kLayerGrowth = 1.17;  ///< from layer to layer of the usual size
+/// That of the fewest layers is less.
+constexpr double kMaxLayerGrowth = 4;
+/// Of the smallest size: with fewer the fin has no edges.
+constexpr VertexId kMinAcross = 4;
 constexpr Position kOuterHalfAxes{4.2, 2.6, 3.4};
 /// The outer shell reaches further downstream than upstream; less than the difference of the half
 /// axes, or shells would cross.
@@ -39,13 +43,15 @@ struct CubeSurface {
 double fourthPower(double x) { return x * x * x * x; }
 
 Grid gridOf(std::uint64_t cells) {
-  constexpr Grid kFirst;
-  Grid grid = kFirst;
-  while (grid.cells() < cells) {
-    ++grid.across;
-    grid.up = (kFirst.up * grid.across + kFirst.across / 2) / kFirst.across;
-    grid.layers = (kFirst.layers * grid.across + kFirst.across / 2) / kFirst.across;
-  }
+  constexpr Grid kUsual;
+  const auto sized = [&](VertexId across) {
+    const auto scaled = [&](VertexId count) {
+      return (count * across + kUsual.across / 2) / kUsual.across;
+    };
+    return Grid{across, scaled(kUsual.up), scaled(kUsual.layers)};
+  };
+  Grid grid = sized(kMinAcross);
+  while (grid.cells() < cells) grid = sized(grid.across + 1);
   return grid;
 }
 
@@ -128,13 +134,13 @@ double power(double x, VertexId n) {
   return out;
 }
 
-/// The growth a layer for which the last layer is as much thicker than the first as in the first
+/// The growth a layer for which the last layer is as much thicker than the first as in the usual
 /// size, by bisection.
 double layerGrowth(const Grid& grid) {
-  constexpr Grid kFirst;
-  if (grid.layers == kFirst.layers) return kLayerGrowth;
-  const double whole = power(kLayerGrowth, kFirst.layers);
-  double low = 1, high = kLayerGrowth;
+  constexpr Grid kUsual;
+  if (grid.layers == kUsual.layers) return kLayerGrowth;
+  const double whole = power(kLayerGrowth, kUsual.layers);
+  double low = 1, high = grid.layers < kUsual.layers ? kMaxLayerGrowth : kLayerGrowth;
   for (int step = 0; step < 60; ++step) {
     const double middle = 0.5 * (low + high);
     (power(middle, grid.layers) < whole ? low : high) = middle;

@@ -10,8 +10,8 @@ constexpr std::array<Sample, 6> kSamples{{
     {"box", "the unit cube, 3,072 tetrahedra, one scalar field",
      [](std::uint64_t) { return boxSample(); }, kBoxCells, kBoxCells},
     {"fin",
-     "supersonic flow round a swept fin, 212,544 tetrahedra or more, density, pressure and "
-     "velocity",
+     "supersonic flow round a swept fin, 212,544 tetrahedra, fewer or more, density, pressure "
+     "and velocity",
      finSample, kFinCells, kMaxSampleCells, finSeries},
     {"beam", "a loaded cantilever, 67,200 tetrahedra, stress and displacement",
      [](std::uint64_t) { return beamSample(); }, kBeamCells, kBeamCells,

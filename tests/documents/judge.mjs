@@ -11,6 +11,9 @@ import {Scratch} from './scratch.mjs';
 /** Folders without documents of ours. */
 const kNoDocuments = ['build', 'dist', 'node_modules'];
 
+/** Says of a document that its examples make their files themselves. */
+const kOwnFiles = '<!-- examples: in an empty folder -->';
+
 /** The paths of all documents below a folder, relative to it. */
 export function documentsIn(root, below = '') {
   return readdirSync(join(root, below), {withFileTypes: true})
@@ -48,7 +51,8 @@ async function judgeBlocks(document, text, context) {
   }
   if (blocks.every(({language}) => language === 'text')) return blocks.map(judgeText);
   const folder = join(context.out, document.replace(/[^A-Za-z0-9]+/g, '-'));
-  const scratch = await Scratch.create({...context, folder});
+  const inputs = text.includes(kOwnFiles) ? null : context.inputs;
+  const scratch = await Scratch.create({...context, inputs, folder});
   writeSource(blocks, scratch);
   try {
     return blocks.map((block) => judgeBlock(block, {...context, scratch}));

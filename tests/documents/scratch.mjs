@@ -77,10 +77,10 @@ function withFields(folder, file, names) {
 export class Scratch {
   #environment;
 
-  /** `build`: the folder of the build; `inputs`: what makeInputs has made. */
+  /** `build`: the folder of the build; `inputs`: what makeInputs has made, or null. */
   static async create({root, build, inputs, folder}) {
     rmSync(folder, {recursive: true, force: true});
-    cpSync(inputs, folder, {recursive: true});
+    if (inputs) cpSync(inputs, folder, {recursive: true});
     for (const own of ['build/release/bin', 'tmp', 'opt']) {
       mkdirSync(join(folder, own), {recursive: true});
     }

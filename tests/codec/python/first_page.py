@@ -63,7 +63,7 @@ def run(notebook):
     from qtet import tool
 
     with tempfile.TemporaryDirectory() as folder:
-        tool.run(["sample", "fin", "--cells", "20000", "-o", f"{folder}/part.vtu"])
+        tool.run(["sample", "fin", "-o", f"{folder}/part.vtu"])
         node = nbformat.reads(json.dumps(notebook), as_version=4)
         client = nbclient.NotebookClient(
             node,

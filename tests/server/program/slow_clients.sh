@@ -9,7 +9,7 @@ command -v slowhttptest > /dev/null && command -v curl > /dev/null || {
   exit 77
 }
 rm -rf "$out" && mkdir -p "$out/logs"
-"$bin/qtet" sample fin --cells 20000 -o "$out/fin.vtu" > /dev/null
+"$bin/qtet" sample fin -o "$out/fin.vtu" > /dev/null
 "$bin/qtet" simplify "$out/fin.vtu" -o "$out/logs/fin.qtet" > /dev/null 2>&1
 token=aSecretOfTwentyTwoChars
 echo "write * $token" > "$out/tokens"

@@ -139,7 +139,15 @@ TEST(Samples, theFinComesInSizes) {
   ASSERT_TRUE(report);
   EXPECT_EQ(report->invertedCells.count + report->flatCells.count + report->nonManifoldEdges.count,
             0u);
-  EXPECT_EQ(makeSample("fin", 1000)->tetrahedra.size(), kFinCells) << "at least so many";
+  EXPECT_EQ(makeSample("fin", kFinCells - 1)->tetrahedra.size(), kFinCells) << "at least so many";
+  for (const std::uint64_t cells : {1u, 2400u, 2401u, 10000u, 50000u}) {
+    TetMesh mesh = makeSample("fin", cells).value();
+    EXPECT_GE(mesh.tetrahedra.size(), cells);
+    EXPECT_LE(mesh.tetrahedra.size(), std::max<std::uint64_t>(2400, 2 * cells));
+    const CleanReport report = cleanMesh(mesh).value();
+    EXPECT_EQ(report.flatCells.count + report.invertedCells.count, 0u) << cells;
+    EXPECT_EQ(report.components, 1u);
+  }
   EXPECT_EQ(makeSample("fin", kMaxSampleCells + 1).error().code, ErrorCode::kBadValue);
   EXPECT_EQ(makeSample("box", 4000).error().code, ErrorCode::kBadValue);
 }
