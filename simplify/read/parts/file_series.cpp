@@ -79,9 +79,8 @@ Result<std::vector<SeriesStep>> stepsOfSeries(std::vector<SeriesEntry> entries,
     repeated.push_back(step.time);
   }
   if (leftOut > 0)
-    notes.push_back(std::to_string(leftOut) +
-                    " of its data sets were left out: later ones in the list have the same time, " +
-                    shownTimes(repeated));
+    notes.push_back("data sets left out, because later ones in the list have the same time: " +
+                    std::to_string(leftOut) + ", at time " + shownTimes(repeated));
   return out;
 }
 

@@ -28,7 +28,7 @@ void setTypes(const SeriesReport& series, std::vector<MeshField>& fields);
                                ReadReport& report);
 
 /// Refuses a window whose values the types of `known` do not hold, or whose points are the first to
-/// move: what is coded already cannot change. Errors: bad-input.
+/// move. Windows that are coded already cannot change. Errors: bad-input.
 [[nodiscard]] Status checkWindow(const SeriesReport& window, const std::filesystem::path& path,
                                  const SeriesReport& known);
 

@@ -22,9 +22,9 @@ class StepOrder {
   /// cells, and is left as it was.
   [[nodiscard]] bool restore(CellMesh& step);
 
-  /// Whether the points of the step are those of the first one in another order, while its cells
-  /// name the same numbers: its cells are torn. A body that turns into itself keeps its edges'
-  /// lengths, and is none. REQUIRES: as many points, and haveSameCells.
+  /// Whether the step's points are those of the first one in another order, while its cells name
+  /// the same numbers. Its cells are torn then. A body that turns into itself keeps its edges'
+  /// lengths, and is not torn. REQUIRES: as many points, and haveSameCells.
   [[nodiscard]] bool isTorn(const CellMesh& step);
 
  private:

@@ -206,10 +206,8 @@ Status XdmfFile::addCollection(const XmlElement& collection, std::map<double, St
   for (const auto& [time, ofTime] : grids)
     for (const XmlElement* grid : ofTime) addGrid(*grid, steps[time]);
   if (leftOut > 0)
-    notes_.push_back(
-        std::to_string(leftOut) +
-        " of its grids were left out: later ones of their series have the same time, " +
-        shownTimes(repeated));
+    notes_.push_back("grids left out, because later ones of their series have the same time: " +
+                     std::to_string(leftOut) + ", at time " + shownTimes(repeated));
   return {};
 }
 

@@ -64,8 +64,8 @@ TEST(FileSeries, ofOneTimeTheLastDataSetCounts) {
   EXPECT_EQ(steps.times, (std::vector<double>{0, 1, 2, 3}));
   EXPECT_EQ(steps.files, (std::vector<std::string>{"a", "d", "e", "f"}));
   EXPECT_EQ(steps.notes,
-            std::vector<std::string>{"2 of its data sets were left out: later ones in the list "
-                                     "have the same time, 1, 2"});
+            std::vector<std::string>{"data sets left out, because later ones in the list have "
+                                     "the same time: 2, at time 1, 2"});
 }
 
 TEST(FileSeries, partsOfOneTimeAreOneMesh) {
@@ -167,8 +167,8 @@ TEST(FileSeries, aRestartedRunIsReadOnce) {
     EXPECT_EQ(read->mesh.fields[1].name, "T@1");
     EXPECT_EQ(read->mesh.fields[1].values.front(), 3);
     EXPECT_EQ(read->report.notes,
-              std::vector<std::string>{"1 of its data sets were left out: later ones in the list "
-                                       "have the same time, 1"});
+              std::vector<std::string>{"data sets left out, because later ones in the list "
+                                       "have the same time: 1, at time 1"});
   }
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/read_segments.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/read/steps/step_files.h"
@@ -118,6 +119,19 @@ TEST(StepOrder, aBodyThatTurnsIntoItselfMoves) {
   const Result<ReadMesh> read = readSeries({wheel(0), wheel(1)});
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->report.motion, "Displacement");
+}
+
+TEST(StepOrder, anotherOrderBeginsNoOtherRunOfSteps) {
+  TetMesh other = restMesh();
+  other.tetrahedra[1] = {0, 2, 3, 4};
+  ReadOptions options;
+  options.time = "all";
+  std::vector<std::string> notes;
+  const auto runs = segmentTimes(
+      seriesOf({restMesh(), renumbered(restMesh(), {3, 0, 4, 1, 2}), restMesh(), other, other}),
+      options, [](double) {}, notes);
+  ASSERT_TRUE(runs) << runs.error().message;
+  EXPECT_EQ(*runs, (std::vector<std::vector<double>>{{0, 1, 2}, {3, 4}}));
 }
 
 TEST(StepOrder, pointsThatShareAPlaceKeepTheirNumbers) {

@@ -30,8 +30,8 @@ TEST(ReadXdmf, ofOneTimeTheLastGridOfASeriesCounts) {
   ASSERT_TRUE(file) << file.error().message;
   ASSERT_EQ(file->times(), (std::vector<double>{0, 1}));
   EXPECT_EQ(file->notes(),
-            std::vector<std::string>{"1 of its grids were left out: later ones of their series "
-                                     "have the same time, 1"});
+            std::vector<std::string>{"grids left out, because later ones of their series have "
+                                     "the same time: 1, at time 1"});
   ReadReport report;
   const Result<CellMesh> mesh = file->read(1, std::nullopt, report);
   ASSERT_TRUE(mesh) << mesh.error().message;
