@@ -1,4 +1,4 @@
-// What the steps of a file have in common, and where they differ.
+// The report on several steps of a file: fields, types, motion.
 #pragma once
 
 #include <cstdint>
