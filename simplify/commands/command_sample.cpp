@@ -24,7 +24,7 @@ std::string listOfSamples() {
   return out;
 }
 
-/// What a solver writes at one time: the fields without @TIME, and points that have moved.
+/// One step as a solver writes it: the fields without @TIME, and points that have moved.
 TetMesh stepOf(const TetMesh& mesh, double time) {
   TetMesh out{mesh.points, mesh.tetrahedra, {}, mesh.pointType};
   for (const MeshField& field : mesh.fields) {

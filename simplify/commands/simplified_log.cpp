@@ -17,7 +17,6 @@
 #include "simplify/pipeline/series_pipeline.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_times.h"
-#include "simplify/read/steps/step_reports.h"
 #include "simplify/series/series.h"
 
 namespace qtet {
@@ -198,17 +197,14 @@ Result<Made> makeInWindows(const SimplifyRequest& request, const std::vector<dou
   const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
     std::vector<double> some;
     for (const std::size_t step : steps) some.push_back(times[step]);
-    Result<ReadMesh> window = readTimes(request.input, reading, some, times.front());
-    if (!window) return std::unexpected(window.error());
-    if (request.read.weld && !window->report.motion.empty())
+    Result<TetMesh> window = readWindow(request.input, reading, some, times.front(), report);
+    if (window && request.read.weld && !report.motion.empty())
       return fail(ErrorCode::kBadValue,
                   request.input +
                       ": its points move, and so many steps cannot be welded: which "
                       "points stay together is known of a few steps at a time; leave "
                       "out `weld`, or choose fewer steps with `time`");
-    addNew(report.notes, window->report.notes);
-    report = std::move(window->report);
-    return std::move(window->mesh);
+    return window;
   };
   Result<TetMesh> sample = read(sampledSteps(times.size()));
   if (!sample) return std::unexpected(sample.error());

@@ -1,10 +1,12 @@
 #include "simplify/read/read_segments.h"
 
+#include <optional>
 #include <utility>
 
 #include "proto/number_text.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/steps/join_blocks.h"
+#include "simplify/read/steps/step_order.h"
 
 namespace qtet {
 namespace {
@@ -33,14 +35,18 @@ Result<std::vector<std::vector<double>>> segmentTimes(const std::filesystem::pat
   if (times.empty()) return out;
   const auto steps = chosenSteps(times, options.time, path, notes);
   if (!steps) return std::unexpected(steps.error());
-  CellMesh last;
+  CellMesh rest;  // of the run; joinSteps compares its steps with the first, too
+  std::optional<StepOrder> order;
   for (const std::size_t step : *steps) {
     Result<CellMesh> mesh = step == 0 ? std::exchange(first, CellMesh())
                                       : readStep(path, options, shortestText(times[step]), report);
     if (!mesh) return std::unexpected(mesh.error());
-    if (out.empty() || !haveSameCells(last, *mesh)) out.emplace_back();
+    if (!order || (!haveSameCells(rest, *mesh) && !order->restore(*mesh))) {
+      out.emplace_back();
+      rest = std::move(*mesh);
+      order.emplace(rest);
+    }
     out.back().push_back(times[step]);
-    last = std::move(*mesh);
     progress(static_cast<double>(step + 1) / static_cast<double>(steps->back() + 1));
   }
   return out;

@@ -1,6 +1,8 @@
 #include "simplify/read/read_steps.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <span>
 
 #include "proto/number_text.h"
@@ -51,6 +53,7 @@ Result<std::vector<TimedCells>> readXdmf(const std::filesystem::path& path,
                                          const ReadOptions& options, ReadReport& report) {
   Result<XdmfFile> file = XdmfFile::open(path);
   if (!file) return std::unexpected(file.error());
+  std::ranges::copy(file->notes(), std::back_inserter(report.notes));
   return readChosen(file->times(), path, options, report,
                     [&](std::size_t step, ReadReport& ofStep) {
                       return file->read(step, options.fields, ofStep);
@@ -72,8 +75,13 @@ Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& pa
   const Result<VtuDocument> document = readVtuDocument(*file);
   if (!document) return std::unexpected(document.error());
   if (document->hasTimeSteps) return readByVtk(path, MeshFormat::kVtu, options, report);
-  const auto time = readVtuTime(*file, *document);
+  auto time = readVtuTime(*file, *document);
   if (!time) return std::unexpected(time.error());
+  if (*time && !std::isfinite(**time)) {
+    report.notes.push_back("its TimeValue is " + shortestText(**time) +
+                           ", which is no time, and was ignored");
+    time->reset();
+  }
   std::vector<double> times;
   if (*time) times.push_back(**time);
   if (const auto steps = chosenSteps(times, options.time, path, report.notes); !steps)
@@ -155,28 +163,13 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, Me
                                            const ReadOptions& options, ReadReport& report) {
   const auto entries = format == MeshFormat::kPvd ? entriesOfPvd(path) : entriesOfJson(path);
   if (!entries) return std::unexpected(entries.error());
+  const auto all = stepsOfSeries(*entries, path, report.notes);
+  if (!all) return std::unexpected(all.error());
   std::vector<double> times;
-  std::vector<std::size_t> begins;
-  for (std::size_t i = 0; i < entries->size(); ++i) {
-    if (!times.empty() && times.back() == (*entries)[i].time) continue;
-    times.push_back((*entries)[i].time);
-    begins.push_back(i);
-  }
-  begins.push_back(entries->size());
-  const auto steps = chosenSteps(times, options.time, path, report.notes);
-  if (!steps) return std::unexpected(steps.error());
-  report.times = times;
-  std::vector<TimedCells> out;
-  for (const std::size_t s : *steps) {
-    ReadReport step;
-    std::vector<std::filesystem::path> parts;
-    for (std::size_t i = begins[s]; i < begins[s + 1]; ++i) parts.push_back((*entries)[i].file);
-    Result<CellMesh> cells = cellsOfParts(parts, path, options, step, 0);
-    if (!cells) return std::unexpected(cells.error());
-    addStep(std::move(step), s == steps->front(), report);
-    out.push_back({shortestText(times[s]), std::move(*cells)});
-  }
-  return out;
+  for (const SeriesStep& step : *all) times.push_back(step.time);
+  return readChosen(times, path, options, report, [&](std::size_t step, ReadReport& ofStep) {
+    return cellsOfParts((*all)[step].files, path, options, ofStep, 0);
+  });
 }
 
 Result<std::vector<TimedCells>> readExodusPieces(const std::filesystem::path& path,

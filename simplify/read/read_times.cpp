@@ -8,7 +8,7 @@
 #include "proto/number_text.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
-#include "simplify/read/steps/step_reports.h"
+#include "simplify/read/steps/series_notes.h"
 
 namespace qtet {
 
@@ -57,6 +57,22 @@ Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions&
   return out;
 }
 
+Result<TetMesh> readWindow(const std::filesystem::path& path, const ReadOptions& options,
+                           std::span<const double> times, double rest, ReadReport& report) {
+  Result<ReadMesh> window = readTimes(path, options, times, rest);
+  if (!window) return std::unexpected(window.error());
+  if (report.series.times.empty()) {
+    report = std::move(window->report);
+  } else {
+    if (Status known = checkWindow(window->report.series, path, report.series); !known)
+      return std::unexpected(known.error());
+    if (Status added = addWindow(std::move(window->report), path, report); !added)
+      return std::unexpected(added.error());
+  }
+  setTypes(report.series, window->mesh.fields);
+  return std::move(window->mesh);
+}
+
 Result<ReadMesh> readTimesInParts(const std::filesystem::path& path, const ReadOptions& options,
                                   std::span<const double> times, std::size_t atOnce) {
   const auto part = [&](std::size_t at) {
@@ -74,8 +90,10 @@ Result<ReadMesh> readTimesInParts(const std::filesystem::path& path, const ReadO
         (!moves && !more->report.motion.empty()))
       return readTimes(path, options, times);
     std::ranges::move(more->mesh.fields, std::back_inserter(out->mesh.fields));
-    addNew(more->report.notes, out->report.notes);
+    if (Status added = addWindow(std::move(more->report), path, out->report); !added)
+      return std::unexpected(added.error());
   }
+  if (out) setTypes(out->report.series, out->mesh.fields);
   return out;
 }
 

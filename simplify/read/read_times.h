@@ -30,8 +30,15 @@ struct ChosenTimes {
                                          const ReadOptions& options, std::span<const double> times,
                                          std::optional<double> rest = std::nullopt);
 
-/// The same, `atOnce` steps at a time, or all at once where points begin to move behind the first
-/// so many. The first step is that of rest. REQUIRES: one time at least.
+/// The same for the next window of a long series, whose earlier windows are coded already. `report`
+/// is on all windows so far, empty before the first. Instants have the types that it knows. Errors:
+/// readMesh's, checkWindow's, addWindow's.
+[[nodiscard]] Result<TetMesh> readWindow(const std::filesystem::path& path,
+                                         const ReadOptions& options, std::span<const double> times,
+                                         double rest, ReadReport& report);
+
+/// As readTimes, `atOnce` steps at a time, or all at once where points begin to move behind the
+/// first so many. The first step is that of rest. REQUIRES: one time at least.
 [[nodiscard]] Result<ReadMesh> readTimesInParts(const std::filesystem::path& path,
                                                 const ReadOptions& options,
                                                 std::span<const double> times, std::size_t atOnce);

@@ -28,7 +28,7 @@ struct Grid {
 constexpr double kLayerGrowth = 1.17;  ///< from layer to layer of the usual size
 /// That of the fewest layers is less.
 constexpr double kMaxLayerGrowth = 4;
-/// Of the smallest size: with fewer the fin has no edges.
+/// The smallest size: with fewer the fin has no edges.
 constexpr VertexId kMinAcross = 4;
 constexpr Position kOuterHalfAxes{4.2, 2.6, 3.4};
 /// The outer shell reaches further downstream than upstream; less than the difference of the half

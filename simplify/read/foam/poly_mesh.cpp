@@ -1,13 +1,13 @@
 #include "simplify/read/foam/poly_mesh.h"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "simplify/mesh/split_mix64.h"
 #include "simplify/read/foam/foam_list.h"
+#include "simplify/read/options/time_text.h"
 
 namespace qtet {
 namespace {
@@ -102,12 +102,6 @@ Result<std::uint64_t> checkPolyMesh(const fs::path& folder, std::chrono::seconds
   return open.size();
 }
 
-bool isTime(const std::string& name) {
-  double time = 0;
-  const auto read = std::from_chars(name.data(), name.data() + name.size(), time);
-  return read.ec == std::errc{} && read.ptr == name.data() + name.size();
-}
-
 /// The meshes in a folder of the case and in the folders of its regions. A folder polyMesh that has
 /// points alone says where a mesh has moved.
 void addMeshes(const fs::path& folder, std::vector<fs::path>& out) {
@@ -129,7 +123,7 @@ Result<std::optional<std::uint64_t>> checkPolyMeshes(const fs::path& folder,
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
-    if ((name == "constant" || isTime(name)) && entry.is_directory(code))
+    if ((name == "constant" || plainTime(name)) && entry.is_directory(code))
       addMeshes(entry.path(), meshes);
   }
   if (meshes.empty())

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "simplify/read/options/series_report.h"
 #include "simplify/split/split_cells.h"
 
 namespace qtet {
@@ -64,6 +65,7 @@ struct ReadReport {
   /// All that the file has, ascending; empty: it has none, or its reader takes all steps at once.
   std::vector<double> times;
   std::string motion{};            ///< of moving points: the series that has how far (joinSteps)
+  SeriesReport series{};           ///< on all steps that were read as one mesh
   std::vector<std::string> notes;  ///< also VTK's warnings
 };
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <set>
 
 #include "simplify/read/options/bad_file.h"
+#include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/xml_tree.h"
 
 namespace qtet {
@@ -38,25 +39,55 @@ void addBlockFiles(const XmlElement& element, const std::filesystem::path& path,
   }
 }
 
+/// A text in which the parts of one time differ.
+std::string partOf(const XmlElement& dataSet) {
+  std::string out;
+  for (const char* key : {"part", "group", "name"})
+    out += std::string(dataSet.attribute(key)) + '\n';
+  return out;
+}
+
+/// The time of a list's entry. Without one it is 0 if it is `alone`: the list's only time.
+Result<double> timeOf(const XmlElement& dataSet, int number, bool alone,
+                      const std::filesystem::path& path) {
+  const auto found = dataSet.attributes.find("timestep");
+  const std::string which = "its <DataSet> number " + std::to_string(number);
+  if (found == dataSet.attributes.end()) {
+    if (alone) return 0.0;
+    return badFile(path, which + " has no timestep; give each one its time, a number such as 0.5");
+  }
+  if (const auto time = timeIn(found->second)) return *time;
+  return badFile(path, which + " has the timestep \"" + found->second +
+                           "\", which is no number; give it its time, a number such as 0.5");
+}
+
+/// Whether no entry has a time, and each is another part: one mesh in parts.
+bool isOneTime(const XmlElement& collection) {
+  std::set<std::string> parts;
+  return std::ranges::all_of(collection.children, [&](const auto& element) {
+    return !element->attributes.contains("timestep") && parts.insert(partOf(*element)).second;
+  });
+}
+
 }  // namespace
 
 Result<std::vector<SeriesEntry>> entriesOfPvd(const std::filesystem::path& path) {
   std::unique_ptr<XmlElement> tree;
   const Result<const XmlElement*> collection = listIn(path, "Collection", tree);
   if (!collection) return std::unexpected(collection.error());
+  const bool alone = isOneTime(**collection);
   std::vector<SeriesEntry> entries;
   for (const auto& element : (*collection)->children) {
     const auto number = static_cast<int>(entries.size());
-    const std::string_view file = element->attribute("file"), time = element->attribute("timestep");
+    const std::string_view file = element->attribute("file");
     if (file.empty())
       return badFile(path, "its <DataSet> number " + std::to_string(number) +
                                " names no file; save the series again");
-    SeriesEntry entry{0, number, path.parent_path() / file};
-    std::from_chars(time.data(), time.data() + time.size(), entry.time);
-    entries.push_back(std::move(entry));
+    const Result<double> time = timeOf(*element, number, alone, path);
+    if (!time) return std::unexpected(time.error());
+    entries.push_back({*time, number, path.parent_path() / file, partOf(*element)});
   }
   if (entries.empty()) return badFile(path, "its <Collection> is empty; save the series again");
-  sortByTime(entries);
   return entries;
 }
 

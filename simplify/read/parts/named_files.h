@@ -10,8 +10,9 @@
 
 namespace qtet {
 
-/// Those of a .pvd file, by time. Errors: those of readXml; bad-input (no list, or an entry without
-/// a file).
+/// Those of a .pvd file, in its order. Its attributes part, group and name tell parts of one time
+/// from one another. Errors: those of readXml; bad-input (no list; an entry without a file, or
+/// whose time is none). A time may be left out where no entry has one, and each is another part.
 [[nodiscard]] Result<std::vector<SeriesEntry>> entriesOfPvd(const std::filesystem::path& path);
 
 /// The Source of each Piece that a summary names. Errors: those of readXml; bad-input (no piece, or

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "simplify/read/options/time_text.h"
+
 namespace qtet {
 namespace {
 
@@ -28,10 +30,7 @@ std::set<std::string> timesIn(const fs::path& folder) {
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
-    double time = 0;
-    const auto read = std::from_chars(name.data(), name.data() + name.size(), time);
-    if (read.ec == std::errc{} && read.ptr == name.data() + name.size() && entry.is_directory(code))
-      out.insert(name);
+    if (plainTime(name) && entry.is_directory(code)) out.insert(name);
   }
   return out;
 }

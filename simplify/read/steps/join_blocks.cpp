@@ -1,17 +1,20 @@
 #include "simplify/read/steps/join_blocks.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 
-#include "codec/coding/number_type.h"
+#include "simplify/read/options/bad_file.h"
 #include "simplify/read/options/select_fields.h"
+#include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/join_pieces.h"
 #include "simplify/read/parts/near_points.h"
+#include "simplify/read/steps/common_type.h"
 #include "simplify/read/steps/moving_points.h"
+#include "simplify/read/steps/series_notes.h"
+#include "simplify/read/steps/step_order.h"
 
 namespace qtet {
 namespace {
@@ -21,22 +24,6 @@ const MeshField* find(const CellMesh& mesh, const MeshField& like) {
     if (field.name == like.name && field.association == like.association) return &field;
   }
   return nullptr;
-}
-
-/// The narrowest type that holds the values of both. A float32 holds integers of 16 bits exactly, a
-/// float64 and an int64 all that a mesh may hold (kMaxExactInteger).
-std::string commonType(const std::string& a, const std::string& b) {
-  const std::uint64_t bytesOfA = numberType(a).sizeBytes, bytesOfB = numberType(b).sizeBytes;
-  const bool isFloatA = isFloatType(a), isFloatB = isFloatType(b);
-  if (isFloatA != isFloatB) {
-    const std::uint64_t bytesOfInteger = isFloatA ? bytesOfB : bytesOfA;
-    return bytesOfInteger > 2 ? "float64" : isFloatA ? a : b;
-  }
-  const bool isUnsignedA = a.starts_with('u'), isUnsignedB = b.starts_with('u');
-  if (isUnsignedA == isUnsignedB) return bytesOfA >= bytesOfB ? a : b;
-  const std::uint64_t bytes =
-      isUnsignedA ? std::max(2 * bytesOfA, bytesOfB) : std::max(bytesOfA, 2 * bytesOfB);
-  return "int" + std::to_string(8 * std::min<std::uint64_t>(bytes, 8));
 }
 
 /// The field of all blocks, without values. Its name is empty if blocks differ in its components,
@@ -156,6 +143,8 @@ std::string sizeOf(const CellMesh& mesh) {
          " cells";
 }
 
+double timeOf(const TimedCells& step) { return plainTime(step.time).value_or(0); }
+
 /// Refuses a step whose cells are not those of the first one.
 Status checkSameCells(const TimedCells& first, const TimedCells& step,
                       const std::filesystem::path& path, const ReadReport& report) {
@@ -174,69 +163,60 @@ Status checkSameCells(const TimedCells& first, const TimedCells& step,
                        : ""));
 }
 
-/// Four digits of it.
-std::string shortText(double x) {
-  std::array<char, 32> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, 4);
-  return {text.data(), end.ptr};
+/// Puts a step into the order of the first one. Refuses one with other cells.
+Status putInOrder(const TimedCells& first, TimedCells& step, const std::filesystem::path& path,
+                  StepOrder& order, ReadReport& report) {
+  if (!haveSameCells(step.cells, first.cells) && order.restore(step.cells))
+    report.series.reordered.insert(timeOf(step));
+  if (Status same = checkSameCells(first, step, path, report); !same) return same;
+  if (!areSamePoints(first.cells.points, step.cells.points) && order.isTorn(step.cells))
+    return badFile(path, "the points at time " + step.time + " are those of time " + first.time +
+                             " in another order, but its cells name the same numbers, so they "
+                             "would be torn; write points and cells of all steps in one order");
+  return {};
 }
 
 /// Makes fields of points that move over the steps of a file.
 class Motion {
  public:
   /// REQUIRES: steps of the same cells.
-  Motion(std::span<const TimedCells> steps, const FieldNames& names, bool moves)
-      : steps_(steps.size()) {
+  Motion(std::span<const TimedCells> steps, const FieldNames& names, bool moves) {
     const CellMesh& rest = steps.front().cells;
-    const auto isElsewhere = [&](const TimedCells& step) {
-      return !areSamePoints(rest.points, step.cells.points);
-    };
-    moves_ = moves || std::ranges::any_of(steps, isElsewhere);
+    for (const TimedCells& step : steps)
+      if (!areSamePoints(rest.points, step.cells.points)) report_.moved.insert(timeOf(step));
+    moves_ = moves || !report_.moved.empty();
     if (!moves_) return;
-    name_ = displacementName(rest);
+    report_.field = displacementName(rest);
+    report_.rest = timeOf(steps.front());
     type_ = "float32";
     for (const TimedCells& step : steps)
       if (displacementType(rest, step.cells) != type_) type_ = "float64";
-    isWanted_ = std::ranges::any_of(steps, [&](const TimedCells& step) {
-      return isMeant(names, "point", name_ + "@" + step.time);
+    report_.isRead = std::ranges::any_of(steps, [&](const TimedCells& step) {
+      return isMeant(names, "point", report_.field + "@" + step.time);
     });
   }
 
   /// Adds the step's field without a time.
   Status addTo(std::vector<MeshField>& fields, const CellMesh& rest, const CellMesh& step) {
-    if (!moves_ || !isWanted_) return {};
+    if (!moves_ || !report_.isRead) return {};
     Result<MeshField> field = displacementOf(rest, step.points, type_);
     if (!field) return std::unexpected(field.error());
-    field->name = name_;
-    largest_ = std::max(largest_, largestDisplacement(*field));
+    field->name = report_.field;
+    report_.largest = std::max(report_.largest, largestDisplacement(*field));
     fields.push_back(std::move(*field));
     return {};
   }
 
-  void tell(const std::string& restTime, ReadReport& report) const {
+  void tell(ReadReport& report) const {
     if (!moves_) return;
-    const std::string moves = "the points move over its " + std::to_string(steps_) + " steps; ";
-    if (!isWanted_) {
-      report.notes.push_back(moves + "the mesh of time " + restTime +
-                             " stands for all of them, and `fields` " + name_ +
-                             " would say how far they move");
-      return;
-    }
-    report.motion = name_;
-    report.notes.push_back(
-        moves + "the mesh is that of time " + restTime + ", and the point field " + name_ +
-        " has how far they are from there, at most " + shortText(largest_) +
-        (name_ == kDisplacement
-             ? ""
-             : "; the file has a field " + std::string(kDisplacement) + " of its own"));
+    report.series.motion = report_;
+    if (report_.isRead) report.motion = report_.field;
   }
 
  private:
-  std::size_t steps_;
-  bool moves_ = false, isWanted_ = false;
-  std::string name_, type_;
-  double largest_ = 0;
+  bool moves_ = false;
+  std::string type_;
+  MotionReport report_;
 };
 
 }  // namespace
@@ -289,9 +269,12 @@ CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& r
 
 Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem::path& path,
                            const FieldNames& names, ReadReport& report, bool moves) {
-  for (const TimedCells& step : steps)
-    if (Status same = checkSameCells(steps.front(), step, path, report); !same)
-      return std::unexpected(same.error());
+  StepOrder order(steps.front().cells);
+  for (TimedCells& step : steps) {
+    report.series.times.insert(timeOf(step));
+    if (Status ordered = putInOrder(steps.front(), step, path, order, report); !ordered)
+      return std::unexpected(ordered.error());
+  }
   Motion motion(steps, names, moves);
   CellMesh& rest = steps.front().cells;
   std::vector<MeshField> fields;
@@ -306,7 +289,11 @@ Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem:
     }
     if (&step != &steps.front()) step.cells = {};
   }
-  motion.tell(steps.front().time, report);
+  motion.tell(report);
+  if (Status added = addInstants(fields, path, report.series); !added)
+    return std::unexpected(added.error());
+  setTypes(report.series, fields);
+  std::ranges::move(seriesNotes(report.series), std::back_inserter(report.notes));
   rest.fields = std::move(fields);
   return std::move(rest);
 }

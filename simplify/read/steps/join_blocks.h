@@ -23,12 +23,15 @@ namespace qtet {
 /// change.
 [[nodiscard]] bool haveSameCells(const CellMesh& a, const CellMesh& b);
 
-/// The first step's mesh with every step's fields, called NAME@TIME. If the points of a later step
-/// lie elsewhere, every step gets the point field displacementName (moving_points.h). It says how
-/// far they are from those of the first step. With `moves` those of some other step lie elsewhere.
-/// The field is left out unless `names` means it. The report's notes and its `motion` say so.
-/// Errors: bad-input where a step has other cells than the first, another number of points, or a
-/// point of a cell that is not finite.
+/// The first step's mesh with every step's fields, called NAME@TIME. A step whose points or cells
+/// stand in another order is put into that of the first (step_order.h). The instants of a field
+/// take the narrowest type that holds all values. If the points of a later step lie elsewhere,
+/// every step gets the point field displacementName (moving_points.h). It says how far they are
+/// from those of the first step. With `moves` those of some other step lie elsewhere. The field is
+/// left out unless `names` means it. The report's notes, its `series` and its `motion` say so.
+/// Errors: bad-input where a step has other cells than the first, or another number of points. The
+/// same where its points stand in another order than its cells know, or one of a cell is not
+/// finite. Also where a field has other components at some steps.
 [[nodiscard]] Result<CellMesh> joinSteps(std::vector<TimedCells> steps,
                                          const std::filesystem::path& path, const FieldNames& names,
                                          ReadReport& report, bool moves);

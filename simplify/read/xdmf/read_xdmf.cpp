@@ -6,9 +6,11 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "simplify/read/options/select_fields.h"
+#include "simplify/read/options/time_text.h"
 #include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
@@ -107,6 +109,20 @@ bool isOfNodes(const XmlElement& attribute) {
   return centre.empty() || centre == "node";
 }
 
+std::set<std::string_view> attributesOf(const XmlElement& grid) {
+  std::set<std::string_view> out;
+  for (const auto& child : grid.children)
+    if (child->name == "Attribute") out.insert(child->attribute("Name"));
+  return out;
+}
+
+/// Whether a grid has an attribute that an older one of its series and time has, or both have none.
+bool isWrittenAgain(const XmlElement& older, const XmlElement& grid) {
+  const auto before = attributesOf(older), now = attributesOf(grid);
+  return std::ranges::any_of(now, [&](std::string_view name) { return before.contains(name); }) ||
+         (before.empty() && now.empty());
+}
+
 }  // namespace
 
 std::unexpected<Error> XdmfFile::bad(const std::string& what) const {
@@ -139,9 +155,7 @@ Status XdmfFile::addSteps() {
       return {};
     }
     isSeries = true;
-    std::size_t number = 0;
-    for (const auto& step : grid->children)
-      if (step->name == "Grid") addGrid(*step, number++, steps);
+    if (Status done = addCollection(*grid, steps); !done) return done;
   }
   if (!isSeries) {
     if (single.size() != 1) {
@@ -149,7 +163,9 @@ Status XdmfFile::addSteps() {
       isUnderstood_ = false;
       return {};
     }
-    addGrid(*single.front(), 0, steps);
+    const Result<double> time = timeOf(*single.front(), 0);
+    if (!time) return std::unexpected(time.error());
+    addGrid(*single.front(), steps[*time]);
     if (!single.front()->child("Time")) {
       steps_.push_back(steps.begin()->second);
       steps.clear();
@@ -170,16 +186,50 @@ Status XdmfFile::addSteps() {
   return {};
 }
 
-void XdmfFile::addGrid(const XmlElement& grid, std::size_t number, std::map<double, Step>& steps) {
+Status XdmfFile::addCollection(const XmlElement& collection, std::map<double, Step>& steps) {
+  std::map<double, std::vector<const XmlElement*>> grids;
+  std::size_t number = 0, leftOut = 0;
+  std::vector<double> repeated;
+  for (const auto& grid : collection.children) {
+    if (grid->name != "Grid") continue;
+    const Result<double> time = timeOf(*grid, number++);
+    if (!time) return std::unexpected(time.error());
+    std::vector<const XmlElement*>& ofTime = grids[*time];
+    if (std::ranges::any_of(ofTime,
+                            [&](const auto* older) { return isWrittenAgain(*older, *grid); })) {
+      leftOut += ofTime.size();
+      ofTime.clear();
+      repeated.push_back(*time);
+    }
+    ofTime.push_back(grid.get());
+  }
+  for (const auto& [time, ofTime] : grids)
+    for (const XmlElement* grid : ofTime) addGrid(*grid, steps[time]);
+  if (leftOut > 0)
+    notes_.push_back("grids left out, because later ones of their series have the same time: " +
+                     std::to_string(leftOut) + ", at time " + shownTimes(repeated));
+  return {};
+}
+
+Result<double> XdmfFile::timeOf(const XmlElement& grid, std::size_t number) {
+  const XmlElement* at = grid.child("Time");
+  if (!at) return static_cast<double>(number);
+  const auto value = at->attributes.find("Value");
+  if (value == at->attributes.end()) {
+    isUnderstood_ = false;
+    return static_cast<double>(number);
+  }
+  if (const auto time = timeIn(value->second)) return *time;
+  return fail(ErrorCode::kBadInput, path_.string() + ": the <Time> of its <Grid> number " +
+                                        std::to_string(number) + " is \"" + value->second +
+                                        "\", which is no number; give it its time, a number such "
+                                        "as 0.5");
+}
+
+void XdmfFile::addGrid(const XmlElement& grid, Step& step) {
   const std::string type = lower(grid.attribute("GridType"));
   isUnderstood_ = isUnderstood_ && (type.empty() || type == "uniform");
-  double time = static_cast<double>(number);
-  if (const XmlElement* at = grid.child("Time")) {
-    const auto value = numberIn<double>(at->attribute("Value"));
-    isUnderstood_ = isUnderstood_ && value && std::isfinite(*value);
-    time = value.value_or(time);
-  }
-  addParts(grid, steps[time]);
+  addParts(grid, step);
 }
 
 void XdmfFile::addParts(const XmlElement& grid, Step& step) {

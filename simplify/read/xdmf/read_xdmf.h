@@ -17,7 +17,7 @@ namespace qtet {
 
 class XdmfFile {
  public:
-  /// Errors: those of readXml; bad-input (no root Xdmf, no grid).
+  /// Errors: those of readXml; bad-input (no root Xdmf, no grid; a time that is no number).
   [[nodiscard]] static Result<XdmfFile> open(const std::filesystem::path& path);
 
   /// Whether the file has only parts that are read here. Others are for meshio: hyperslabs,
@@ -25,6 +25,8 @@ class XdmfFile {
   [[nodiscard]] bool isUnderstood() const { return isUnderstood_; }
   /// The times of its steps, ascending; empty: its one grid has no time.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  /// Says which grids were left out.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   /// The mesh of a step (0 if there are no times) with the fields meant by `fields`. Errors:
   /// bad-input (counts that contradict each other; numbers that are missing), not-found (a file of
   /// HDF5). Throws as HdfFile does. REQUIRES isUnderstood().
@@ -49,7 +51,10 @@ class XdmfFile {
       : path_(std::move(path)), root_(std::move(root)) {}
 
   Status addSteps();
-  void addGrid(const XmlElement& grid, std::size_t number, std::map<double, Step>& steps);
+  /// The grids of a series. A later one of the same time and attribute counts in place of an older.
+  Status addCollection(const XmlElement& collection, std::map<double, Step>& steps);
+  [[nodiscard]] Result<double> timeOf(const XmlElement& grid, std::size_t number);
+  void addGrid(const XmlElement& grid, Step& step);
   void addParts(const XmlElement& grid, Step& step);
   void include(const XmlElement& element, Step& step);
   [[nodiscard]] const XmlElement* dataOf(const XmlElement& element) const;
@@ -66,6 +71,7 @@ class XdmfFile {
   std::unique_ptr<XmlElement> root_;
   bool isUnderstood_ = true;
   std::vector<double> times_;
+  std::vector<std::string> notes_;
   std::vector<Step> steps_;
   std::map<std::filesystem::path, HdfFile> files_;
 };

@@ -4,39 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
-#include "simplify/log/write_mesh.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_times.h"
 #include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/simplify/read/steps/step_files.h"
 
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::freshFolder;
 using testing::oneCell;
+using testing::seriesOf;
 using testing::twoCells;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// A .pvd of these meshes at the times 0, 1, 2 ...
-fs::path seriesOf(const std::vector<TetMesh>& steps) {
-  const fs::path folder = freshFolder("moving");
-  std::string sets;
-  for (std::size_t s = 0; s < steps.size(); ++s) {
-    const std::string name = "step" + std::to_string(s) + ".vtu";
-    const Bytes bytes = vtuBytes(steps[s]);
-    std::ofstream(folder / name, std::ios::binary)
-        << std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    sets += "<DataSet timestep=\"" + std::to_string(s) + "\" file=\"" + name + "\"/>";
-  }
-  std::ofstream(folder / "run.pvd")
-      << "<VTKFile type=\"Collection\"><Collection>" + sets + "</Collection></VTKFile>";
-  return folder / "run.pvd";
-}
 
 /// The two cells with their last point moved, and a field of the step's number.
 TetMesh stepOf(int number, const Position& by) {
@@ -210,7 +193,7 @@ TEST(MovingPoints, stepsOfOtherCellsAreRefused) {
             std::string::npos)
       << read.error().message;
   steps = movingSteps();
-  std::swap(steps[1].tetrahedra[0], steps[1].tetrahedra[1]);
+  steps[1].tetrahedra[1] = {0, 2, 3, 4};
   read = readAll(seriesOf(steps));
   ASSERT_FALSE(read);
   EXPECT_NE(read.error().message.find("its cells have other points"), std::string::npos);
