@@ -52,6 +52,18 @@ describe('a series', () => {
     expect(timesOf(fields).map(({text}) => text)).toEqual(['0', '0.5', '2']);
   });
 
+  test('hasTheUsualRangeBesideOutlyingInstants', () => {
+    const alike = (...highs: number[]): (number | undefined)[] =>
+      marked(...highs.map((high, i) => field(`T@${i}`, high))).map(
+        ({instant}) => instant!.alike?.range[1],
+      );
+    expect(alike(2, 3, 5, 8)).toEqual([undefined, undefined, undefined, undefined]);
+    expect(alike(2, 3, 2, 3e6)).toEqual([3, 3, 3, 3e6]);
+    expect(alike(1, 1, 4)).toEqual([undefined, undefined, undefined]);
+    expect(alike(1, 1, 4.1)).toEqual([1, 1, 4.1]);
+    expect(alike(0, 0, 1)).toEqual([undefined, undefined, undefined]);
+  });
+
   test('isMeantByItsKeyAtTheTimeThatIsShown', () => {
     for (const [time, shown] of [
       [null, 0],

@@ -24,14 +24,6 @@ std::string shownTimes(const std::set<double>& times) {
   return qtet::shownTimes(std::vector<double>(times.begin(), times.end()));
 }
 
-/// Four digits of it.
-std::string shortText(double x) {
-  std::array<char, 32> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, 4);
-  return {text.data(), end.ptr};
-}
-
 bool isTooWide(const MeshField& field) {
   constexpr double kFirstInexact = 0x1p53;
   return (field.type == "int64" || field.type == "uint64") &&
@@ -88,7 +80,7 @@ std::string motionNote(const MotionReport& motion, std::size_t steps) {
     return moves + "the mesh of time " + rest + " stands for all of them, and `fields` " +
            motion.field + " would say how far they move";
   return moves + "the mesh is that of time " + rest + ", and the point field " + motion.field +
-         " has how far they are from there, at most " + shortText(motion.largest) +
+         " has how far they are from there, at most " + roundedText(motion.largest) +
          (motion.field == kDisplacement
               ? ""
               : "; the file has a field " + std::string(kDisplacement) + " of its own");

@@ -12,7 +12,18 @@ export interface Instant {
   /** By component: the values that the series' instants can have. */
   ranges: [number, number][];
   /** The same of this instant alone, and its FieldInfo.range. */
-  own: {range: [number, number]; ranges: [number, number][]};
+  own: SeriesRanges;
+  /**
+   * The same of the instants that are like this one: the usual ones, or an outlying one alone.
+   * Absent where all instants are alike.
+   */
+  alike?: SeriesRanges;
+}
+
+/** Of the values, or of the magnitudes if components > 1; and by component what they can be. */
+export interface SeriesRanges {
+  range: [number, number];
+  ranges: [number, number][];
 }
 
 export interface FieldInfo {

@@ -1,7 +1,7 @@
 // Series: fields that are the instants of one quantity, called NAME@TIME (codec/RECORDS.md,
 // "Series"). The rules are those of seriesOf (proto/series.h).
 
-import {fieldKeys, type FieldInfo, type Instant} from './fields';
+import {fieldKeys, type FieldInfo, type Instant, type SeriesRanges} from './fields';
 
 /** TIME of a name NAME@TIME. */
 const kDecimal = /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
@@ -67,10 +67,13 @@ export function markSeries(fields: FieldInfo[], least = 2): void {
     const range = union(infos.map((info) => info.range));
     const own = infos.map((info) => info.minimum.map((_, c) => rangeOf(info, c)));
     const ranges = infos[0]!.minimum.map((_, c) => union(own.map((its) => its[c]!)));
+    const alone = infos.map((info, i) => ({range: info.range, ranges: own[i]!}));
+    const areUsual = usualOf(infos.map((info) => info.range));
+    const usual = together(alone.filter((_, i) => areUsual[i]));
     infos.forEach((info, i) => {
       const {time, text} = instantName(info.name)!;
-      const alone = {range: info.range, ranges: own[i]!};
-      info.instant = {series: key, time, text, isShown: false, ranges, own: alone};
+      info.instant = {series: key, time, text, isShown: false, ranges, own: alone[i]!};
+      if (areUsual.includes(false)) info.instant.alike = areUsual[i] ? usual : alone[i]!;
       info.range = range;
     });
   }
@@ -90,6 +93,36 @@ const union = (ranges: [number, number][]): [number, number] => [
   Math.min(...ranges.map(([low]) => low)),
   Math.max(...ranges.map(([, high]) => high)),
 ];
+
+function together(all: SeriesRanges[]): SeriesRanges {
+  return {
+    range: union(all.map(({range}) => range)),
+    ranges: (all[0]?.ranges ?? []).map((_, c) => union(all.map(({ranges}) => ranges[c]!))),
+  };
+}
+
+/** Values that span more than so many times the range of most instants are outlying. */
+const kOutlyingRange = 4;
+
+/**
+ * Which instants are not outlying (simplify/SERIES.md, "Scales"): the nearer half, seen from the
+ * first, and all up to the first outlying one.
+ */
+function usualOf(ranges: [number, number][]): boolean[] {
+  const span = ([low, high]: [number, number]): number => high - low;
+  const reaches = ranges.map((range) => span(union([ranges[0]!, range])));
+  const order = [...ranges.keys()].sort((a, b) => reaches[a]! - reaches[b]! || a - b);
+  const areUsual = ranges.map(() => false);
+  let box = ranges[0]!;
+  for (const [place, i] of order.entries()) {
+    const more = union([box, ranges[i]!]);
+    const isOutlying = span(box) > 0 && span(more) > kOutlyingRange * span(box);
+    if (isOutlying && 2 * place >= ranges.length) break;
+    box = more;
+    areUsual[i] = true;
+  }
+  return areUsual;
+}
 
 /** The values that a component can have. */
 function rangeOf({minimum, step, bits = 0}: FieldInfo, component: number): [number, number] {

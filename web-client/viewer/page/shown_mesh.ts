@@ -9,7 +9,7 @@ import type {BaseFigures} from '../../core/picture/base_figures';
 import {parseScalar, scalarText} from '../../core/layers/field_values';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import {labelsOf} from '../../core/picture/labels';
-import type {FieldInfo} from '../../core/protocol/fields';
+import type {SeriesRanges} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {listedInstant, type SegmentList} from '../../core/protocol/segment_list';
 import {showTime, timesOf} from '../../core/protocol/series';
@@ -216,8 +216,12 @@ export function rangeOf(
   if (!color) return null;
   const labels = settings.map === 'labels' && labelsOf(fields[color.field]!);
   if (labels) return labelRange(labels);
-  const own = settings.range === 'instant' ? ownRange(fields[color.field]!, color) : null;
-  if (own) return shownRange(settings, own);
+  const {instant} = fields[color.field]!;
+  if (settings.range === 'instant' || settings.range === 'auto') {
+    const ranges = settings.range === 'instant' ? instant?.own : instant?.alike;
+    const its = ranges && rangeAmong(ranges, color);
+    if (its) return shownRange(settings, its);
+  }
   const [low, high] = scaleRange;
   const valueAt = (share: number): number => low + share * (high - low);
   const valuesAt = ([from, to]: [number, number]): [number, number] => [valueAt(from), valueAt(to)];
@@ -227,10 +231,8 @@ export function rangeOf(
   return shownRange({...settings, range}, all.extent, all.middle);
 }
 
-/** The range of an instant alone; null for other fields, and if its values are all equal. */
-function ownRange({instant}: FieldInfo, {component}: Scalar): [number, number] | null {
-  if (!instant) return null;
-  const {range, ranges} = instant.own;
+/** The range of the scalar; null if its values are all equal. */
+function rangeAmong({range, ranges}: SeriesRanges, {component}: Scalar): [number, number] | null {
   const [low, high] = ranges.length > 1 ? (ranges[component] ?? range) : range;
   return low < high ? [low, high] : null;
 }
