@@ -3,6 +3,8 @@
 
 #include <array>
 #include <charconv>
+#include <cstddef>
+#include <span>
 #include <string>
 
 namespace qtet {
@@ -20,6 +22,16 @@ template <class Number>
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number,
                                      std::chars_format::general, 4)
                            .ptr};
+}
+
+/// "0, 0.5 and 12 more". REQUIRES: one time at least.
+[[nodiscard]] inline std::string shownTimes(std::span<const double> times) {
+  constexpr std::size_t kShown = 6;
+  std::string out;
+  for (std::size_t i = 0; i < times.size() && i < kShown; ++i)
+    out += (i == 0 ? "" : ", ") + shortestText(times[i]);
+  return out +
+         (times.size() > kShown ? " and " + std::to_string(times.size() - kShown) + " more" : "");
 }
 
 }  // namespace qtet

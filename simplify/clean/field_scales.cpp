@@ -11,9 +11,6 @@
 namespace qtet {
 namespace {
 
-/// Times that a sentence names.
-constexpr std::size_t kTimesShown = 6;
-
 FieldExtents unionOf(FieldExtents a, const FieldExtents& b) {
   a.include(b);
   return a;
@@ -80,20 +77,6 @@ void scaleSeries(std::span<const MeshField> fields, const Series& series, FieldS
   }
 }
 
-/// "0.1, 0.2 and 3 more"
-std::string timesIn(std::vector<double> times) {
-  std::ranges::sort(times);
-  const std::size_t shown = times.size() > kTimesShown ? kTimesShown - 1 : times.size();
-  std::string out;
-  for (std::size_t i = 0; i < shown; ++i)
-    out += (i == 0                                    ? ""
-            : i + 1 == shown && shown == times.size() ? " and "
-                                                      : ", ") +
-           shortestText(times[i]);
-  return shown < times.size() ? out + " and " + std::to_string(times.size() - shown) + " more"
-                              : out;
-}
-
 std::string rangeText(const FieldExtents& extents) {
   return roundedText(lowestOf(extents)) + " to " + roundedText(highestOf(extents));
 }
@@ -130,12 +113,15 @@ void OutlyingInstants::add(const MeshField& field, const FieldExtents& own,
 
 std::vector<std::string> OutlyingInstants::warnings() const {
   std::vector<std::string> out;
-  for (const auto& [key, found] : found_)
-    out.push_back(key.first + " field " + key.second + ": its values at time " +
-                  timesIn(found.times) + " span " + rangeText(found.own) +
-                  ", and those of its other instants " + rangeText(found.others) +
+  for (const auto& [key, found] : found_) {
+    std::vector<double> times = found.times;
+    std::ranges::sort(times);
+    out.push_back(key.first + " field " + key.second + ": its values at time " + shownTimes(times) +
+                  " span " + rangeText(found.own) + ", and those of its other instants " +
+                  rangeText(found.others) +
                   "; these keep their step, and the former have steps or bits of their own; if the "
                   "run went wrong there, leave that out with `time`");
+  }
   return out;
 }
 

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -32,16 +31,6 @@ namespace qtet {
   if (const std::size_t exponent = plain.find_first_of("dD"); exponent != std::string::npos)
     plain[exponent] = 'e';
   return plainTime(plain);
-}
-
-/// "0, 0.5 and 12 more". REQUIRES: one time at least.
-[[nodiscard]] inline std::string shownTimes(std::span<const double> times) {
-  constexpr std::size_t kShown = 6;
-  std::string out;
-  for (std::size_t i = 0; i < times.size() && i < kShown; ++i)
-    out += (i == 0 ? "" : ", ") + shortestText(times[i]);
-  return out +
-         (times.size() > kShown ? " and " + std::to_string(times.size() - kShown) + " more" : "");
 }
 
 }  // namespace qtet

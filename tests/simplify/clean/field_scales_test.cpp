@@ -97,7 +97,7 @@ TEST(FieldScales, severalSizesHaveSeveralScales) {
   EXPECT_TRUE(haveOneScale(out[4].info, out[5].info)) << "the nearer half of those beyond";
   for (std::size_t f = 5; f < 8; ++f)
     EXPECT_LE(errorOf(fields[f], out[f]), 0.501 * std::pow(10.0, f) / 4095) << f;
-  EXPECT_NE(scalesOf(fields).outlying.warnings()[0].find("at time 4, 5, 6 and 7 span"),
+  EXPECT_NE(scalesOf(fields).outlying.warnings()[0].find("at time 4, 5, 6, 7 span"),
             std::string::npos);
 }
 
