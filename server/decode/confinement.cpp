@@ -10,19 +10,41 @@
 namespace qtet {
 namespace {
 
-/// Memory, threads that are there, time, open files, and an end.
-constexpr std::array kAllowed = {
-    SCMP_SYS(read),         SCMP_SYS(write),           SCMP_SYS(writev),
-    SCMP_SYS(pwrite64),     SCMP_SYS(lseek),           SCMP_SYS(ftruncate),
-    SCMP_SYS(fstat),        SCMP_SYS(newfstatat),      SCMP_SYS(close),
-    SCMP_SYS(recvmsg),      SCMP_SYS(sendmsg),         SCMP_SYS(munmap),
-    SCMP_SYS(mremap),       SCMP_SYS(madvise),         SCMP_SYS(brk),
-    SCMP_SYS(futex),        SCMP_SYS(clock_gettime),   SCMP_SYS(clock_nanosleep),
-    SCMP_SYS(gettimeofday), SCMP_SYS(getrandom),       SCMP_SYS(sched_yield),
-    SCMP_SYS(gettid),       SCMP_SYS(getpid),          SCMP_SYS(tgkill),
-    SCMP_SYS(rt_sigaction), SCMP_SYS(rt_sigreturn),    SCMP_SYS(rt_sigprocmask),
-    SCMP_SYS(sigaltstack),  SCMP_SYS(restart_syscall), SCMP_SYS(rseq),
-    SCMP_SYS(exit),         SCMP_SYS(exit_group)};
+/// Memory, threads that are there or still starting, time, open files, and an end.
+constexpr std::array kAllowed = {SCMP_SYS(read),
+                                 SCMP_SYS(write),
+                                 SCMP_SYS(writev),
+                                 SCMP_SYS(pwrite64),
+                                 SCMP_SYS(lseek),
+                                 SCMP_SYS(ftruncate),
+                                 SCMP_SYS(fstat),
+                                 SCMP_SYS(newfstatat),
+                                 SCMP_SYS(close),
+                                 SCMP_SYS(recvmsg),
+                                 SCMP_SYS(sendmsg),
+                                 SCMP_SYS(munmap),
+                                 SCMP_SYS(mremap),
+                                 SCMP_SYS(madvise),
+                                 SCMP_SYS(brk),
+                                 SCMP_SYS(futex),
+                                 SCMP_SYS(clock_gettime),
+                                 SCMP_SYS(clock_nanosleep),
+                                 SCMP_SYS(gettimeofday),
+                                 SCMP_SYS(getrandom),
+                                 SCMP_SYS(sched_yield),
+                                 SCMP_SYS(gettid),
+                                 SCMP_SYS(getpid),
+                                 SCMP_SYS(tgkill),
+                                 SCMP_SYS(rt_sigaction),
+                                 SCMP_SYS(rt_sigreturn),
+                                 SCMP_SYS(rt_sigprocmask),
+                                 SCMP_SYS(sigaltstack),
+                                 SCMP_SYS(restart_syscall),
+                                 SCMP_SYS(rseq),
+                                 SCMP_SYS(set_robust_list),
+                                 SCMP_SYS(sched_getaffinity),
+                                 SCMP_SYS(exit),
+                                 SCMP_SYS(exit_group)};
 /// Those whose third argument says whether the memory will be executed.
 constexpr std::array kMapping = {SCMP_SYS(mmap), SCMP_SYS(mprotect)};
 
