@@ -11,6 +11,7 @@ import type {Manifest} from '../core/protocol/manifest';
 import {markSeries, showTime} from '../core/protocol/series';
 import {
   automaticScale,
+  displacementKey,
   firstWarp,
   kNoWarp,
   largestScale,
@@ -197,6 +198,10 @@ describe('without an attribute', () => {
   ])('%s of %d moves a mesh of %d cells: %s', (name, largest, cells, warp) =>
     expect(firstWarp(mesh(name, largest, cells))).toBe(warp),
   );
+  test('aListsKeyOfDisplacementsIsAskedForAtOnce', () => {
+    expect(displacementKey(['VonMises', 'cell:Displacement', 'U_disp'])).toBe('U_disp');
+    expect(displacementKey(['VonMises', 'Displacement@0'])).toBeNull();
+  });
   test('aMeshRestsUntilItsBoundsAreKnown', () => {
     const shown = mesh('Displacement', 1);
     shown.bounds = [];

@@ -23,7 +23,7 @@ import type {Kept, Page} from './page/page';
 import type {SegmentPlace} from './page/shown_mesh';
 import {MeshMenu} from './panels/mesh_menu';
 import {hint} from './settings/nearest';
-import {kNoWarp} from './settings/warp';
+import {displacementKey, kNoWarp} from './settings/warp';
 
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
 const kOfOneMesh = [
@@ -249,7 +249,9 @@ export class StreamControl {
     const time = this.listeners.time();
     const listed = entry ? keyToBegin(entry, time) : '';
     const first = listed === '' ? this.listeners.keptField() : listed;
-    const warp = page.read('warp');
+    // a series would have to wait for the head
+    const plain = keys.filter((key) => entry?.series.includes(key) !== true);
+    const warp = page.read('warp') ?? displacementKey(plain);
     const named = [page.read('field') ?? first, warp === kNoWarp ? null : warp, ...ofLayers]
       .filter((text) => text !== null && text !== '')
       .map((text) => keyToAsk(text!, keys, time));

@@ -41,6 +41,10 @@ const isVectors = ({association, components}: FieldInfo): boolean =>
 const isDisplacement = ({name, instant}: FieldInfo): boolean =>
   kDisplacement.test(instant?.series ?? name);
 
+/** Among keys of fields that of displacements, which may move the first picture; null: none. */
+export const displacementKey = (keys: readonly string[]): string | null =>
+  keys.find((key) => kDisplacement.test(key)) ?? null;
+
 /** The fields that can move the mesh: displacements first. Series have their shown instant. */
 export function warpFields(fields: readonly FieldInfo[]): number[] {
   const usable = [...fields.keys()].filter(
