@@ -14,9 +14,9 @@ namespace qtet {
 /// instant in the head. None if there is none.
 [[nodiscard]] std::optional<std::uint32_t> displacementOf(const Manifest& manifest);
 
-/// Moves the points by the field that displacementOf names, if the largest displacement passes an
-/// edge of the whole mesh and is seen at true size. Points whose values are missing stay, and so do
-/// all if `mesh` does not have the field. REQUIRES: a boundary; the log's lattice.
+/// Moves the points by the field that displacementOf names. The largest displacement must pass an
+/// edge of the whole mesh, and be seen at true size. Points whose values are missing stay. All stay
+/// if `mesh` does not have the field. REQUIRES: a boundary; the log's lattice.
 void moveAsFirstShown(LatticeMesh& mesh, const Manifest& manifest);
 
 }  // namespace qtet
