@@ -86,12 +86,15 @@ template <class Field>
   return out;
 }
 
-/// By field: an instant of a series, but not the first one, which a viewer shows and fetches first.
+/// By field: an instant of a series, but not the one of the lowest number, which a viewer shows and
+/// fetches first. It may be of any time.
 template <class Field>
 [[nodiscard]] std::vector<bool> laterInstants(std::span<const Field> fields) {
   std::vector<bool> out(fields.size());
-  for (const Series& series : seriesOf(fields))
-    for (const std::size_t f : std::span(series.fields).subspan(1)) out[f] = true;
+  for (const Series& series : seriesOf(fields)) {
+    for (const std::size_t f : series.fields) out[f] = true;
+    out[*std::ranges::min_element(series.fields)] = false;
+  }
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "codec/picture/canvas.h"
 #include "codec/picture/field_look.h"
 #include "codec/picture/first_camera.h"
+#include "codec/picture/first_warp.h"
 #include "codec/picture/webp.h"
 
 namespace qtet {
@@ -100,11 +101,8 @@ Polygon sectionOf(const std::array<Point, 4>& corners, const Plane& plane) {
 
 class PosterArtist {
  public:
-  PosterArtist(const LatticeMesh& mesh, const Manifest& manifest)
-      : mesh_(mesh),
-        camera_(mesh, manifest.focus),
-        look_(mesh, 0),
-        plane_(openingPlane(mesh, manifest)) {
+  PosterArtist(const LatticeMesh& mesh, const Manifest& manifest, const std::optional<Plane>& plane)
+      : mesh_(mesh), camera_(mesh, manifest.focus), look_(mesh, 0), plane_(plane) {
     if (look_.ofCells()) boundaryCells_ = cellsOfBoundary();
   }
 
@@ -225,13 +223,18 @@ std::uint32_t posterLevel(const Manifest& manifest) {
 
 std::vector<std::uint32_t> posterFields(const Manifest& manifest) {
   if (manifest.fields.empty()) return {};
-  return {manifest.opening.value_or(Opening{}).field};
+  const std::uint32_t colour = manifest.opening.value_or(Opening{}).field;
+  const std::uint32_t motion = displacementOf(manifest).value_or(colour);
+  if (motion == colour) return {colour};
+  return {colour, motion};
 }
 
 Result<Bytes> posterWebp(const LatticeMesh& mesh, const Manifest& manifest) {
   if (mesh.boundary.empty())
     return fail(ErrorCode::kBadInput, "the mesh has no boundary triangle to draw");
-  const PosterArtist artist(mesh, manifest);
+  LatticeMesh moved = mesh;
+  moveAsFirstShown(moved, manifest);
+  const PosterArtist artist(moved, manifest, openingPlane(mesh, manifest));
   for (double pixels = kMaxPosterPixels; pixels >= kMinPosterPixels;) {
     const auto [width, height] = artist.size(static_cast<int>(pixels));
     const Bytes picture = artist.draw(width, height);

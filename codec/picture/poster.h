@@ -20,12 +20,12 @@ inline constexpr int kMinPosterPixels = 80;
 
 /// The level that the viewer draws first: the last one of the base mesh's chunk. REQUIRES: a level.
 [[nodiscard]] std::uint32_t posterLevel(const Manifest& manifest);
-/// The field that colours it, or none.
+/// The field that colours it, or none. Behind it may come the one that moves it.
 [[nodiscard]] std::vector<std::uint32_t> posterFields(const Manifest& manifest);
 
 /// A WebP of at most kMaxPosterBytes with a transparent ground. It holds the rectangle that the
 /// viewer fits into the free area. Scaled to that share of the area, it shows the mesh in its
-/// place. The opening's plane cuts the mesh. Cell edges are left out. Where the viewer looks at
+/// place. The opening's plane cuts the mesh. Large displacements move it. Cell edges are left out. Where the viewer looks at
 /// a part, the picture fades out towards its edges.
 /// `mesh` is at posterLevel with posterFields. Deterministic. Errors: bad-input (no boundary), io
 /// (libwebp refused), limit-exceeded (the smallest picture takes more bytes).

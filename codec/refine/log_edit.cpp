@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "codec/refine/log_file.h"
 #include "proto/crc32c.h"
 #include "proto/limits.h"
+#include "proto/series.h"
 
 namespace qtet {
 namespace {
@@ -51,7 +53,8 @@ void keepErrors(LevelError& error, std::size_t level, const std::vector<std::uin
   }
 }
 
-/// The opening follows its field, or the added one of its name. Else it goes.
+/// The opening follows its field, or the added one of its name. A series opens with the instant in
+/// the head, which may be another one now. Else it goes. REQUIRES: a manifest of the new fields.
 void keepOpening(Manifest& manifest, const ManifestField& shown,
                  const std::vector<std::uint32_t>& kept, const std::vector<NewField>& added) {
   auto place =
@@ -61,6 +64,9 @@ void keepOpening(Manifest& manifest, const ManifestField& shown,
   };
   if (place == kept.size())
     place += static_cast<std::size_t>(std::ranges::find_if(added, isShown) - added.begin());
+  for (const Series& series : seriesOf(std::span<const ManifestField>(manifest.fields)))
+    if (std::ranges::find(series.fields, place) != series.fields.end())
+      place = std::ranges::min(series.fields);
   if (place < kept.size() + added.size() && place <= kMaxOpeningField) {
     manifest.opening->field = static_cast<std::uint8_t>(place);
   } else {

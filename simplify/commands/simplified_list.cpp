@@ -184,6 +184,7 @@ Status addSegment(const SimplifyRequest& request, std::vector<double> times, Unp
                   Progress& progress, SegmentList& list, OrderedJson& report) {
   SimplifyRequest ofOne = request;
   ofOne.read.namesTime = true;
+  ofOne.pipeline.opensAtFirst = true;
   if (!times.empty()) ofOne.read.time = timesText(times);
   const fs::path file = logs.next();
   Result<OrderedJson> made = makeLog(ofOne, Output{file}, progress);

@@ -10,6 +10,7 @@
 
 #include "proto/limits.h"
 #include "proto/series.h"
+#include "simplify/clean/quantise_field.h"
 #include "simplify/mesh/vector3.h"
 
 namespace qtet {
@@ -18,22 +19,54 @@ namespace {
 constexpr std::size_t kColors = 256;
 /// A boundary with fewer colours looks uniform.
 constexpr double kUniform = 16;
-/// A cut must show so many times as many.
+/// A cut must show so many times as many, and so must another instant than the first.
 constexpr double kBetter = 1.5;
+/// Instants that are looked at: the two ends and others at equal distances.
+constexpr std::size_t kLookedAt = 8;
 /// As web-client/core/picture/spread.ts: the tails of the values, and when they hide the others.
 constexpr double kTail = 0.02, kMinMiddle = 0.4;
 /// The values' span has so many bins when the tails are looked for.
 constexpr std::size_t kBins = 1 << 12;
 
-/// Values or magnitudes of one field, in [0, 1] over its range; NaN where one is missing.
+/// By field: the values that the viewer's colours are of.
+struct Extent {
+  std::array<double, 2> range;
+  bool isSeries = false;  ///< its own range is that of all instants, and spans all colours
+};
+
+/// Outlying instants have another scale. They neither widen the extent nor open the log.
+std::vector<std::size_t> usualInstants(const LatticeMesh& mesh, const Series& series) {
+  std::vector<std::size_t> out = series.fields;
+  std::erase_if(out, [&](std::size_t f) {
+    return !haveOneScale(mesh.fields[series.fields.front()], mesh.fields[f]);
+  });
+  return out;
+}
+
+std::vector<Extent> shownExtents(const LatticeMesh& mesh) {
+  std::vector<Extent> out;
+  for (const FieldInfo& info : mesh.fields) out.push_back({info.range});
+  for (const Series& series : seriesOf(std::span(mesh.fields))) {
+    Extent all{mesh.fields[series.fields.front()].range, true};
+    for (const std::size_t f : usualInstants(mesh, series)) {
+      all.range[0] = std::min(all.range[0], mesh.fields[f].range[0]);
+      all.range[1] = std::max(all.range[1], mesh.fields[f].range[1]);
+    }
+    for (const std::size_t f : series.fields) out[f] = all;
+  }
+  return out;
+}
+
+/// Values or magnitudes of one field, in [0, 1] over its extent; NaN where one is missing.
 class Values {
  public:
-  Values(const LatticeMesh& mesh, std::size_t field)
-      : info_(mesh.fields[field]), integers_(mesh.values[field]) {
-    const double low = info_.range[0], span = info_.range[1] - low;
+  Values(const LatticeMesh& mesh, std::size_t field, const Extent& extent)
+      : info_(mesh.fields[field]), integers_(mesh.values[field]), isSeries_(extent.isSeries) {
+    const double low = extent.range[0], span = extent.range[1] - low;
     low_ = low, inverse_ = span > 0 ? 1 / span : 0;
   }
 
+  [[nodiscard]] bool isSeries() const { return isSeries_; }
   [[nodiscard]] bool ofCells() const { return info_.association == "cell"; }
   [[nodiscard]] std::size_t size() const { return integers_.size() / info_.components; }
   [[nodiscard]] double operator[](std::size_t index) const {
@@ -50,6 +83,7 @@ class Values {
  private:
   const FieldInfo& info_;
   const std::vector<std::int32_t>& integers_;
+  bool isSeries_;
   double low_ = 0, inverse_ = 0;
 };
 
@@ -64,6 +98,7 @@ std::size_t binOf(double share, std::size_t bins) {
 
 /// The range that the viewer's colours span.
 Range shownRange(const Values& values) {
+  if (values.isSeries()) return {};
   std::array<std::uint64_t, kBins> counts{};
   std::uint64_t known = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -125,13 +160,38 @@ constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 class Scene {
  public:
   Scene(const LatticeMesh& mesh, const std::optional<Focus>& focus)
-      : mesh_(mesh), onBoundary_(mesh.points.size()) {
+      : mesh_(mesh),
+        extents_(shownExtents(mesh)),
+        onBoundary_(mesh.points.size()),
+        isPart_(focus.has_value()) {
     if (focus) lookAt(*focus);
     for (const Triangle& t : mesh.boundary)
       for (const VertexId v : t) onBoundary_[v] = true;
   }
 
-  [[nodiscard]] double colorsOnBoundary(const Values& values) const {
+  struct Sight {
+    Opening opening;
+    double colors = 0;
+  };
+
+  /// The one of these fields, and the cut, that show most.
+  [[nodiscard]] Sight bestOf(std::span<const std::size_t> fields) const {
+    Sight best;
+    for (const std::size_t f : fields)
+      if (const double colors = colorsOnBoundary(f); colors > best.colors)
+        best = {{static_cast<std::uint8_t>(f)}, colors};
+    if (best.colors >= kUniform || isPart_) return best;
+    double most = kBetter * best.colors;
+    for (const std::size_t f : fields)
+      for (std::uint8_t axis = 0; axis < 3; ++axis)
+        if (const double colors = colorsOnCut(f, axis); colors > most)
+          most = colors, best = {{static_cast<std::uint8_t>(f), axis}, colors};
+    return best;
+  }
+
+ private:
+  [[nodiscard]] double colorsOnBoundary(std::size_t field) const {
+    const Values values(mesh_, field, extents_[field]);
     Palette palette(shownRange(values));
     if (values.ofCells()) {
       addOuterFaces(palette, values);
@@ -144,7 +204,8 @@ class Scene {
   }
 
   /// On the plane across the axis in the middle of the lattice's points.
-  [[nodiscard]] double colorsOnCut(const Values& values, std::size_t axis) const {
+  [[nodiscard]] double colorsOnCut(std::size_t field, std::size_t axis) const {
+    const Values values(mesh_, field, extents_[field]);
     const auto [low, high] =
         std::ranges::minmax(mesh_.points, {}, [&](const LatticePoint& p) { return p[axis]; });
     // Between two lattice planes no vertex lies on the cut.
@@ -155,7 +216,6 @@ class Scene {
     return palette.colors();
   }
 
- private:
   [[nodiscard]] Vector3 at(VertexId v) const { return toVector(mesh_.points[v]); }
 
   /// Looks at the focus and as much round it, on each side.
@@ -217,12 +277,14 @@ class Scene {
   }
 
   const LatticeMesh& mesh_;
+  const std::vector<Extent> extents_;
   std::vector<bool> onBoundary_;
+  bool isPart_;  ///< only what lies near the focus counts
   Vector3 seenLow_{-kEverywhere, -kEverywhere, -kEverywhere};
   Vector3 seenHigh_{kEverywhere, kEverywhere, kEverywhere};
 };
 
-/// Those that an opening can name: of a series the first instant alone.
+/// Those that an opening can name: of a series one instant alone.
 std::vector<std::size_t> openingFields(const LatticeMesh& mesh) {
   const std::vector<bool> isLater = laterInstants(std::span(mesh.fields));
   std::vector<std::size_t> out;
@@ -231,25 +293,50 @@ std::vector<std::size_t> openingFields(const LatticeMesh& mesh) {
   return out;
 }
 
+/// The times of all series, each once, ascending.
+std::vector<double> timesOf(std::span<const Series> all) {
+  std::vector<double> out;
+  for (const Series& series : all) out.insert(out.end(), series.times.begin(), series.times.end());
+  std::ranges::sort(out);
+  const auto again = std::ranges::unique(out, isSameTime);
+  out.erase(again.begin(), again.end());
+  return out;
+}
+
+/// The instants of that time, but for outlying ones.
+std::vector<std::size_t> fieldsAt(const LatticeMesh& mesh, std::span<const Series> all,
+                                  double time) {
+  std::vector<std::size_t> out;
+  for (const Series& series : all)
+    if (const auto place = placeOfTime(series.times, time);
+        place &&
+        haveOneScale(mesh.fields[series.fields.front()], mesh.fields[series.fields[*place]]))
+      out.push_back(series.fields[*place]);
+  return out;
+}
+
 }  // namespace
 
 std::optional<Opening> openingOf(const LatticeMesh& mesh, const std::optional<Focus>& focus) {
-  const Scene scene(mesh, focus);
-  const std::vector<std::size_t> fields = openingFields(mesh);
-  Opening best;
-  double most = 0;
-  for (const std::size_t f : fields)
-    if (const double colors = scene.colorsOnBoundary(Values(mesh, f)); colors > most)
-      most = colors, best.field = static_cast<std::uint8_t>(f);
-  if (most < kUniform && !focus) {
-    most *= kBetter;
-    for (const std::size_t f : fields)
-      for (std::uint8_t axis = 0; axis < 3; ++axis)
-        if (const double colors = scene.colorsOnCut(Values(mesh, f), axis); colors > most)
-          most = colors, best = {static_cast<std::uint8_t>(f), axis};
-  }
+  const Opening best = Scene(mesh, focus).bestOf(openingFields(mesh)).opening;
   if (best.field == 0 && !best.cut) return std::nullopt;
   return best;
+}
+
+std::optional<double> openingTime(const LatticeMesh& mesh, const std::optional<Focus>& focus) {
+  const std::vector<Series> all = seriesOf(std::span(mesh.fields));
+  if (all.empty()) return std::nullopt;
+  const Scene scene(mesh, focus);
+  const std::vector<double> times = timesOf(all);
+  const std::size_t last = times.size() - 1, steps = std::min(last, kLookedAt - 1);
+  double most = kBetter * scene.bestOf(openingFields(mesh)).colors;
+  std::optional<double> out;
+  for (std::size_t i = 1; i <= steps; ++i) {
+    const double time = times[i * last / steps];
+    if (const double colors = scene.bestOf(fieldsAt(mesh, all, time)).colors; colors > most)
+      most = colors, out = time;
+  }
+  return out;
 }
 
 }  // namespace qtet

@@ -92,13 +92,23 @@ Status checkUnits(const PipelineOptions& options, const std::vector<MeshField>& 
   return {};
 }
 
+/// The instants of that time come before the others of their series.
+void openAt(double time, TetMesh& mesh, QuantisedMesh& quantised) {
+  const std::vector<std::size_t> order = seriesOrder(mesh.fields, time);
+  putInOrder(order, mesh.fields);
+  putInOrder(order, quantised.mesh.fields);
+  putInOrder(order, quantised.mesh.values);
+  putInOrder(order, quantised.missing);
+  putInOrder(order, quantised.report.nonFiniteOf);
+}
+
 Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   TetMesh mesh = std::move(given);
   if (Status s = checkUnits(run.options, mesh.fields); !s) return std::unexpected(s.error());
   if (run.options.timeStatistics)
     if (Status added = addTimeStatistics(mesh.fields); !added)
       return std::unexpected(added.error());
-  orderSeries(mesh.fields);
+  putInOrder(seriesOrder(mesh.fields), mesh.fields);
   const bool keeps = run.options.keep.any();
   run.report.tetrahedraIn = mesh.tetrahedra.size();
   if (Status s = run.stages.begin(Stage::kClean); !s) return std::unexpected(s.error());
@@ -113,10 +123,12 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   Result<QuantisedMesh> out = quantise(mesh, run.options.quantise, run.options.stop,
                                        std::exchange(run.report.clean.boundary, {}));
   if (!out) return out;
-  run.report.quantise = out->report;
-  run.note(out->report.notes);
   run.wallThickness = wallThicknessOf(out->mesh);
   run.focus = focusOf(out->mesh);
+  if (!run.options.opensAtFirst)
+    if (const auto time = openingTime(out->mesh, run.focus)) openAt(*time, mesh, *out);
+  run.report.quantise = out->report;
+  run.note(out->report.notes);
   run.opening = openingOf(out->mesh, run.focus);
   if (keeps) {
     run.kept.options = run.options.keep;
@@ -137,7 +149,7 @@ Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run
 // Share of simplifying that goes into fusing, where a log has series.
 constexpr double kFusingShare = 0.8;
 
-/// The history, with predictions of instants from others in the order of orderSeries().
+/// The history, with predictions of instants from others in the order of seriesOrder.
 Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
   Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);

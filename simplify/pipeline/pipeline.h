@@ -49,6 +49,8 @@ struct PipelineOptions {
   decltype(Manifest::units) units{};
   /// Each series gives four more fields, its statistics over all instants (time_statistics.h).
   bool timeStatistics = false;
+  /// Series open at their first instants, whatever these show.
+  bool opensAtFirst = false;
   /// Makes the place where the log's blocks wait for its head; in memory without it.
   std::function<Result<std::unique_ptr<ByteSpool>>()> spool{};
 

@@ -132,6 +132,7 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
                 "`lossless` keeps the values of all instants in memory, which are too many; leave "
                 "it out, or choose fewer with `time`");
   PipelineOptions ofSample = options;
+  ofSample.opensAtFirst = true;  // FieldAdder adds instants in the order of time
   if (std::exchange(ofSample.timeStatistics, false))
     if (Status added = addStatistics(steps, read, options.stop, sample.fields); !added)
       return std::unexpected(added.error());

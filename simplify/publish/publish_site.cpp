@@ -124,11 +124,12 @@ Result<Bytes> posterOf(const OpenedLog& log) {
   return posterWebp(*mesh, log.manifest);
 }
 
-/// The length of the file's prefix that holds the viewer's first picture: the head, and the first
-/// chunk up to the field that colours it.
+/// The length of the file's prefix that holds the viewer's first picture. It ends in the first
+/// chunk, behind the fields that colour and move the mesh.
 std::uint64_t firstBytes(const OpenedLog& log) {
   std::uint32_t last = kPositionsPart;
-  for (const std::uint32_t field : posterFields(log.manifest)) last = kFirstFieldPart + field;
+  for (const std::uint32_t field : posterFields(log.manifest))
+    last = std::max(last, kFirstFieldPart + field);
   const BlockEntry& block = log.file.chunks().front().blocks[last];
   return block.offset + block.size;
 }

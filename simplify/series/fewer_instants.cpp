@@ -29,6 +29,7 @@ std::vector<std::vector<std::uint32_t>> fewerInstants(const Manifest& manifest,
     const std::vector<std::size_t> ofInstants = halvings(series.fields.size());
     for (std::size_t i = 0; i < ofInstants.size(); ++i)
       halvingsOf[series.fields[i]] = ofInstants[i];
+    halvingsOf[*std::ranges::min_element(series.fields)] = 0;  // a viewer shows it first
   }
   std::vector<std::vector<std::uint32_t>> out;
   std::size_t before = halvingsOf.size();

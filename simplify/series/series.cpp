@@ -1,8 +1,7 @@
 #include "simplify/series/series.h"
 
 #include <algorithm>
-#include <span>
-#include <utility>
+#include <numeric>
 
 namespace qtet {
 
@@ -37,21 +36,28 @@ std::vector<InstantStep> decodingOrder(std::size_t instants) {
   return out;
 }
 
-void orderSeries(std::vector<MeshField>& fields) {
-  for (const Series& series : seriesOf(std::span<const MeshField>(fields))) {
+std::vector<std::size_t> seriesOrder(std::span<const MeshField> fields,
+                                     std::optional<double> opening) {
+  std::vector<std::size_t> numbers(fields.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  for (const Series& series : seriesOf(fields)) {
+    std::vector<std::size_t> ordered;
+    for (const InstantStep& step : decodingOrder(series.fields.size()))
+      ordered.push_back(series.fields[step.instant]);
+    const std::size_t head = opening ? nearestTime(series.times, *opening) : 0;
+    const auto at = std::ranges::find(ordered, series.fields[head]);
+    std::rotate(ordered.begin(), at, at + 1);
     std::vector<std::size_t> places = series.fields;
     std::ranges::sort(places);
-    std::vector<MeshField> ordered;
-    for (const InstantStep& step : decodingOrder(series.fields.size()))
-      ordered.push_back(std::move(fields[series.fields[step.instant]]));
-    for (std::size_t i = 0; i < places.size(); ++i) fields[places[i]] = std::move(ordered[i]);
+    for (std::size_t i = 0; i < places.size(); ++i) numbers[places[i]] = ordered[i];
   }
-  const std::vector<bool> isLater = laterInstants(std::span<const MeshField>(fields));
-  std::vector<MeshField> out;
+  // of the places of a series the first one has its head
+  const std::vector<bool> isLater = laterInstants(fields);
+  std::vector<std::size_t> out;
   for (const bool later : {false, true})
     for (std::size_t f = 0; f < fields.size(); ++f)
-      if (isLater[f] == later) out.push_back(std::move(fields[f]));
-  fields = std::move(out);
+      if (isLater[f] == later) out.push_back(numbers[f]);
+  return out;
 }
 
 }  // namespace qtet

@@ -1,7 +1,11 @@
 // The order in which the instants of a series are decoded.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "proto/series.h"
@@ -28,8 +32,20 @@ struct InstantStep {
 /// middle between two. Every second instant is a film of half the rate.
 [[nodiscard]] std::vector<InstantStep> decodingOrder(std::size_t instants);
 
-/// Puts each series' fields into the order of decoding. Before them come the first instant of each
-/// series and all other fields, in the order in which they are.
-void orderSeries(std::vector<MeshField>& fields);
+/// The numbers of the fields, with those of each series in the order of decoding. Before them come
+/// one instant of each series and all other fields, in the order in which they are. That instant is
+/// the one nearest to `opening`, or the first. It is decoded by itself.
+[[nodiscard]] std::vector<std::size_t> seriesOrder(std::span<const MeshField> fields,
+                                                   std::optional<double> opening = std::nullopt);
+
+/// `its` in that order. REQUIRES: `order` has each number below its.size() once.
+template <class T>
+void putInOrder(const std::vector<std::size_t>& order, std::vector<T>& its) {
+  assert(order.size() == its.size());
+  std::vector<T> out;
+  out.reserve(its.size());
+  for (const std::size_t i : order) out.push_back(std::move(its[i]));
+  its = std::move(out);
+}
 
 }  // namespace qtet

@@ -23,7 +23,7 @@ inline constexpr std::int32_t kMaxSettled = 2;
 /// within kMaxSettled become the prediction. Values of integer types, displacements and fields
 /// with missing values stay. `progress` gets fractions of the work. Returns how many instants are
 /// predicted. Errors: cancelled; the history is then of no use. REQUIRES: series in the order of
-/// decoding (orderSeries). The first rows.size() fields stay as they are: instants that a log has
+/// decoding (seriesOrder). The first rows.size() fields stay as they are: instants that a log has
 /// already. rows[f] is how many predictions field f rests on there, one on the other.
 [[nodiscard]] Result<std::size_t> predictInTime(FusionHistory& history,
                                                 const std::stop_token& stop = {},

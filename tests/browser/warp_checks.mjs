@@ -56,18 +56,75 @@ const middleOf = ({page}) =>
     };
   });
 
+/** A beam that bends by more than an edge is deformed; a switch and a link leave it at rest. */
+async function isDeformedWhereItPassesAnEdge(context) {
+  const {server, bin, out} = context;
+  makeLog(bin, 'beam', out);
+  server.kill();
+  await server.start();
+  const viewer = await opened(context, 'mesh=beam');
+  assert.deepEqual((({field, scale}) => [field, scale])(await shapeOf(viewer)), [
+    'Displacement',
+    1,
+  ]);
+  await viewer.page.getByRole('switch', {name: 'Deformed shape'}).click();
+  await viewer.settle();
+  assert.equal(parameter(viewer, 'warp'), 'off');
+  assert.equal((await shapeOf(viewer)).field, undefined);
+  const again = await opened(context, viewer.page.url());
+  assert.equal((await shapeOf(again)).field, undefined);
+  await viewer.page.getByRole('switch', {name: 'Deformed shape'}).click();
+  await viewer.settle();
+  assert.equal(parameter(viewer, 'warp'), null);
+  assert.equal((await shapeOf(viewer)).field, 'Displacement');
+  assert.deepEqual([...viewer.problems, ...again.problems], []);
+}
+
+/** A run that begins at rest opens at an instant that shows something, and plays on from there. */
+async function opensARunWhereItShowsMost(context) {
+  const {server, bin, out} = context;
+  makeLog(bin, 'beam-run', out, ['beam', '--steps', '24']);
+  server.kill();
+  await server.start();
+  const viewer = await opened(context, 'mesh=beam-run');
+  const {page} = viewer;
+  const timeOf = () =>
+    page.evaluate(() => {
+      const {manifest, snapshot} = window.qtetViewer.viewing.mesh;
+      const {color, warp} = snapshot;
+      return [color, warp].map((its) => manifest.fields[its.field].instant.time);
+    });
+  const [time, moved] = await timeOf();
+  assert.ok(time > 0, `it opens at ${time}`);
+  assert.equal(moved, time);
+  assert.equal(parameter(viewer, 'time'), null);
+  assert.equal(await viewer.text('.time output'), `t = ${time}`);
+  await pictureOf(viewer, 'series-opening');
+  await page.locator('qtet-viewer .scene').focus();
+  await page.keyboard.press('.');
+  await viewer.settle();
+  assert.ok((await timeOf())[0] !== time, 'the next instant is the same');
+  await page.keyboard.press(',');
+  await viewer.settle();
+  assert.equal((await timeOf())[0], time);
+  assert.equal(parameter(viewer, 'time'), null);
+  const rest = await opened(context, 'mesh=beam-run&time=0');
+  assert.deepEqual(await rest.text('.time output'), 't = 0');
+  assert.deepEqual([...viewer.problems, ...rest.problems], []);
+}
+
 /** A switch and a number deform a beam. A link shows the same, and undo goes back. */
 async function deformsABeam(context) {
   const {server, bin, out} = context;
   makeLog(bin, 'beam', out);
   server.kill();
   await server.start();
-  const viewer = await opened(context, 'mesh=beam&field=VonMises');
+  const viewer = await opened(context, 'mesh=beam&field=VonMises&warp=off');
   const {page} = viewer;
   const plain = await pictureOf(viewer, 'warp-off');
   await page.getByRole('switch', {name: 'Deformed shape'}).click();
   await viewer.settle();
-  assert.equal(parameter(viewer, 'warp'), 'Displacement');
+  assert.equal(parameter(viewer, 'warp'), null);
   assert.equal(await viewer.text('.legend-warp'), 'Deformed shape ×\u202f1');
   const number = page.getByRole('textbox', {name: 'Scale ×'});
   await number.fill('8');
@@ -103,8 +160,8 @@ async function deformsABeam(context) {
   for (let i = 0; i < 3; ++i) await page.keyboard.press('Control+z');
   await viewer.settle();
   await refit(viewer);
-  for (const name of ['warp', 'warp-scale', 'rest-edges'])
-    assert.equal(parameter(viewer, name), null);
+  assert.equal(parameter(viewer, 'warp'), 'off');
+  for (const name of ['warp-scale', 'rest-edges']) assert.equal(parameter(viewer, name), null);
   assert.ok(differingShare(plain, await pictureOf(viewer, 'warp-undone')) < 0.002, 'undo differs');
   assert.deepEqual([...viewer.problems, ...again.problems], []);
 }
@@ -145,4 +202,9 @@ async function playsAMotion(context) {
   assert.deepEqual(viewer.problems, []);
 }
 
-export const warpChecks = {deformsABeam, playsAMotion};
+export const warpChecks = {
+  deformsABeam,
+  isDeformedWhereItPassesAnEdge,
+  opensARunWhereItShowsMost,
+  playsAMotion,
+};

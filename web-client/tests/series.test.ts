@@ -9,6 +9,7 @@ import {
   instantName,
   instantsOf,
   markSeries,
+  openingTime,
   shownInstant,
   showTime,
   timesOf,
@@ -81,6 +82,16 @@ describe('a series', () => {
     }
     expect(parseScalar('T@0.5', fields)?.field).toBe(2);
     expect(shownInstant(fields, 3)).toBe(3);
+  });
+
+  test('withoutATimeMeansItsInstantOfTheLowestNumber', () => {
+    const later = marked(field('p'), field('T@2'), field('v@2'), field('T@0'), field('v@0'));
+    showTime(later, 0);
+    expect(parseScalar('T', later)?.field).toBe(3);
+    showTime(later, null);
+    expect(parseScalar('T', later)?.field).toBe(1);
+    expect([1, 0].map((its) => openingTime(later, its)?.text)).toEqual(['2', '2']);
+    expect(openingTime([field('p')], 0)).toBe(null);
   });
 
   test('ofCellsIsAnotherThanThatOfPoints', () => {
@@ -203,6 +214,9 @@ test('aListThatNamesASeriesOnceLeavesItsInstantsToTheHead', () => {
   expect(keyToBegin(listed, null)).toBe('T@0.5');
   expect(keyToBegin(listed, 2)).toBe('T');
   expect(keyToBegin({fields: ['T@0', 'T@0.5'], series: [], firstField: 'T@0.5'}, 0)).toBe('T@0');
+  expect(keyToBegin({fields: ['T@0', 'T@0.5'], series: [], firstField: 'T@0.5'}, null)).toBe(
+    'T@0.5',
+  );
   expect(keyToBegin({fields: ['p'], series: [], firstField: 'p'}, 2)).toBe('p');
   expect(keyToAsk('T[1]', listed.fields, 2)).toBe('T');
 });

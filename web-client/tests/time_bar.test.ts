@@ -107,6 +107,22 @@ test('onlyASeriesThatPlaysHasFieldsAhead', () => {
   expect([bar.isPlaying, mesh.ahead]).toEqual([false, []]);
 });
 
+test('theTimeBeginsAtTheOpeningAndGoesOnFromThere', () => {
+  const fields = ['T@1', 'T@0', 'T@2'].map(field);
+  markSeries(fields);
+  mesh = new ShownMesh();
+  mesh.manifest = {fields} as Manifest;
+  write('field', null);
+  const time = (): string => root.querySelector('.time').querySelector('output').textContent;
+  expect([time(), mesh.firstTime?.text]).toEqual(['t = 1', '1']);
+  bar.step(1);
+  expect([time(), attributes.get('time')]).toEqual(['t = 2', '2']);
+  bar.step(1);
+  expect([time(), attributes.get('time')]).toEqual(['t = 0', '0']);
+  bar.step(1);
+  expect([time(), attributes.get('time')]).toEqual(['t = 1', undefined]);
+});
+
 test('anotherSeriesHasOtherFieldsAheadAndAFieldOfNoneHasNone', () => {
   bar.toggle();
   write('field', 'S');

@@ -9,7 +9,17 @@ import {warpedPoints} from '../core/picture/warp';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Manifest} from '../core/protocol/manifest';
 import {markSeries, showTime} from '../core/protocol/series';
-import {automaticScale, largestScale, warpField, warpFields, warpOf} from '../viewer/settings/warp';
+import {
+  automaticScale,
+  displacementKey,
+  firstWarp,
+  kNoWarp,
+  largestScale,
+  warpField,
+  warpFields,
+  warpOf,
+} from '../viewer/settings/warp';
+import {ShownMesh, settingsFor} from '../viewer/page/shown_mesh';
 import {readSettings} from '../viewer/settings/settings';
 import {FakeCodec} from './fakes';
 
@@ -163,6 +173,53 @@ describe('anAutomaticScale', () => {
     expect(warpOf(settings('-2.5'), mesh(0.01))).toEqual({field: 0, scale: -2.5});
     expect(warpOf(settings('much'), mesh(0.01))).toEqual({field: 0, scale: 50});
     expect(warpOf({...settings('1'), warp: null}, mesh(0.01))).toBeNull();
+  });
+});
+
+describe('without an attribute', () => {
+  /** A cube of 60 regular cells, whose edge is 0.52 of the cube's. */
+  const mesh = (name: string, largest: number, cells = 60): ShownMesh => {
+    const fields = [vectors('U'), vectors(name, {range: [0, largest]})];
+    const shown = new ShownMesh();
+    const lattice = {step: 0.01};
+    shown.manifest = {fields, lattice, levels: [{tetrahedra: cells}]} as unknown as Manifest;
+    shown.bounds = [0, 0, 0, 100, 100, 100];
+    return shown;
+  };
+  test.each([
+    ['Displacement', 0.51, 60, null],
+    ['Displacement', 0.53, 60, 'Displacement'],
+    ['Velocity', 0.53, 60, null],
+    // as long as the diagonal, and a hundredth of it, with tiny cells
+    ['Displacement', 1.73, 60, 'Displacement'],
+    ['Displacement', 1.74, 60, null],
+    ['Displacement', 0.0174, 1e9, 'Displacement'],
+    ['Displacement', 0.0173, 1e9, null],
+  ])('%s of %d moves a mesh of %d cells: %s', (name, largest, cells, warp) =>
+    expect(firstWarp(mesh(name, largest, cells))).toBe(warp),
+  );
+  test('aListsKeyOfDisplacementsIsAskedForAtOnce', () => {
+    expect(displacementKey(['VonMises', 'cell:Displacement', 'U_disp'])).toBe('U_disp');
+    expect(displacementKey(['VonMises', 'Displacement@0'])).toBeNull();
+  });
+  test('aMeshRestsUntilItsBoundsAreKnown', () => {
+    const shown = mesh('Displacement', 1);
+    shown.bounds = [];
+    expect(firstWarp(shown)).toBeNull();
+  });
+  test('itsDisplacementIsThatOfTheShownInstantAndTheAttributeSaysOtherwise', () => {
+    const shown = mesh('Displacement@0', 0);
+    shown.manifest!.fields.push(vectors('Displacement@1', {range: [0, 1]}));
+    markSeries(shown.manifest!.fields);
+    const warp = (text: string | null, time: string): ReturnType<typeof warpOf> => {
+      const read = (name: string): string | null =>
+        name === 'warp' ? text : name === 'time' ? time : null;
+      return warpOf(settingsFor(shown, read), shown);
+    };
+    expect(warp(null, '0')).toEqual({field: 1, scale: 1});
+    expect(warp(null, '1')).toEqual({field: 2, scale: 1});
+    expect(warp('U', '1')?.field).toBe(0);
+    expect(warp(kNoWarp, '1')).toBeNull();
   });
 });
 

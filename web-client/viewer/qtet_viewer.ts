@@ -6,7 +6,7 @@
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
-//   time         of a series: the instant nearest to it is shown; by default the first.
+//   time         of a series: the instant nearest to it is shown; by default the log's choice.
 //   time-group   a name: viewers of the document with the same one show the same time.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
 //   range        "auto" (default), "full", "symmetric", "LOW,HIGH" or, of a series, "instant".
@@ -15,7 +15,8 @@
 //   creases      "off" hides them.
 //   surface      "off" hides it.
 //   opacity      of the surface: above 0, at most 1.
-//   warp         name of a point field of vectors that move the mesh: its deformed shape.
+//   warp         name of a point field of vectors that move the mesh: its deformed shape. "off"
+//                leaves it at rest. By default large displacements move it.
 //   warp-scale   the factor of the vectors. 1 is the true size; by default they are well visible.
 //   rest-edges   "on" draws the edges of the mesh at rest while `warp` moves it.
 //   clip         up to three planes. Each is an axis x, y or z or a direction "1,0,1", then a share
@@ -259,7 +260,7 @@ export class QtetViewer extends HTMLElement {
 
   private asMember(): TimeMember {
     const time = (): string | null =>
-      this.getAttribute('time') ?? this.viewing?.mesh.times[0]?.text ?? null;
+      this.getAttribute('time') ?? this.viewing?.mesh.firstTime?.text ?? null;
     return {
       get time() {
         return time();

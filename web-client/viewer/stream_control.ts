@@ -23,6 +23,7 @@ import type {Kept, Page} from './page/page';
 import type {SegmentPlace} from './page/shown_mesh';
 import {MeshMenu} from './panels/mesh_menu';
 import {hint} from './settings/nearest';
+import {displacementKey, kNoWarp} from './settings/warp';
 
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
 const kOfOneMesh = [
@@ -38,7 +39,7 @@ const kOfOneMesh = [
 export interface StreamListeners {
   /** The limit to begin with. */
   limit(): Limit;
-  /** The time of series to begin with; null: the first. */
+  /** The time of series to begin with; null: that which opens. */
   time(): number | null;
   /** The key of the field that a list's segment before opened with; empty if there was none. */
   keptField(): string;
@@ -248,7 +249,10 @@ export class StreamControl {
     const time = this.listeners.time();
     const listed = entry ? keyToBegin(entry, time) : '';
     const first = listed === '' ? this.listeners.keptField() : listed;
-    const named = [page.read('field') ?? first, page.read('warp'), ...ofLayers]
+    // a series would have to wait for the head
+    const plain = keys.filter((key) => entry?.series.includes(key) !== true);
+    const warp = page.read('warp') ?? displacementKey(plain);
+    const named = [page.read('field') ?? first, warp === kNoWarp ? null : warp, ...ofLayers]
       .filter((text) => text !== null && text !== '')
       .map((text) => keyToAsk(text!, keys, time));
     return named.length > 0 ? [...new Set(named)] : null;
@@ -268,7 +272,8 @@ export function keyToBegin(
 ): string {
   const own = instantName(firstField)?.series;
   if (own === undefined) return firstField;
-  if (time !== null && series.includes(own)) return own;
+  if (time === null) return firstField;
+  if (series.includes(own)) return own;
   return instantKey(fields, own, time) ?? firstField;
 }
 

@@ -236,6 +236,38 @@ TEST(Poster, theLevelIsTheLastOneOfTheFirstChunkAndTheFieldTheOpenings) {
   EXPECT_EQ(posterFields(manifest), std::vector<std::uint32_t>{1});
 }
 
+/// A cube, and a manifest of `cells` cells, whose displacement along z is `share` of its side on top.
+Picture bentPoster(double share, std::uint32_t cells) {
+  LatticeMesh mesh = cube([](const LatticePoint&) { return 50; });
+  const double side = high(mesh, 0) - low(mesh, 0);
+  FieldInfo& field = mesh.fields.emplace_back();
+  field.name = "DISP", field.components = 3, field.minimum = {0, 0, 0},
+  field.step = mesh.lattice.step;
+  const double largest = std::floor(share * side);
+  field.range = {0, largest * mesh.lattice.step};
+  std::vector<std::int32_t>& values = mesh.values.emplace_back();
+  const int top = high(mesh, 2);
+  for (const LatticePoint& p : mesh.points)
+    for (int axis = 0; axis < 3; ++axis)
+      values.push_back(axis == 2 && p[2] == top ? static_cast<std::int32_t>(largest) : 0);
+  Manifest manifest = manifestOf(mesh);
+  manifest.fields[1].components = 3, manifest.fields[1].range = field.range;
+  manifest.levels[0].tetrahedra = cells;
+  EXPECT_EQ(posterFields(manifest), (std::vector<std::uint32_t>{0, 1}));
+  return posterOf(mesh, manifest);
+}
+
+TEST(Poster, displacementsThatPassAnEdgeMoveTheMesh) {
+  const auto shape = [](const Picture& picture) {
+    return static_cast<double>(picture.height) / picture.width;
+  };
+  const double rest = shape(posterOf(cube([](const LatticePoint&) { return 50; })));
+  EXPECT_GT(shape(bentPoster(1, 60)), 1.2 * rest);
+  EXPECT_EQ(shape(bentPoster(0.45, 60)), rest) << "an edge is 0.52 of the side";
+  EXPECT_GT(shape(bentPoster(0.45, 120)), 1.1 * rest) << "here 0.41";
+  EXPECT_EQ(shape(bentPoster(1.8, 60)), rest) << "longer than the diagonal";
+}
+
 TEST(Poster, withoutABoundaryThereIsNone) {
   const Result<Bytes> none = posterWebp(LatticeMesh(), Manifest());
   ASSERT_FALSE(none);

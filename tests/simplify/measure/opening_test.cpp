@@ -62,6 +62,68 @@ TEST(Opening, isNoCutWhereNothingShowsInside) {
   EXPECT_EQ(openingOf(blockWith({})), std::nullopt);
 }
 
+/// The same with fields called T@0, T@1 ...
+LatticeMesh runOf(const std::vector<ValueAt>& instants) {
+  LatticeMesh mesh = blockWith(instants);
+  for (std::size_t i = 0; i < instants.size(); ++i) mesh.fields[i].name = "T@" + std::to_string(i);
+  return mesh;
+}
+
+std::int32_t weakly(const LatticePoint& p, bool onBoundary) { return varied(p, onBoundary) / 20; }
+std::int32_t nearly(const LatticePoint& p, bool onBoundary) {
+  return varied(p, onBoundary) * 3 / 4;
+}
+
+TEST(Opening, isTheInstantThatShowsMostOfARunThatBeginsAtRest) {
+  EXPECT_EQ(openingTime(runOf({constant, weakly, varied, weakly})), 2);
+  EXPECT_EQ(openingTime(runOf({weakly, varied, varied})), 1) << "the first one of equals";
+}
+
+TEST(Opening, isTheFirstInstantWhereThatShowsTwoThirdsAsMuch) {
+  EXPECT_EQ(openingTime(runOf({nearly, varied})), std::nullopt);
+  EXPECT_EQ(openingTime(runOf({constant, constant})), std::nullopt);
+  EXPECT_EQ(openingTime(blockWith({constant, varied})), std::nullopt) << "no series";
+}
+
+TEST(Opening, staysAtTheFirstInstantWhereAnotherFieldShowsAsMuch) {
+  LatticeMesh mesh = runOf({constant, varied, varied});
+  mesh.fields[2].name = "p";
+  std::swap(mesh.fields[1], mesh.fields[2]);
+  mesh.fields.push_back(mesh.fields[2]), mesh.values.push_back(mesh.values[2]);
+  mesh.fields.back().name = "T@2";
+  EXPECT_EQ(openingTime(mesh), std::nullopt);
+}
+
+TEST(Opening, comparesInstantsByTheColoursOfTheWholeSeries) {
+  LatticeMesh mesh = runOf({weakly, varied});
+  mesh.fields[0].range = {0, 50};  // its own colours would be as many
+  EXPECT_EQ(openingTime(mesh), 1);
+}
+
+TEST(Opening, isNoOutlyingInstant) {
+  LatticeMesh mesh = runOf({weakly, varied, varied});
+  mesh.fields[2].step = 1e6;
+  mesh.fields[2].range = {0, 1e9};
+  EXPECT_EQ(openingTime(mesh), 1);
+  mesh.fields[1] = mesh.fields[2];
+  mesh.fields[1].name = "T@1";
+  EXPECT_EQ(openingTime(mesh), std::nullopt);
+}
+
+TEST(Opening, looksAtTheEndsAndAtEqualDistances) {
+  std::vector<ValueAt> instants(100, constant);
+  instants[99] = varied;
+  EXPECT_EQ(openingTime(runOf(instants)), 99);
+  instants[14] = varied;
+  EXPECT_EQ(openingTime(runOf(instants)), 14);
+  instants[13] = varied;
+  EXPECT_EQ(openingTime(runOf(instants)), 14) << "not at every one";
+}
+
+TEST(Opening, isAnInstantWithACutWhereItsBoundaryLooksUniform) {
+  EXPECT_EQ(openingTime(runOf({constant, hidden})), 1);
+}
+
 TEST(Opening, ofACellFieldIsACutIfTheOuterCellsAreAlike) {
   LatticeMesh mesh = blockWith({constant});
   mesh.fields[0].association = "cell";

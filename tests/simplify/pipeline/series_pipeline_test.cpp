@@ -45,7 +45,9 @@ class SeriesPipeline : public ::testing::Test {
       MeshField t{"T@" + shortestText(0.1 * static_cast<double>(step)), 1, "float32", {}, "point"};
       for (const Position& p : out.points)
         t.values.push_back(static_cast<float>(
-            (step == jump_ ? factor_ : 1) *
+            (step < rest_    ? 0
+             : step == jump_ ? factor_
+                             : 1) *
             (p[0] + std::sqrt(1.0 + p[1] * p[1]) * 0.01 * static_cast<double>(step))));
       MeshField c{"C@" + shortestText(0.1 * static_cast<double>(step)), 1, "int32", {}, "cell"};
       for (std::size_t i = 0; i < out.tetrahedra.size(); ++i)
@@ -63,6 +65,7 @@ class SeriesPipeline : public ::testing::Test {
   TetMesh mesh_;
   std::size_t jump_ = kSteps;
   double factor_ = 5;
+  std::size_t rest_ = 0;  ///< so many steps have T = 0
 };
 
 TEST_F(SeriesPipeline, everyInstantComesBackAtTheLastLevel) {
@@ -94,6 +97,19 @@ TEST_F(SeriesPipeline, everyInstantComesBackAtTheLastLevel) {
                   0.501 * info.step)
           << info.name << " " << i;
   }
+}
+
+TEST_F(SeriesPipeline, aRunThatBeginsAtRestOpensThereInWindowsAloneAndNotAtOnce) {
+  rest_ = 3;
+  EXPECT_EQ(make().value().report.manifest.fields[0].name, "T@0");
+  Steps all(kSteps);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const PipelineReport atOnce = simplifyToLog(read(all).value(), {}).value().report;
+  const double time = instantName(atOnce.manifest.fields[0].name)->time;
+  EXPECT_GT(time, 0.25);
+  EXPECT_EQ(instantName(atOnce.manifest.fields[1].name)->time, time);
+  EXPECT_EQ(atOnce.index.laterFields, 2 * (kSteps - 1));
+  EXPECT_TRUE(atOnce.index.fields[0].prediction.isNone());
 }
 
 TEST_F(SeriesPipeline, allInstantsOfASeriesHaveOneStepAndMostArePredicted) {

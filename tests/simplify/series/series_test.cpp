@@ -51,12 +51,36 @@ TEST(Series, everyInstantIsDecodedOnceBehindThoseAroundIt) {
   }
 }
 
+/// The names in the order of seriesOrder.
+std::vector<std::string> ordered(std::vector<std::string> names,
+                                 std::optional<double> opening = std::nullopt) {
+  std::vector<MeshField> fields;
+  for (const std::string& name : names) fields.push_back(field(name));
+  putInOrder(seriesOrder(fields, opening), names);
+  return names;
+}
+
 TEST(Series, otherFieldsAndFirstInstantsComeFirst) {
-  std::vector<MeshField> fields{field("p"), field("T@3"), field("T@1"), field("q"), field("T@2")};
-  orderSeries(fields);
-  std::vector<std::string> names;
-  for (const MeshField& f : fields) names.push_back(f.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"p", "T@1", "q", "T@3", "T@2"}));
+  EXPECT_EQ(ordered({"p", "T@3", "T@1", "q", "T@2"}),
+            (std::vector<std::string>{"p", "T@1", "q", "T@3", "T@2"}));
+}
+
+TEST(Series, theOpeningsInstantsComeBeforeTheFirstOnes) {
+  EXPECT_EQ(ordered({"p", "T@3", "T@1", "v@1", "v@3", "q", "T@2"}, 2),
+            (std::vector<std::string>{"p", "T@2", "v@1", "q", "T@1", "v@3", "T@3"}))
+      << "the nearest one where that time is missing, the earlier one of two";
+  EXPECT_EQ(ordered({"T@1", "v@1", "T@2", "v@2", "T@3", "v@3"}, 3),
+            (std::vector<std::string>{"T@3", "v@3", "T@1", "v@1", "T@2", "v@2"}));
+}
+
+TEST(Series, anOrderThatIsThereStays) {
+  const std::vector<std::string> names = ordered({"p", "T@3", "T@1", "T@2", "T@0"}, 2);
+  EXPECT_EQ(ordered(names, 2), names);
+}
+
+TEST(Series, allInstantsButTheOneOfTheLowestNumberAreLater) {
+  const std::vector<MeshField> fields{field("p"), field("T@3"), field("T@1"), field("T@2")};
+  EXPECT_EQ(laterInstants(std::span(fields)), (std::vector<bool>{false, false, true, true}));
 }
 
 /// A cell of four points with these fields; each has four values.

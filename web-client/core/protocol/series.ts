@@ -35,8 +35,8 @@ export function instantName(name: string): ({series: string} & Time) | null {
 }
 
 /**
- * Marks the instants of all series of `least` and more, the first of each as shown. They get one
- * range: that of the whole series. May be called again for more fields.
+ * Marks the instants of all series of `least` and more, the one of each with the lowest number as
+ * shown. They get one range: that of the whole series. May be called again for more fields.
  */
 export function markSeries(fields: FieldInfo[], least = 2): void {
   for (const info of fields) {
@@ -137,7 +137,15 @@ export function timesOf(fields: readonly FieldInfo[]): Time[] {
   return [...times].map(([time, text]) => ({time, text})).sort((a, b) => a.time - b.time);
 }
 
-/** Lets each series' key mean its instant nearest to the time; null: the first one. */
+/** The time of a mesh that opens with the field: its own, or that of a series; null: no series. */
+export function openingTime(fields: readonly FieldInfo[], field: number): Time | null {
+  return fields[field]?.instant ?? fields.find(({instant}) => instant)?.instant ?? null;
+}
+
+/**
+ * Lets each series' key mean its instant nearest to the time; null: that of the lowest number,
+ * which stands in the head.
+ */
 export function showTime(fields: readonly FieldInfo[], time: number | null): void {
   const shown = new Map<string, Instant>();
   for (const {instant} of fields) {
@@ -149,13 +157,17 @@ export function showTime(fields: readonly FieldInfo[], time: number | null): voi
   for (const instant of shown.values()) instant.isShown = true;
 }
 
-/** The earlier one of two that are equally near. */
+/** The earlier one of two that are equally near; without a time none is nearer. */
 function isNearer(a: Time, b: Time, time: number | null): boolean {
-  const more = time === null ? 0 : Math.abs(a.time - time) - Math.abs(b.time - time);
+  if (time === null) return false;
+  const more = Math.abs(a.time - time) - Math.abs(b.time - time);
   return more < 0 || (more === 0 && a.time < b.time);
 }
 
-/** Among a mesh's keys that of the series' instant nearest to the time; undefined for none. */
+/**
+ * Among a mesh's keys that of the series' instant nearest to the time, without a time the first;
+ * undefined for none.
+ */
 export function instantKey(
   keys: readonly string[],
   seriesKey: string,

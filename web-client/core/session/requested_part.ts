@@ -22,7 +22,7 @@ export class RequestedPart {
   limit: Limit = kFull;
   /** Some names mean series, and only the head says which instants these have. */
   private hasSeries = false;
-  /** The time that series begin with; null: the first. */
+  /** The time that series begin with; null: that of the instants in the head. */
   private time: number | null = null;
   /** The chunks that the log's copy holds. */
   private chunks = Infinity;

@@ -28,7 +28,7 @@ export interface Source extends LogAddress {
   fields: string[] | null;
   /** Some of `fields` are series of a server's mesh, which asks for instants. */
   hasSeries?: boolean;
-  /** The time at which series begin; null: the first. */
+  /** The time at which series begin; null: that of the instants in the head. */
   time?: number | null;
   /** The log is a segment of a list: a single instant is a series, too. */
   isSegment?: boolean;

@@ -12,7 +12,7 @@ import {labelsOf} from '../../core/picture/labels';
 import type {SeriesRanges} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {listedInstant, type SegmentList} from '../../core/protocol/segment_list';
-import {showTime, timesOf} from '../../core/protocol/series';
+import {openingTime, showTime, timesOf} from '../../core/protocol/series';
 import type {Snapshot} from '../../core/session/worker_messages';
 import {placeOn} from '../../core/picture/log_scale';
 import {KnownRanges, type SegmentRanges} from './known_ranges';
@@ -25,6 +25,7 @@ import {
   type ShownRange,
   type ViewAttribute,
 } from '../settings/settings';
+import {firstWarp} from '../settings/warp';
 
 /** Fields that are asked for ahead at once. A server takes 1,024 names in a request. */
 export const kMaxAhead = 512;
@@ -117,6 +118,13 @@ export class ShownMesh {
     return this.place?.list.instants ?? timesOf(this.manifest?.fields ?? []);
   }
 
+  /** The time that it opens at; null without a series. */
+  get firstTime(): {time: number; text: string} | null {
+    const {manifest, place} = this;
+    if (place) return listedInstant(place.list, null);
+    return openingTime(manifest?.fields ?? [], manifest?.opening?.field ?? 0);
+  }
+
   /** The range of the colours in a picture of this mesh; null if nothing is coloured. */
   rangeOf(snapshot: Snapshot, settings: Settings): Omit<ShownRange, 'hasMissing'> | null {
     const {manifest, place, ranges} = this;
@@ -178,6 +186,7 @@ export function settingsFor(
   else if (place) settings.time = listedInstant(place.list, settings.time).time;
   const fields = manifest?.fields ?? [];
   showTime(fields, settings.time);
+  settings.warp ??= firstWarp(mesh);
   const shown = shownScalar(read('field'), fields, firstField);
   if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
   if (settings.hasFirstOpacities)

@@ -2,9 +2,9 @@
 
 /** A viewer, as its group sees it. */
 export interface TimeMember {
-  /** The time that it shows, as text; null: the first one, which is not known yet. */
+  /** The time that it shows, as text; null: the one that opens, which is not known yet. */
   readonly time: string | null;
-  /** Shows the instant nearest to this time; null: its first one. */
+  /** Shows the instant nearest to this time; null: the one that opens. */
   take(time: string | null): void;
   /** Stops playing. */
   stop(): void;

@@ -62,6 +62,8 @@ export class TimeBar {
   /** For each of them, by time: its field, -1 for none. */
   private tracks: number[][] = [];
   private at = 0;
+  /** The instant that is shown where no time is asked for. */
+  private first = 0;
   /** The instant whose time the bar shows: while it plays, that of the picture. */
   private seen = 0;
   private timer: ReturnType<typeof setInterval> | undefined;
@@ -132,8 +134,8 @@ export class TimeBar {
     const {fields} = manifest;
     const color = shownScalar(this.attributes.read('field'), fields, firstField);
     this.choose([color?.field ?? -1, warpField(settings.warp, fields)], fields);
-    const wanted = settings.time ?? this.times[0]!.time;
-    this.at = nearestTo(this.times, wanted);
+    this.first = nearestTo(this.times, mesh.firstTime!.time);
+    this.at = settings.time === null ? this.first : nearestTo(this.times, settings.time);
     const ahead = (track: number[]): number[] => fieldsAhead(track, this.at);
     mesh.playing = this.isPlaying ? this.tracks.flatMap(ahead) : [];
     this.slider.max = String(this.times.length - 1);
@@ -324,7 +326,7 @@ export class TimeBar {
     if (count === 0) return;
     this.at = (at + count) % count;
     this.isLate = !this.isHere(this.at);
-    this.attributes.write('time', this.at === 0 ? null : this.times[this.at]!.text);
+    this.attributes.write('time', this.at === this.first ? null : this.times[this.at]!.text);
   }
 
   private showPlaying(): void {

@@ -8,7 +8,7 @@ import {formatFactor} from '../page/format';
 import type {Attributes} from '../page/page';
 import {fillSelect} from '../page/select';
 import type {Settings} from '../settings/settings';
-import {largestScale, warpFields, warpOf} from '../settings/warp';
+import {firstWarp, kNoWarp, largestScale, warpFields, warpOf} from '../settings/warp';
 import {scalarName, type Panel, type Scene} from './panel';
 
 const kSteps = 400;
@@ -23,6 +23,8 @@ export class WarpPanel implements Panel {
   private readonly restEdges: HTMLInputElement;
   /** The keys of the fields that can move the mesh. */
   private keys: string[] = [];
+  /** The warp without an attribute: a key, or kNoWarp. */
+  private first = kNoWarp;
   /** The scale at the slider's end. */
   private end = 1;
 
@@ -39,7 +41,7 @@ export class WarpPanel implements Panel {
     this.restEdges = find(this.body, 'input[name=rest-edges]');
     this.slider.max = String(kSteps);
     this.on.addEventListener('change', () =>
-      this.choose(this.on.checked ? (this.keys[0] ?? null) : null),
+      this.choose(this.on.checked ? (this.keys[0] ?? kNoWarp) : kNoWarp),
     );
     this.select.addEventListener('change', () => this.choose(this.select.value));
     this.slider.addEventListener('input', () =>
@@ -57,6 +59,7 @@ export class WarpPanel implements Panel {
     const fields = scene?.manifest.fields ?? [];
     const usable = warpFields(fields).map((field) => ({field, component: kMagnitude}));
     this.keys = usable.map((scalar) => scalarText(scalar, fields));
+    this.first = (scene && firstWarp(scene)) ?? kNoWarp;
     this.section.hidden = usable.length === 0;
     const warp = scene && warpOf(settings, scene);
     this.on.checked = warp !== null;
@@ -83,9 +86,9 @@ export class WarpPanel implements Panel {
   }
 
   /** A scale that suits other vectors means nothing for these. */
-  private choose(key: string | null): void {
+  private choose(key: string): void {
     this.attributes.write('warp-scale', null);
-    this.attributes.write('warp', key);
+    this.attributes.write('warp', key === this.first ? null : key);
   }
 
   private type(): void {

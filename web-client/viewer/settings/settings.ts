@@ -68,13 +68,13 @@ export interface Settings {
   limit: Limit;
   parallel: boolean;
   camera: CameraState | null;
-  /** The field whose vectors move the mesh; null: it rests. */
+  /** The field whose vectors move the mesh, or kNoWarp; null: that is for the mesh to choose. */
   warp: string | null;
   /** The factor of the vectors; null: it is for the mesh to choose. */
   warpScale: number | null;
   /** A warp shows the edges of the mesh at rest, too. */
   restEdges: boolean;
-  /** The time that is shown of series; null: the first. */
+  /** The time that is shown of series; null: that which opens. */
   time: number | null;
 }
 

@@ -1,6 +1,6 @@
 // The deformed shape: which field of vectors moves the mesh, and how far.
 
-import {parseScalar} from '../../core/layers/field_values';
+import {parseScalar, scalarText} from '../../core/layers/field_values';
 import {kMagnitude} from '../../core/picture/field_scale';
 import type {Warp} from '../../core/picture/warp';
 import type {FieldInfo} from '../../core/protocol/fields';
@@ -22,6 +22,12 @@ const kMaxShare = 0.4;
 /** The slider's end, in automatic scales, is at least this. */
 const kMinEnd = 4;
 
+/** The volume of a regular tetrahedron of edge 1. */
+const kUnitVolume = Math.SQRT2 / 12;
+
+/** The attribute's text for a mesh that stays at rest. */
+export const kNoWarp = 'off';
+
 /** The mesh, as far as a warp needs it. */
 export interface Warpable {
   manifest: Manifest | null;
@@ -34,6 +40,10 @@ const isVectors = ({association, components}: FieldInfo): boolean =>
 
 const isDisplacement = ({name, instant}: FieldInfo): boolean =>
   kDisplacement.test(instant?.series ?? name);
+
+/** Among keys of fields that of displacements, which may move the first picture; null: none. */
+export const displacementKey = (keys: readonly string[]): string | null =>
+  keys.find((key) => kDisplacement.test(key)) ?? null;
 
 /** The fields that can move the mesh: displacements first. Series have their shown instant. */
 export function warpFields(fields: readonly FieldInfo[]): number[] {
@@ -65,11 +75,34 @@ export function largestScale(field: number, mesh: Warpable): number {
   return share > 0 ? Math.max(least, roundBelow(kMaxShare / share)) : least;
 }
 
+/**
+ * The key of the displacement that moves the mesh if no attribute says otherwise; null: it rests.
+ * The largest one must pass an edge of the whole mesh, and must be seen at true size. The mean edge
+ * is that of as many regular cells as the mesh has, if they filled its box. A mesh that fills less
+ * of its box has shorter edges.
+ */
+export function firstWarp(mesh: Warpable): string | null {
+  const {manifest, bounds} = mesh;
+  if (!manifest || bounds.length === 0) return null;
+  const {fields, levels} = manifest;
+  const field = warpFields(fields).find((its) => isDisplacement(fields[its]!));
+  const cells = levels.at(-1)?.tetrahedra ?? 0;
+  if (field === undefined || cells === 0) return null;
+  const sides = sidesOf(bounds);
+  const volume = sides.reduce((product, side) => product * side, 1);
+  const edge = Math.cbrt(volume / cells / kUnitVolume) / Math.hypot(...sides);
+  const share = largestShare(field, mesh);
+  const moves = share > edge && share >= kSeenShare && share <= kLongestShare;
+  return moves ? scalarText({field, component: kMagnitude}, fields) : null;
+}
+
+const sidesOf = (bounds: readonly number[]): number[] =>
+  [0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!);
+
 /** The longest vector as a share of the diagonal; 0 if that is not known. */
 function largestShare(field: number, {manifest, bounds}: Warpable): number {
   if (!manifest || bounds.length === 0) return 0;
-  const sides = [0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!);
-  const diagonal = manifest.lattice.step * Math.hypot(...sides);
+  const diagonal = manifest.lattice.step * Math.hypot(...sidesOf(bounds));
   const share = manifest.fields[field]!.range[1] / diagonal;
   return Number.isFinite(share) ? share : 0;
 }

@@ -10,7 +10,7 @@ import type {Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
 import {hint} from './nearest';
 import {kViewAttributes, type ViewAttribute} from './settings';
-import {warpField} from './warp';
+import {kNoWarp, warpField} from './warp';
 
 type Name = ViewAttribute | 'transport';
 type Read = (name: Name) => string | null;
@@ -101,7 +101,7 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
         has,
     );
   const warp = read('warp');
-  if (warp !== null && warpField(warp, fields) < 0)
+  if (warp !== null && warp !== kNoWarp && warpField(warp, fields) < 0)
     sentences.push(
       parseScalar(warp, fields)
         ? `warp="${warp}" moves nothing: it takes a field of points with three components.`
