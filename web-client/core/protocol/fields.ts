@@ -20,7 +20,7 @@ export interface Instant {
   alike?: SeriesRanges;
 }
 
-/** Of the values, or of the magnitudes if components > 1; and by component what they can be. */
+/** That of the values, or of the magnitudes if components > 1; and by component of what can be. */
 export interface SeriesRanges {
   range: [number, number];
   ranges: [number, number][];
