@@ -141,12 +141,12 @@ TEST(Samples, theFinComesInSizes) {
             0u);
   EXPECT_EQ(makeSample("fin", kFinCells - 1)->tetrahedra.size(), kFinCells) << "at least so many";
   for (const std::uint64_t cells : {1u, 2400u, 2401u, 10000u, 50000u}) {
-    TetMesh mesh = makeSample("fin", cells).value();
-    EXPECT_GE(mesh.tetrahedra.size(), cells);
-    EXPECT_LE(mesh.tetrahedra.size(), std::max<std::uint64_t>(2400, 2 * cells));
-    const CleanReport report = cleanMesh(mesh).value();
-    EXPECT_EQ(report.flatCells.count + report.invertedCells.count, 0u) << cells;
-    EXPECT_EQ(report.components, 1u);
+    TetMesh sized = makeSample("fin", cells).value();
+    EXPECT_GE(sized.tetrahedra.size(), cells);
+    EXPECT_LE(sized.tetrahedra.size(), std::max<std::uint64_t>(2400, 2 * cells));
+    const CleanReport found = cleanMesh(sized).value();
+    EXPECT_EQ(found.flatCells.count + found.invertedCells.count, 0u) << cells;
+    EXPECT_EQ(found.components, 1u);
   }
   EXPECT_EQ(makeSample("fin", kMaxSampleCells + 1).error().code, ErrorCode::kBadValue);
   EXPECT_EQ(makeSample("box", 4000).error().code, ErrorCode::kBadValue);
