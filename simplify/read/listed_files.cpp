@@ -17,6 +17,7 @@
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/parts/file_family.h"
 #include "simplify/read/parts/named_files.h"
+#include "simplify/read/parts/piece_files.h"
 #include "simplify/read/vtu/read_vtu.h"
 
 namespace qtet {
@@ -78,7 +79,7 @@ Result<Files> filesIn(const fs::path& folder) {
   if (families.empty())
     return badFile(folder,
                    "this folder holds neither numbered files of VTK nor a case of OpenFOAM" +
-                       (others.empty() ? "; it is empty" : ", but " + shownNames(others)) +
+                       (others.empty() ? "; it has no files" : ", but " + shownNames(others)) +
                        "; give a mesh file");
   if (families.size() > 1) {
     std::vector<std::string> names;
@@ -239,6 +240,7 @@ bool namesFiles(const fs::path& path) {
 
 Result<ReadOptions> withListedFiles(const fs::path& path, const ReadOptions& options) {
   const ListedFiles& given = options.listed;
+  if (given.files.empty() && isFoamCase(path)) return options;
   if (given.isChecked || (given.files.empty() && given.times.empty() && !namesFiles(path)))
     return options;
   ReadOptions out = options;

@@ -165,8 +165,8 @@ TEST_F(ListedFilesTest, whatIsNoSeriesIsRefusedByName) {
 
 TEST_F(ListedFilesTest, aFolderHoldsOneSeries) {
   EXPECT_EQ(refusal(folder_),
-            "F: this folder holds neither numbered files of VTK nor a case of OpenFOAM; it is "
-            "empty; give a mesh file");
+            "F: this folder holds neither numbered files of VTK nor a case of OpenFOAM; it has "
+            "no files; give a mesh file");
   std::ofstream(folder_ / "notes.txt") << "text";
   EXPECT_EQ(refusal(folder_),
             "F: this folder holds neither numbered files of VTK nor a case of OpenFOAM, but "
@@ -181,6 +181,16 @@ TEST_F(ListedFilesTest, aFolderHoldsOneSeries) {
             "quotes: 'F/other_*.vtu'");
   std::ofstream(folder_ / "run.pvd") << "<VTKFile/>";
   EXPECT_EQ(refusal(folder_), "F: it has run.pvd, which lists files with their times; give that");
+}
+
+TEST_F(ListedFilesTest, aCaseOfOpenFoamIsNoSeries) {
+  put("run_1.vtu", 1);
+  for (const char* inside : {"processor0", "constant/polyMesh"}) {
+    fs::create_directories(folder_ / inside);
+    EXPECT_TRUE(withListedFiles(folder_, {})->listed.files.empty()) << inside;
+    fs::remove_all(folder_ / inside);
+    EXPECT_EQ(withListedFiles(folder_, {})->listed.files.size(), 1u);
+  }
 }
 
 TEST(FileFamily, namesAroundTheirNumbers) {
