@@ -13,6 +13,7 @@
 #include "proto/series.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/mesh/moved_place.h"
+#include "simplify/read/listed_files.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_times.h"
 #include "simplify/series/series.h"
@@ -194,9 +195,11 @@ class Adding {
       return {};
     }
     if (!time) {
-      const Result<ChosenTimes> chosen = chosenTimesOf(file, reading_);
+      const Result<ReadOptions> reading = withListedFiles(file, reading_);
+      if (!reading) return std::unexpected(reading.error());
+      const Result<ChosenTimes> chosen = chosenTimesOf(file, *reading);
       if (!chosen) return std::unexpected(chosen.error());
-      if (!chosen->times.empty()) return takeTimes(file, chosen->times);
+      if (!chosen->times.empty()) return takeTimes(file, *reading, chosen->times);
     }
     Result<ReadMesh> read = readMesh(file, reading_);
     if (!read) return std::unexpected(read.error());
@@ -206,7 +209,8 @@ class Adding {
   /// Steps need not be read to be left out: no field is asked for that the log may lack.
   [[nodiscard]] bool mayLeave() const { return !request_.reading.fields.has_value(); }
 
-  Status takeTimes(const std::string& file, const std::vector<double>& all) {
+  Status takeTimes(const std::string& file, const ReadOptions& reading,
+                   const std::vector<double>& all) {
     std::vector<double> times = all;
     if (mayLeave()) std::erase_if(times, [&](double time) { return known_.knows(time); });
     out_.skipped += all.size() - times.size();
@@ -215,8 +219,8 @@ class Adding {
     for (std::size_t at = 0; at < times.size() && out_.steps < request_.most;) {
       const std::size_t count =
           std::min({windows_.room(), times.size() - at, request_.most - out_.steps});
-      Result<ReadMesh> read = readTimes(file, reading_, std::span(times).subspan(at, count),
-                                        reading_.moves ? std::optional(all.front()) : std::nullopt);
+      Result<ReadMesh> read = readTimes(file, reading, std::span(times).subspan(at, count),
+                                        reading.moves ? std::optional(all.front()) : std::nullopt);
       if (!read) return std::unexpected(read.error());
       if (Status s = take(std::move(*read), file, std::nullopt); !s) return s;
       at += count;

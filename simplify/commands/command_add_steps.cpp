@@ -1,6 +1,4 @@
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -19,6 +17,7 @@
 #include "simplify/commands/push_log.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/mesh/workers.h"
+#include "simplify/read/listed_files.h"
 #include "simplify/series/time_statistics.h"
 
 namespace qtet {
@@ -26,26 +25,6 @@ namespace {
 
 // Seconds between two looks: files are not written more often, and nobody waits for longer.
 constexpr double kMinInterval = 0.1, kMaxInterval = 3600;
-
-/// --times: one number a file. Throws UsageError.
-std::vector<double> timesOf(const ParsedWords& parsed, std::size_t files) {
-  std::vector<double> out;
-  if (!parsed.has("times")) return out;
-  const auto text = parsed.get<std::string>("times");
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    double time = 0;
-    const auto [stop, code] = std::from_chars(text.data() + at, text.data() + end, time);
-    if (code != std::errc() || stop != text.data() + end || !std::isfinite(time))
-      throw UsageError("--times '" + text + "' is no list of numbers between commas");
-    out.push_back(time);
-    at = end + 1;
-  }
-  if (out.size() != files)
-    throw UsageError("--times gives " + std::to_string(out.size()) + " times for " +
-                     std::to_string(files) + " files; give one a file");
-  return out;
-}
 
 /// A line a series: its new instants and their bytes.
 void printSeries(const std::vector<const NewField*>& added, std::ostream& out) {
@@ -80,11 +59,23 @@ void warnOfStatistics(const Manifest& manifest, const std::vector<NewField>& add
                "--time-statistics', or remove them with 'qtet remove-field'");
 }
 
+/// --times: one a file, of the words or of the series that one word names. Throws UsageError.
+void takeTimes(std::vector<double> times, StepsRequest& out) {
+  if (out.files.size() == 1 && namesFiles(out.files.front())) {
+    out.reading.listed.times = std::move(times);
+    return;
+  }
+  if (!times.empty() && times.size() != out.files.size())
+    throw UsageError("--times gives " + std::to_string(times.size()) + " times for " +
+                     std::to_string(out.files.size()) + " files; give one a file");
+  out.times = std::move(times);
+}
+
 StepsRequest requestOf(const ParsedWords& parsed, Progress& progress) {
   StepsRequest out;
   out.files = parsed.get<std::vector<std::string>>("FILE...");
-  out.times = timesOf(parsed, out.files.size());
   out.reading = readOptionsOf(parsed);
+  takeTimes(timesOf(parsed), out);
   out.reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
   out.adding.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
   out.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
@@ -237,7 +228,8 @@ int runAddSteps(const Words& words, Console& console) {
        "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
        "(keys), files, skipped, added [as of\n"
        "add-field], notes, warnings.",
-       "  qtet add-steps run.qtet run.pvd\n  qtet add-steps run.qtet step-17.vtu step-18.vtu "
+       "  qtet add-steps run.qtet run.pvd\n  qtet add-steps run.qtet 'step_*.vtu'\n  qtet "
+       "add-steps run.qtet step-17.vtu step-18.vtu "
        "--times 1.7,1.8\n  QTET_TOKEN=... qtet add-steps run.qtet run.pvd --follow --push "
        "http://127.0.0.1:8080/\n"},
       options, {"LOG", "FILE..."});

@@ -66,20 +66,22 @@ int runCheck(const Words& words, Console& console) {
   po::options_description options("options");
   options.add_options()("json", "print one JSON object");
   addReadOptions(options);
+  addTimesOption(options);
   const ParsedWords parsed(
       words,
-      {"check", "check IN [options]",
+      {"check", "check IN... [options]",
        "Says everything that is wrong or unusual about a mesh: what it is, how often it is there "
        "and where first, and whether simplify would refuse it,\n"
        "repair it or keep it. Ends with 1 if anything would be refused. Tetrahedra are counted "
        "after splitting; points and other cells as in the file.",
        "  qtet check part.vtu\n  qtet check ogrid.vts --weld 1e-6 --json\n"},
-      options, {"IN"});
+      options, {"IN..."});
   if (parsed.helped(console)) return kExitOk;
-  const auto input = parsed.get<std::string>("IN");
+  ReadOptions reading = readOptionsOf(parsed);
+  const std::string input = inputOf(parsed, reading);
   Progress progress(console);
   progress.stage("checking " + input);
-  const CheckReport report = checkMesh(input, readOptionsOf(parsed));
+  const CheckReport report = checkMesh(input, reading);
   progress.clear();
   if (parsed.has("json")) {
     printJson(toJson(report, input, console), console);

@@ -200,14 +200,15 @@ void checkCount(std::size_t instants, const std::string& asked, const MeshOutput
 /// The files that `--time` and the output's kind ask for.
 Result<std::vector<InstantFile>> filesOf(const ParsedWords& parsed, const MeshOutput& output,
                                          const std::vector<ManifestField>& known,
-                                         const std::vector<std::uint32_t>& wanted) {
+                                         const std::vector<std::uint32_t>& wanted,
+                                         std::vector<std::string>& notes) {
   if (!parsed.has("time") && !isCollection(output)) {
     InstantFile all;
     for (const std::uint32_t f : wanted) all.fields.push_back({f, known[f].name, false});
     return std::vector<InstantFile>{std::move(all)};
   }
   const std::string asked = parsed.has("time") ? parsed.get<std::string>("time") : "all";
-  auto files = instantFiles(known, wanted, asked, parsed.get<std::string>("LOG"));
+  auto files = instantFiles(known, wanted, asked, parsed.get<std::string>("LOG"), notes);
   if (files) checkCount(files->size(), asked, output);
   return files;
 }
@@ -321,13 +322,13 @@ std::vector<double> timesIn(const Segment& segment, const std::vector<double>& a
 
 /// The times of the list that `--time` means.
 Result<std::vector<double>> askedTimes(const ParsedWords& parsed, const SegmentList& list,
-                                       const std::string& input, const MeshOutput& output) {
+                                       const std::string& input, const MeshOutput& output,
+                                       std::vector<std::string>& notes) {
   if (!parsed.has("time") && !isCollection(output))
     throw UsageError(
         "a list has a mesh for each of its logs; give --time T, or all of them with -o NAME.pvd");
   const std::string asked = parsed.has("time") ? parsed.get<std::string>("time") : "all";
   const std::vector<double> times = list.times();
-  std::vector<std::string> notes;  // "last" was asked for
   const auto steps = chosenSteps(times, asked, input, notes);
   if (!steps) return std::unexpected(steps.error());
   checkCount(steps->size(), asked, output);
@@ -337,10 +338,11 @@ Result<std::vector<double>> askedTimes(const ParsedWords& parsed, const SegmentL
 }
 
 Result<MeshOutputReport> extractList(const ParsedWords& parsed, const std::string& input,
-                                     const MeshOutput& output, const FileTaker& take) {
+                                     const MeshOutput& output, const FileTaker& take,
+                                     std::vector<std::string>& notes) {
   const Result<SegmentList> list = openList(input);
   if (!list) return std::unexpected(list.error());
-  const auto asked = askedTimes(parsed, *list, input, output);
+  const auto asked = askedTimes(parsed, *list, input, output, notes);
   if (!asked) return std::unexpected(asked.error());
   std::vector<MeshOutputReport> reports;
   for (const Segment& segment : list->segments) {
@@ -362,11 +364,12 @@ Result<MeshOutputReport> extractList(const ParsedWords& parsed, const std::strin
 }
 
 Result<MeshOutputReport> extractOne(const ParsedWords& parsed, const std::string& input,
-                                    const MeshOutput& output, const FileTaker& take) {
+                                    const MeshOutput& output, const FileTaker& take,
+                                    std::vector<std::string>& notes) {
   const Result<OpenedLog> log = openLog(input);
   if (!log) return std::unexpected(log.error());
   const auto choose = [&](const auto& known, const auto& wanted) {
-    return filesOf(parsed, output, known, wanted);
+    return filesOf(parsed, output, known, wanted, notes);
   };
   return extractLog(parsed, *log, chosenLevel(parsed, log->manifest, log->file.index()), output,
                     choose, take);
@@ -381,10 +384,14 @@ Status extract(const ParsedWords& parsed, Console& console) {
     throw UsageError(
         "a .pvd names other files, which the standard output cannot hold; give -o NAME.pvd");
   Written written(*output);
-  Result<MeshOutputReport> report = isSegmentList(input)
-                                        ? extractList(parsed, input, *output, written.taker())
-                                        : extractOne(parsed, input, *output, written.taker());
+  std::vector<std::string> notes;
+  Result<MeshOutputReport> report =
+      isSegmentList(input) ? extractList(parsed, input, *output, written.taker(), notes)
+                           : extractOne(parsed, input, *output, written.taker(), notes);
   if (!report) return std::unexpected(report.error());
+  // that the last was taken is known where it was asked for
+  if (!parsed.has("time") || timeWord(parsed.get<std::string>("time")) != "last")
+    for (const std::string& note : notes) console.note(note);
   report->json["input"] = input;
   return written.finish(*report, console);
 }

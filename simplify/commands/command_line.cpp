@@ -79,10 +79,21 @@ ParsedWords::ParsedWords(const Words& words, CommandHelp help, po::options_descr
     if (!has(name))
       throw UsageError((takesMore(name) ? name.substr(0, name.size() - 3) : name) + " is missing");
   }
+  refuseOutputWord();
   for (const auto& option : options_.options()) {
     const std::string& name = option->long_name();
     if (isRequired(name) && !has(name)) throw UsageError("--" + name + " is missing");
   }
+}
+
+void ParsedWords::refuseOutputWord() const {
+  if (positional_.empty() || !takesMore(positional_.back()) || !isRequired("output") ||
+      has("output"))
+    return;
+  const auto words = get<std::vector<std::string>>(positional_.back());
+  std::error_code code;
+  if (words.size() > 1 && !std::filesystem::exists(words.back(), code))
+    throw oneTooMany(help_, positional_, {words.back()}, true);
 }
 
 std::string ParsedWords::nearOption(const std::string& unknown) const {

@@ -64,6 +64,8 @@ class ParsedWords {
 
  private:
   [[nodiscard]] bool isRequired(const std::string& option) const;
+  /// Throws UsageError where the output lacks its -o, as the last of several words.
+  void refuseOutputWord() const;
   /// didYouMean of an option as it was given, "--colour".
   [[nodiscard]] std::string nearOption(const std::string& unknown) const;
   /// The heading of a rare option, "" of any other.

@@ -1,9 +1,12 @@
 #include "simplify/commands/command_read.h"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 
 #include "simplify/read/options/time_steps.h"
+#include "simplify/read/options/time_text.h"
+#include "simplify/read/parts/file_family.h"
 
 namespace qtet {
 namespace {
@@ -56,8 +59,8 @@ void addReadOptions(boost::program_options::options_description& options, const 
       "a distance: join points within it (0: at the same place), as where an O-grid closes; none: "
       "keep pieces of a parallel result apart, which are joined at the points that they share")(
       "time", po::value<std::string>()->default_value(time),
-      "of a series: a step's time, first, last; or all, FROM:TO:EVERY, or times between commas: "
-      "the steps' fields, as NAME@TIME")(
+      "of a series: a step's time, ~T (the nearest to T), first, last; or all, FROM:TO:EVERY, or "
+      "times between commas: the steps' fields, as NAME@TIME")(
       "threshold", po::value<std::string>(),
       "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
       "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(
@@ -91,6 +94,34 @@ ReadOptions readOptionsOf(const ParsedWords& parsed) {
   if (options.plot3d && parsed.get<std::string>("plot3d") != "none")
     options.plot3dSolution = parsed.get<std::string>("plot3d");
   return options;
+}
+
+std::vector<double> timesOf(const ParsedWords& parsed) {
+  std::vector<double> out;
+  if (!parsed.has("times")) return out;
+  const auto text = parsed.get<std::string>("times");
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const auto time = plainTime(std::string_view(text).substr(at, end - at));
+    if (!time) throw UsageError("--times '" + text + "' is no list of numbers between commas");
+    out.push_back(*time);
+    at = end + 1;
+  }
+  return out;
+}
+
+void addTimesOption(boost::program_options::options_description& options) {
+  options.add_options()("times", boost::program_options::value<std::string>(),
+                        "of numbered files: one time a file, between commas; without it their "
+                        "TimeValue, else the numbers in their names");
+}
+
+std::string inputOf(const ParsedWords& parsed, ReadOptions& options) {
+  const auto words = parsed.get<std::vector<std::string>>("IN...");
+  options.listed.times = timesOf(parsed);
+  if (words.size() == 1) return words.front();
+  options.listed.files.assign(words.begin(), words.end());
+  return familyOf(options.listed.files);
 }
 
 Words readWordsOf(const ParsedWords& parsed) {

@@ -13,6 +13,16 @@ namespace qtet {
 void addReadOptions(boost::program_options::options_description& options,
                     const char* time = "last");
 
+/// --times: numbers between commas; none where it is not given. Throws UsageError.
+[[nodiscard]] std::vector<double> timesOf(const ParsedWords& parsed);
+
+/// --times of a series of numbered files.
+void addTimesOption(boost::program_options::options_description& options);
+
+/// The input that the words of "IN..." name, for reading and for reports. Several files are set in
+/// `options.listed`, and so is --times.
+[[nodiscard]] std::string inputOf(const ParsedWords& parsed, ReadOptions& options);
+
 /// The words that say the same once more, for another command.
 [[nodiscard]] Words readWordsOf(const ParsedWords& parsed);
 

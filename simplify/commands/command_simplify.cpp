@@ -10,6 +10,7 @@
 #include "simplify/commands/simplified_list.h"
 #include "simplify/commands/simplified_log.h"
 #include "simplify/log/opened_list.h"
+#include "simplify/read/listed_files.h"
 
 namespace qtet {
 namespace {
@@ -47,14 +48,20 @@ decltype(Manifest::units) unitsOf(const ParsedWords& parsed) {
   return out;
 }
 
+/// The input's name without its folder; a folder's own name.
+std::string sourceOf(const std::filesystem::path& input) {
+  const std::filesystem::path path = input.lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   SimplifyRequest request;
-  request.input = parsed.get<std::string>("IN");
+  request.read = readOptionsOf(parsed);
+  request.input = inputOf(parsed, request.read);
   request.output = output.name();
   PipelineOptions& options = request.pipeline;
-  options.source = std::filesystem::path(request.input).filename().string();
+  options.source = sourceOf(request.input);
   options.algorithm = algorithmOf(parsed.get<std::string>("algorithm"));
-  request.read = readOptionsOf(parsed);
   request.read.fields = parseFieldNames(parsed.get<std::string>("fields"));
   options.quantise.positionBits =
       parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
@@ -112,37 +119,44 @@ int runSimplify(const Words& words, Console& console) {
                         "--keep-order")("json", "print one JSON object");
   addNoClobber(options);
   addReadOptions(options);
+  addTimesOption(options);
   addFusionOptions(options);
   addMeasureOptions(options);
   const ParsedWords parsed(
       words,
       {"simplify",
-       "simplify IN -o OUT.qtet|OUT.json [options]",
+       "simplify IN... -o OUT.qtet|OUT.json [options]",
        "Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...:\n"
        "simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them,\n"
        "simplifies them level by level and writes the log, from which every level and the whole\n"
        "mesh come back.\n"
+       "Numbered files (several names, a pattern in quotes, a folder) are the steps of one "
+       "series.\n"
        "A series whose cells change becomes a list of logs, NAME.json with NAME.0.DIGEST.qtet and "
        "so on.",
        "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields "
        "Density,Velocity --field-bits 10 --json\n"
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "
-       "--time all -o run.qtet\n"
+       "--time all -o run.qtet\n  qtet simplify step_*.vtu --time all -o run.qtet\n"
        "  qtet simplify remeshed.pvd --time all -o remeshed.json\n",
-       {{"input", {"format", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
+       {{"input", {"format", "times", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
         {"fields", {"field-bits", "field-weight", "time-statistics", "unit", "time-unit"}},
         {"quality and base mesh",
          {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
           "placement", "shape-weight", "preserve-regions", "position-bits"}},
         {"output", {"geometry-codec", "keep-order", "original-ids", "measure"}},
         {"rare", {"algorithm"}}}},
-      options, {"IN"});
+      options, {"IN..."});
   if (parsed.helped(console)) return kExitOk;
   const Output output = outputOf(parsed, console);
-  const SimplifyRequest request = requestOf(parsed, output);
+  SimplifyRequest request = requestOf(parsed, output);
   const bool asJson = parsed.has("json");
   if (Status checked = checkOutput(output, ".qtet .json", request.input); !checked)
     return reportFailure(checked.error(), asJson, console);
+  // once, since a long series is read in many parts
+  Result<ReadOptions> listed = withListedFiles(request.input, request.read);
+  if (!listed) return reportFailure(listed.error(), asJson, console);
+  request.read = std::move(*listed);
 
   Progress progress(console);
   const Result<OrderedJson> report = isSegmentList(request.output)

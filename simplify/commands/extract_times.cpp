@@ -9,10 +9,10 @@ namespace qtet {
 Result<std::vector<InstantFile>> instantFiles(const std::vector<ManifestField>& fields,
                                               const std::vector<std::uint32_t>& wanted,
                                               const std::string& asked,
-                                              const std::filesystem::path& log) {
+                                              const std::filesystem::path& log,
+                                              std::vector<std::string>& notes) {
   const Instants instants(fields, wanted);
   const std::vector<double>& times = instants.times();
-  std::vector<std::string> notes;  // "last" was asked for
   const Result<std::vector<std::size_t>> steps = chosenSteps(times, asked, log, notes);
   if (!steps) return std::unexpected(steps.error());
   std::vector<InstantFile> out;

@@ -15,10 +15,10 @@
 namespace qtet {
 
 /// A file for each time that `asked` means (chosenSteps) of the series among `wanted`, ascending
-/// numbers. Its fields are those of Instants::fileAt. Errors: chosenSteps's.
+/// numbers. Its fields are those of Instants::fileAt. Errors and notes: chosenSteps's.
 [[nodiscard]] Result<std::vector<InstantFile>> instantFiles(
     const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
-    const std::string& asked, const std::filesystem::path& log);
+    const std::string& asked, const std::filesystem::path& log, std::vector<std::string>& notes);
 
 /// The same of a segment of a list, for each of some of its times. An instant of the log is that of
 /// a time as placeOfTime says.

@@ -27,6 +27,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`targetRatio`", "--target-ratio"},
     {"`threshold`", "--threshold"},
     {"`time`", "--time"},
+    {"`times`", "--times"},
     {"`timeStatistics`", "--time-statistics"},
     {"`units`", "--unit"},
     {"`weld`", "--weld"},

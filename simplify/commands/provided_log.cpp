@@ -2,6 +2,7 @@
 
 #include "codec/files/unreachable.h"
 #include "simplify/commands/command_read.h"
+#include "simplify/read/listed_files.h"
 
 namespace qtet {
 
@@ -19,7 +20,7 @@ std::string meshNameOf(const fs::path& file) {
 int provideLog(const fs::path& input, const fs::path& log, const ParsedWords& parsed,
                Console& console) {
   std::error_code code;
-  const bool isThere = fs::is_regular_file(input, code);
+  const bool isThere = fs::is_regular_file(input, code) || namesFiles(input);
   if (isUnreachable(code))
     return reportFailure(
         {ErrorCode::kIo, "cannot read " + input.string() + ": " + code.message(), Error::kNoOffset},

@@ -1,6 +1,7 @@
 // The readers that a browser does without: those of VTK, HDF5, meshio and OpenFOAM.
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
+#include "simplify/read/listed_files.h"
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/process/reading_time.h"
@@ -56,6 +57,11 @@ std::string withName(std::string text, const std::string&, const std::string&) {
 
 Result<std::vector<std::filesystem::path>> exodusPieces(const std::filesystem::path& path) {
   return refusal(path);
+}
+bool isFoamCase(const std::filesystem::path&) { return false; }
+bool namesFiles(const std::filesystem::path&) { return false; }
+Result<ReadOptions> withListedFiles(const std::filesystem::path&, const ReadOptions& options) {
+  return options;
 }
 Result<std::vector<std::filesystem::path>> processorFolders(const std::filesystem::path& marker) {
   return refusal(marker);

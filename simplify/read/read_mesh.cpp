@@ -5,9 +5,11 @@
 
 #include "proto/field_key.h"
 #include "simplify/clean/mend_faces.h"
+#include "simplify/read/listed_files.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
+#include "simplify/read/parts/piece_files.h"
 #include "simplify/read/parts/weld_points.h"
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/process/run_meshio.h"
@@ -134,8 +136,21 @@ Result<CellMesh> readCompressed(const std::filesystem::path& path, const ReadOpt
   return out;
 }
 
-Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
+/// A series of numbered files, as one that a file lists.
+Result<CellMesh> readListed(const std::filesystem::path& path, const ReadOptions& options,
+                            ReadReport& report) {
+  if (!options.listed.note.empty()) report.notes.push_back(options.listed.note);
+  return joined(readSteps(path, MeshFormat::kSeries, options, report), path, options, report);
+}
+
+Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& given,
                           ReadReport& report) {
+  if (isFoamCase(path))
+    return joined(readSteps(path / "", MeshFormat::kOpenFoam, given, report), path, given, report);
+  const Result<ReadOptions> withFiles = withListedFiles(path, given);
+  if (!withFiles) return std::unexpected(withFiles.error());
+  const ReadOptions& options = *withFiles;
+  if (!options.listed.files.empty()) return readListed(path, options, report);
   if (isCompressed(path) && !options.plot3d) return readCompressed(path, options, report);
   const MeshFormat format =
       options.plot3d

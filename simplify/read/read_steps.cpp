@@ -122,6 +122,7 @@ Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
   std::vector<CellMesh> blocks;
   ReadOptions ofPart = options;
   ofPart.time = "last";  // the step is chosen already, and a part knows no times
+  ofPart.listed = {};
   for (const std::filesystem::path& part : parts) {
     const MeshFormat format = formatOf(part);
     if (isSeries(format) || format >= MeshFormat::kGmsh)
@@ -159,9 +160,19 @@ Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, Mes
   return out;
 }
 
+Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path, MeshFormat format,
+                                           const ListedFiles& listed) {
+  if (listed.files.empty())
+    return format == MeshFormat::kPvd ? entriesOfPvd(path) : entriesOfJson(path);
+  std::vector<SeriesEntry> out;
+  for (std::size_t i = 0; i < listed.files.size(); ++i)
+    out.push_back({listed.times[i], static_cast<int>(i), listed.files[i]});
+  return out;
+}
+
 Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, MeshFormat format,
                                            const ReadOptions& options, ReadReport& report) {
-  const auto entries = format == MeshFormat::kPvd ? entriesOfPvd(path) : entriesOfJson(path);
+  const auto entries = entriesOf(path, format, options.listed);
   if (!entries) return std::unexpected(entries.error());
   const auto all = stepsOfSeries(*entries, path, report.notes);
   if (!all) return std::unexpected(all.error());

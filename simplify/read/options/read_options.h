@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,14 @@ struct Threshold {
 /// The default of `readSeconds`.
 inline constexpr std::chrono::seconds kReadPatience{60};
 
+/// The files of a series that no file lists, as withListedFiles gives them (listed_files.h).
+struct ListedFiles {
+  std::vector<std::filesystem::path> files;  ///< empty: the path alone says which
+  std::vector<double> times;                 ///< one a file; empty: the files themselves say them
+  std::string note;                          ///< where the times come from
+  bool isChecked = false;
+};
+
 struct ReadOptions {
   FieldNames fields;
   CurvedCells curved = CurvedCells::kSplit;
@@ -46,6 +55,7 @@ struct ReadOptions {
   /// The Q file beside a PLOT3D grid; empty: the file is no PLOT3D grid.
   std::string plot3dSolution;
   bool plot3d = false;
+  ListedFiles listed{};
   /// How long a foreign reader may read nothing before it is given up (watch_process.h). One of
   /// ours may take so long beside what the file's size allows (reading_time.h).
   std::chrono::seconds patience = kReadPatience;

@@ -60,16 +60,34 @@ std::vector<std::size_t> stepsOf(const StepRange& range, const std::vector<doubl
   return out;
 }
 
+/// The step of "~T", the time nearest to T and of two the earlier, with a note where it is another.
+/// nullopt: it is no number. REQUIRES: one time at least.
+std::optional<std::size_t> nearestStep(std::string_view text, const std::vector<double>& times,
+                                       std::vector<std::string>& notes) {
+  double wanted = 0;
+  if (text.empty() || !readPart(text, wanted) || !std::isfinite(wanted)) return std::nullopt;
+  if (const auto exact = placeOfTime(times, wanted)) return exact;
+  const std::size_t step = nearestTime(times, wanted);
+  notes.push_back("time " + shortestText(wanted) + " is none; the nearest, " +
+                  shortestText(times[step]) + ", is taken, which is " +
+                  shortestText(static_cast<float>(std::abs(times[step] - wanted))) +
+                  (times[step] < wanted ? " earlier" : " later"));
+  return step;
+}
+
 /// The steps of the times between commas, ascending, or the first text that is none's.
 std::expected<std::vector<std::size_t>, std::string> stepsAt(const std::string& asked,
-                                                             const std::vector<double>& times) {
+                                                             const std::vector<double>& times,
+                                                             std::vector<std::string>& notes) {
   std::vector<std::size_t> out;
   for (std::size_t at = 0, end = 0; at <= asked.size(); at = end + 1) {
     end = std::min(asked.find(',', at), asked.size());
     const std::string text = asked.substr(at, end - at);
     double wanted = 0;
     const bool isNumber = !text.empty() && readPart(std::string_view(text), wanted);
-    const auto step = isNumber ? placeOfTime(times, wanted) : std::nullopt;
+    const auto step = text.starts_with('~') ? nearestStep(text.substr(1), times, notes)
+                      : isNumber            ? placeOfTime(times, wanted)
+                                            : std::nullopt;
     if (!step) return std::unexpected(text);
     out.push_back(*step);
   }
@@ -114,7 +132,7 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
   if (times.empty())
     return fail(ErrorCode::kNotFound, path.string() + " has no time step " + asked +
                                           ", for it has no times; leave out `time`");
-  const auto steps = stepsAt(asked, times);
+  const auto steps = stepsAt(asked, times, notes);
   if (steps) return *steps;
   constexpr std::size_t kShown = 12;
   std::string there;
@@ -123,8 +141,8 @@ Result<std::vector<std::size_t>> chosenSteps(const std::vector<double>& times,
   return fail(ErrorCode::kNotFound,
               path.string() + " has no time step " + steps.error() + "; it has " + there +
                   (times.size() > kShown ? ", ..." : "") +
-                  "; give `time` one of them, several between commas, FROM:TO:EVERY, first, last "
-                  "or all");
+                  "; give `time` one of them, several between commas, FROM:TO:EVERY, first, last, "
+                  "all, or ~T for the nearest to T");
 }
 
 }  // namespace qtet

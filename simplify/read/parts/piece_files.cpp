@@ -92,6 +92,11 @@ Result<std::vector<fs::path>> exodusPieces(const fs::path& path) {
   return out;
 }
 
+bool isFoamCase(const fs::path& folder) {
+  const auto [numbers, isCollated] = processorsIn(folder);
+  return !numbers.empty() || isCollated || isThere(folder / "constant" / "polyMesh");
+}
+
 Result<std::vector<fs::path>> processorFolders(const fs::path& marker) {
   const fs::path folder = marker.parent_path().empty() ? fs::path(".") : marker.parent_path();
   const auto [numbers, isCollated] = processorsIn(folder);

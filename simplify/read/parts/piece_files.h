@@ -20,6 +20,9 @@ inline constexpr std::uint64_t kMaxPieceFiles = 1U << 24;
 [[nodiscard]] Result<std::vector<std::filesystem::path>> exodusPieces(
     const std::filesystem::path& path);
 
+/// Whether the folder is a case of OpenFOAM: it has constant/polyMesh or a folder of a process.
+[[nodiscard]] bool isFoamCase(const std::filesystem::path& folder);
+
 /// The folders processor0, processor1 ... beside an OpenFOAM case's marker, where the case is to be
 /// read from them. It has no mesh of its own then; or it has no time that they lack, and they have
 /// more. Empty: it is to be read as a whole. Errors: not-found (one of them is missing), bad-input

@@ -242,7 +242,8 @@ TEST_F(Tool, wordsThatAreNotUnderstoodEndWithTwo) {
   expectFailure("simplify in.vtu -o out.qtet --algorithm edges", 2, "give qtet or paper");
   expectFailure("simplify in.vtu -o out.qtet --fields a,,b", 2, "empty name");
   expectFailure("simplify in.vtu -o out.vtu", 2, ".qtet");
-  expectFailure("simplify a.vtu b.vtu -o out.qtet", 2, "'b.vtu' is one word too many");
+  expectFailure("simplify a.vtu out.qtet", 2, "name the output with -o out.qtet");
+  expectFailure("convert a.vtu b.vtu -o out.vtk", 2, "'b.vtu' is one word too many");
   expectFailure("extract a.qtet -o a.vtu", 2, "exactly one");
   expectFailure("extract a.qtet -o a.vtu --level 1 --tets 5", 2, "exactly one");
   expectFailure("extract a.qtet -o a.step --level 1", 2, ".vtu");

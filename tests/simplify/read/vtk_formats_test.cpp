@@ -614,6 +614,27 @@ TEST(VtkFormats, openFoamCasesWithPolyhedraAreRead) {
   EXPECT_EQ(read->report.split.cells[kPolyhedronCell], 1u);
 }
 
+TEST(VtkFormats, anOpenFoamCaseIsItsFolderToo) {
+  const fs::path marker = foamCase(), folder = marker.parent_path();
+  ASSERT_TRUE(fs::remove(marker));
+  for (const fs::path& named : {folder, folder / "", folder / "."}) {
+    const Result<ReadMesh> read = readMesh(named);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_NEAR(filledBy(read->mesh).volume, 2, 1e-9) << named;
+    EXPECT_EQ(read->report.times, std::vector<double>{1});
+  }
+  ReadOptions options;
+  options.time = "4";
+  const Result<ReadMesh> none = readMesh(folder, options);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("no time step 4"), std::string::npos);
+  fs::create_directory(folder / "processors2");
+  fs::remove_all(folder / "constant");
+  const Result<ReadMesh> collated = readMesh(folder);
+  ASSERT_FALSE(collated);
+  EXPECT_NE(collated.error().message.find("reconstructPar"), std::string::npos);
+}
+
 TEST(VtkFormats, ofOpenFoamMeansAtPointsAreReadAndCellValuesByName) {
   const fs::path file = foamCase();
   const auto fieldsOf = [&](const FieldNames& names) {

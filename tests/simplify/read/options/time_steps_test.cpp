@@ -51,6 +51,27 @@ TEST(TimeSteps, timesBetweenCommasAreTakenInOrderAndOnce) {
   EXPECT_NE(stepsOf("0,7").error().message.find("no time step 7"), std::string::npos);
 }
 
+TEST(TimeSteps, aTildeTakesTheNearestTimeWithANote) {
+  std::vector<std::string> notes;
+  EXPECT_EQ(chosenSteps(kTimes, "~0.25", "run.pvd", notes).value(), (Steps{3}));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "time 0.25 is none; the nearest, 0.2, is taken, which is 0.05 earlier");
+  EXPECT_EQ(stepsOf("~0.26").value(), (Steps{4}));
+  EXPECT_EQ(stepsOf("~-7").value(), (Steps{0}));
+  EXPECT_EQ(stepsOf("~1e9").value(), (Steps{5}));
+  EXPECT_EQ(stepsOf("~0.5", {0, 1}).value(), (Steps{0})) << "of two the earlier";
+  EXPECT_EQ(stepsOf("~7,0.1,~-0.9").value(), (Steps{0, 2, 5}));
+  notes.clear();
+  EXPECT_EQ(chosenSteps(kTimes, "~0.3", "run.pvd", notes).value(), (Steps{4}));
+  EXPECT_EQ(chosenSteps({7}, "~7", "run.pvd", notes).value(), (Steps{0}));
+  EXPECT_TRUE(notes.empty()) << "it is the time itself";
+  EXPECT_EQ(chosenSteps({7}, "~3", "run.pvd", notes).value(), (Steps{0}));
+  EXPECT_EQ(notes.back(), "time 3 is none; the nearest, 7, is taken, which is 4 later");
+  for (const char* asked : {"~", "~x", "~~1", "~nan", "~inf", "0,~"})
+    EXPECT_EQ(stepsOf(asked).error().code, ErrorCode::kNotFound) << asked;
+  EXPECT_EQ(stepsOf("~1", {}).error().code, ErrorCode::kNotFound);
+}
+
 TEST(TimeSteps, anExactTimeIsPreferredToOneThatIsNear) {
   const std::vector<double> unix{1700000000, 1700000001, 1700000002};
   for (std::size_t step = 0; step < unix.size(); ++step) {
