@@ -46,6 +46,8 @@ class Pieces {
   /// Behind the last byte of the old log that is taken.
   [[nodiscard]] std::uint64_t oldEnd() const { return oldEnd_; }
   void add(const Piece& piece) {
+    assert(all_.empty() ||
+           (piece.oldOffset >= oldEnd_ && piece.offset >= all_.back().offset + all_.back().bytes));
     Piece* const last = all_.empty() ? nullptr : &all_.back();
     if (last && piece.oldOffset == oldEnd_ && piece.offset == last->offset + last->bytes)
       last->bytes += piece.bytes;
@@ -98,7 +100,7 @@ void addLater(ByteView old, std::uint64_t oldOffset, ByteView later, std::uint64
   std::map<std::array<std::uint64_t, 2>, std::vector<std::size_t>> places;
   for (std::size_t at = 0; at + kWordBytes <= old.size(); at += kWordBytes)
     places[wordAt(old, at)].push_back(at);
-  std::size_t oldEnd = 0;
+  std::size_t oldEnd = 0, laterEnd = 0;  // behind the last run
   for (std::size_t at = 0; at + kWordBytes <= later.size();) {
     const auto found = places.find(wordAt(later, at));
     const auto place = found == places.end()
@@ -109,7 +111,7 @@ void addLater(ByteView old, std::uint64_t oldOffset, ByteView later, std::uint64
       continue;
     }
     std::size_t begin = at, oldBegin = *place, end = at + kWordBytes, oldStop = *place + kWordBytes;
-    while (begin > 0 && oldBegin > oldEnd && later[begin - 1] == old[oldBegin - 1])
+    while (begin > laterEnd && oldBegin > oldEnd && later[begin - 1] == old[oldBegin - 1])
       --begin, --oldBegin;
     while (end < later.size() && oldStop < old.size() && later[end] == old[oldStop])
       ++end, ++oldStop;
@@ -118,7 +120,7 @@ void addLater(ByteView old, std::uint64_t oldOffset, ByteView later, std::uint64
       continue;
     }
     out.add({offset + begin, oldOffset + oldBegin, end - begin});
-    at = end, oldEnd = oldStop;
+    at = laterEnd = end, oldEnd = oldStop;
   }
 }
 

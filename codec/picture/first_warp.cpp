@@ -78,10 +78,13 @@ void moveAsFirstShown(LatticeMesh& mesh, const Manifest& manifest) {
   });
   if (at == mesh.fields.end() || !isFirstMoved(manifest, mesh, largestOf(manifest, *field))) return;
   const auto& values = mesh.values[static_cast<std::size_t>(at - mesh.fields.begin())];
+  // a log may say less of its values than they are
+  const double furthest = std::ldexp(1.0, kMaxPositionBits);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     for (std::uint32_t c = 0; c < 3; ++c)
       if (const double value = at->value(c, values[3 * v + c]); !std::isnan(value))
-        mesh.points[v][c] += static_cast<std::int32_t>(std::floor(value / mesh.lattice.step + 0.5));
+        mesh.points[v][c] += static_cast<std::int32_t>(
+            std::clamp(std::floor(value / mesh.lattice.step + 0.5), -furthest, furthest));
 }
 
 }  // namespace qtet

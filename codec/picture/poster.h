@@ -25,10 +25,10 @@ inline constexpr int kMinPosterPixels = 80;
 
 /// A WebP of at most kMaxPosterBytes with a transparent ground. It holds the rectangle that the
 /// viewer fits into the free area. Scaled to that share of the area, it shows the mesh in its
-/// place. The opening's plane cuts the mesh. Large displacements move it. Cell edges are left out. Where the viewer looks at
-/// a part, the picture fades out towards its edges.
-/// `mesh` is at posterLevel with posterFields. Deterministic. Errors: bad-input (no boundary), io
-/// (libwebp refused), limit-exceeded (the smallest picture takes more bytes).
+/// place. The opening's plane cuts the mesh. Large displacements move it. Cell edges are left out.
+/// Where the viewer looks at a part, the picture fades out towards its edges. `mesh` is at
+/// posterLevel with posterFields. Deterministic. Errors: bad-input (no boundary), io (libwebp
+/// refused), limit-exceeded (the smallest picture takes more bytes).
 [[nodiscard]] Result<Bytes> posterWebp(const LatticeMesh& mesh, const Manifest& manifest);
 
 }  // namespace qtet

@@ -16,6 +16,8 @@
 #include "simplify/read/listed_files.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_times.h"
+#include "simplify/read/steps/common_type.h"
+#include "simplify/read/steps/step_reports.h"
 #include "simplify/series/series.h"
 
 namespace qtet {
@@ -61,12 +63,13 @@ class KnownInstants {
     KnownSeries& series = series_[{field.association, std::string(name->series)}];
     if (series.times.empty()) series.components = field.components, series.type = field.type;
     const bool areFloats = isFloatType(field.type) && isFloatType(series.type);
-    if (field.components != series.components || (field.type != series.type && !areFloats))
-      return fail(ErrorCode::kBadInput, file + ": " + field.name + " has " +
-                                            std::to_string(field.components) + " components of " +
-                                            field.type + ", its series in the log " +
-                                            std::to_string(series.components) + " of " +
-                                            series.type + "; write it as the earlier steps are");
+    const bool holdsIt = areFloats || commonType(series.type, field.type) == series.type;
+    if (field.components != series.components || !holdsIt)
+      return fail(ErrorCode::kBadInput,
+                  file + ": " + field.name + " has " + std::to_string(field.components) + " x " +
+                      field.type + ", its series in the log " + std::to_string(series.components) +
+                      " x " + series.type +
+                      ", which does not hold it; write it as the earlier steps are");
     if (field.type != series.type && series.type == "float32")
       for (double& value : field.values) value = static_cast<float>(value);
     field.type = series.type;
@@ -79,10 +82,9 @@ class KnownInstants {
   [[nodiscard]] std::string warning() const {
     if (between_.empty()) return {};
     return std::to_string(between_.size()) + (between_.size() == 1 ? " step lies" : " steps lie") +
-           " before time " + shortestText(*last_) +
-           ", the last one of the log, and between others that it has: do they belong to one "
-           "run? " +
-           (between_.size() == 1 ? "It is " : "The first is ") + shortestText(*between_.begin());
+           " before time " + shortestText(*last_) + ", the last one of the log (" +
+           shownTimes(std::vector<double>(between_.begin(), between_.end())) +
+           "): do they belong to one run?";
   }
 
  private:
@@ -152,6 +154,12 @@ class Windows {
   std::set<double> steps_;  // of `pending_`
 };
 
+std::string listOf(const std::set<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
 class Adding {
  public:
   Adding(const OpenedLog& log, const StepsRequest& request, Progress& progress)
@@ -168,7 +176,7 @@ class Adding {
   }
 
   Status takeAll() {
-    for (std::size_t i = 0; i < request_.files.size() && out_.steps < request_.most; ++i) {
+    for (std::size_t i = 0; i < request_.files.size() && !out_.stopped; ++i) {
       const auto time = request_.times.empty() ? std::nullopt : std::optional(request_.times[i]);
       if (Status s = take(request_.files[i], time); !s) return s;
     }
@@ -176,6 +184,9 @@ class Adding {
   }
   AddedSteps finish() {
     AddedFields added = windows_.finish();
+    if (!others_.empty())
+      notes_.push_back("left out, since the log has no such series: " + listOf(others_) +
+                       "; --fields adds them");
     added.notes.insert(added.notes.begin(), notes_.begin(), notes_.end());
     if (out_.skipped > 0)
       added.notes.push_back(
@@ -202,8 +213,15 @@ class Adding {
       if (!chosen->times.empty()) return takeTimes(file, *reading, chosen->times);
     }
     Result<ReadMesh> read = readMesh(file, reading_);
-    if (!read) return std::unexpected(read.error());
+    if (!read) return unreadable(read.error());
     return take(std::move(*read), file, time);
+  }
+
+  /// Ends the reading, where the steps before are to be added.
+  Status unreadable(const Error& error) {
+    if (!request_.keepsEarlier || out_.steps == 0) return std::unexpected(error);
+    out_.stopped = error;
+    return {};
   }
 
   /// Steps need not be read to be left out: no field is asked for that the log may lack.
@@ -216,12 +234,16 @@ class Adding {
     out_.skipped += all.size() - times.size();
     if (times.empty()) return {};
     if (Status s = windows_.prepare(); !s) return s;
-    for (std::size_t at = 0; at < times.size() && out_.steps < request_.most;) {
-      const std::size_t count =
-          std::min({windows_.room(), times.size() - at, request_.most - out_.steps});
+    bool isOneByOne = false;  // one of the steps cannot be read
+    for (std::size_t at = 0; at < times.size();) {
+      const std::size_t count = isOneByOne ? 1 : std::min(windows_.room(), times.size() - at);
       Result<ReadMesh> read = readTimes(file, reading, std::span(times).subspan(at, count),
                                         reading.moves ? std::optional(all.front()) : std::nullopt);
-      if (!read) return std::unexpected(read.error());
+      if (!read && request_.keepsEarlier && count > 1) {
+        isOneByOne = true;
+        continue;
+      }
+      if (!read) return unreadable(read.error());
       if (Status s = take(std::move(*read), file, std::nullopt); !s) return s;
       at += count;
     }
@@ -234,6 +256,7 @@ class Adding {
     if (read.mesh.fields.empty()) return {};
     if (const auto cleaned = cleanMesh(read.mesh); !cleaned)
       return std::unexpected(cleaned.error());
+    addNew(read.report.notes, notes_);
     if (Status s = windows_.prepare(); !s) return s;
     return windows_.take(std::move(read.mesh));
   }
@@ -241,13 +264,13 @@ class Adding {
   /// Leaves the fields of which the log has a series, or all that are asked for, without instants
   /// that it has.
   Status keepInstants(TetMesh& mesh, const std::string& file) {
-    std::string others;
+    std::set<std::string> others;
     std::set<double> skipped, come;
     std::erase_if(mesh.fields, [&](const MeshField& field) {
       const KnownSeries* const series = known_.find(field);
       const double time = instantName(field.name)->time;
       if (series == nullptr && mayLeave()) {
-        others += (others.empty() ? "" : ", ") + field.name;
+        others.emplace(instantName(field.name)->series);
         return true;
       }
       const bool isThere = series != nullptr && hasTime(series->times, time);
@@ -257,12 +280,11 @@ class Adding {
     for (const double time : come) skipped.erase(time);
     out_.steps += come.size(), out_.skipped += skipped.size();
     if (come.empty() && skipped.empty())
-      return fail(ErrorCode::kNotFound, file + " holds no instant of a series of the log" +
-                                            (others.empty() ? "" : " (it has " + others + ")") +
-                                            "; name others with --fields");
-    if (!others.empty())
-      notes_.push_back(file + ": left out, since the log has no such series: " + others +
-                       "; --fields adds them");
+      return fail(ErrorCode::kNotFound,
+                  file + " holds no instant of a series of the log" +
+                      (others.empty() ? "" : " (it has " + listOf(others) + ")") +
+                      "; name others with --fields");
+    others_.merge(others);
     std::ranges::sort(mesh.fields, {}, [](const MeshField& field) {
       return std::tuple(instantName(field.name)->time, field.association, field.name);
     });
@@ -277,6 +299,7 @@ class Adding {
   KnownInstants known_;
   Windows windows_;
   std::vector<std::string> notes_;
+  std::set<std::string> others_;  // series that the log lacks
   AddedSteps out_;
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,14 +18,15 @@ struct StepsRequest {
   std::vector<double> times;  ///< one a file, or none where the files know them
   ReadOptions reading;        ///< `fields` nullopt: those of which the log has a series
   AddFieldsOptions adding;
-  std::size_t most =
-      std::numeric_limits<std::size_t>::max();  ///< steps that are added, and not more
+  /// Steps before one that cannot be read are added, and the error is AddedSteps::stopped.
+  bool keepsEarlier = false;
 };
 
 struct AddedSteps {
   AddedFields added;        ///< without fields: there is nothing that the log does not have
   std::size_t steps = 0;    ///< that were added
   std::size_t skipped = 0;  ///< steps that the log has already; they are not read
+  std::optional<Error> stopped{};
 };
 
 /// Reads the steps that the log does not have, a window at a time, and codes them. Steps of a time

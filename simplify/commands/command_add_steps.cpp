@@ -1,5 +1,4 @@
 #include <chrono>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -107,25 +106,31 @@ Status reportNothing(const ParsedWords& parsed, const OpenedLog& log, const Adde
   return {};
 }
 
-/// Adds what the files have and the log does not. Returns how many steps that are; reports none
-/// only where `reportsNone`.
-Result<std::size_t> addSteps(const ParsedWords& parsed, const StepsRequest& request,
-                             bool reportsNone, Progress& progress, Console& console) {
+struct Pass {
+  std::size_t steps = 0;         ///< that were added
+  std::optional<Error> stopped;  ///< behind these a step cannot be read
+};
+
+/// Adds what the files have and the log does not. Reports that there is nothing only where
+/// `reportsNone`.
+Result<Pass> addSteps(const ParsedWords& parsed, const StepsRequest& request, bool reportsNone,
+                      Progress& progress, Console& console) {
   const auto name = parsed.get<std::string>("LOG");
   const Result<OpenedLog> log = openLog(name);
   if (!log) return std::unexpected(log.error());
   progress.stage("decoding " + name);
   const Result<AddedSteps> steps = addedSteps(*log, request, progress);
   if (!steps) return std::unexpected(steps.error());
+  const Pass out{steps->steps, steps->stopped};
   const OrderedJson source{{"files", request.files}, {"skipped", steps->skipped}};
-  if (steps->steps == 0 && !reportsNone) return 0;
+  if (steps->steps == 0 && !reportsNone) return out;
   Status written =
       steps->steps == 0
           ? reportNothing(parsed, *log, *steps, source, progress, console)
           : writeAdded(parsed, log->file, steps->added, source, printSeries, progress, console);
   if (!written) return std::unexpected(written.error());
   warnOfStatistics(log->manifest, steps->added.fields, console);
-  return steps->steps;
+  return out;
 }
 
 /// Sends the log as it lies there.
@@ -143,21 +148,18 @@ void follow(const ParsedWords& parsed, StepsRequest request,
             const std::optional<PushTarget>& target, Progress& progress, Console& console) {
   const auto file = parsed.get<std::string>("LOG");
   bool isPushed = !target.has_value();
+  request.keepsEarlier = true;
   const auto pass = [&]() -> Result<bool> {
-    request.most = std::numeric_limits<std::size_t>::max();
-    Result<std::size_t> steps = addSteps(parsed, request, false, progress, console);
-    if (!steps) {  // the steps before the one at fault
-      request.most = 1;
-      steps = addSteps(parsed, request, false, progress, console);
-    }
+    const Result<Pass> done = addSteps(parsed, request, false, progress, console);
     progress.clear();
-    if (!steps) return std::unexpected(steps.error());
-    if (*steps > 0 && target) isPushed = false;
+    if (!done) return std::unexpected(done.error());
+    if (done->steps > 0 && target) isPushed = false;
     if (!isPushed)
       if (Status s = push(file, *target, parsed.has("json"), console); !s)
         return std::unexpected(s.error());
     isPushed = true;
-    return *steps > 0;
+    if (done->stopped) return std::unexpected(*done->stopped);
+    return done->steps > 0;
   };
   const auto seconds = parsed.number("every", kMinInterval, kMaxInterval);
   followFiles(request.files, std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds)),
@@ -184,8 +186,8 @@ Status addOrFollow(const ParsedWords& parsed, Progress& progress, Console& conso
     follow(parsed, request, target, progress, console);
     return {};
   }
-  const Result<std::size_t> steps = addSteps(parsed, request, true, progress, console);
-  if (!steps) return std::unexpected(steps.error());
+  if (const auto done = addSteps(parsed, request, true, progress, console); !done)
+    return std::unexpected(done.error());
   return target ? push(output, *target, parsed.has("json"), console) : Status{};
 }
 
@@ -197,7 +199,8 @@ int runAddSteps(const Words& words, Console& console) {
   options.add_options()("times", po::value<std::string>(),
                         "one time a file, between commas, where the files know none: 0.1,0.2")(
       "fields", po::value<std::string>()->default_value("all"),
-      "all: those of which the log has a series; or names as `qtet simplify --fields` takes them")(
+      "all: those of which the log has a series; or names as `qtet simplify --fields` takes them, "
+      "for which all steps are read")(
       "output,o", po::value<std::string>(),
       "the log to write, NAME.qtet; or - for the standard output; without it the log itself is "
       "replaced once the new one is whole")(
@@ -211,7 +214,8 @@ int runAddSteps(const Words& words, Console& console) {
       "seconds between two looks at the files with --follow, 0.1 to 3600")(
       "push", po::value<std::string>(),
       "sends the log to this URL, as qtet push does, whenever it has changed")(
-      "json", "print one JSON object; with --follow one whenever steps were added");
+      "json",
+      "print one JSON object, and one of qtet push; with --follow whenever steps were added");
   addPushOptions(options);
   addNoClobber(options);
   addReadOptions(options, "all");

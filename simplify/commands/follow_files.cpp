@@ -1,5 +1,6 @@
 #include "simplify/commands/follow_files.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -22,7 +23,7 @@ class SignalNotice {
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
       struct sigaction action{};
       action.sa_handler = [](int) { wasStopped = true; };
-      action.sa_flags = SA_RESTART;
+      action.sa_flags = SA_RESTART | SA_RESETHAND;  // a second one ends it at once
       ::sigaction(kSignals[i], &action, &before_[i]);
     }
   }
@@ -88,8 +89,7 @@ void followFiles(const std::vector<std::string>& files, std::chrono::millisecond
       if (!*done) seen = std::move(now);
       continue;
     }
-    if (done.error().message != lastError)
-      console.warn(done.error().message + "; waiting for another file");
+    if (done.error().message != lastError) console.warn(done.error().message + "; trying again");
     lastError = done.error().message;
     seen.reset();
     pauseFor(interval);

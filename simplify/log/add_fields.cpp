@@ -1,6 +1,7 @@
 #include "simplify/log/add_fields.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -215,7 +216,9 @@ Result<QuantisedField> FieldAdder::quantised(const MeshField& field, const Field
   const bool isFar = isComparable && isOutlying(extents, others);
   const bool areFew = isFar && areFewOutlying(field, others);
   if (isFar) outlying_.add(field, extents, others);
-  if (!isFar || areFew)
+  // integers that lose nothing by themselves do not take a step of more than 1
+  const bool isCoarse = !isFloatType(field.type) && scale->step != 1 && extents.fitsExactly();
+  if ((!isFar || areFew) && !isCoarse)
     if (std::optional<QuantisedField> there = quantiseAs(*scale, field)) return std::move(*there);
   if (areFew) return quantiseFiner(field, others, scale->bits);
   if (!isFar) return quantiseBy(own, field, options_.fieldBits);
@@ -312,6 +315,8 @@ Status FieldAdder::addParents(const std::vector<Item>& items, Numbers& numbers) 
     if (parent == nullptr || depths_[parent->number] >= kAnchorsInARow ||
         std::ranges::find(numbers.all, parent->number) != numbers.all.end())
       continue;
+    // an added instant that others lie behind, whose values are gone
+    if (parent->number >= manifest_.fields.size() && !values_.contains(parent->number)) continue;
     std::vector<std::int32_t>& values = values_[parent->number];
     if (values.empty()) {
       auto fetched = historyValues(log_, *history_, static_cast<std::uint32_t>(parent->number));
@@ -326,6 +331,7 @@ Status FieldAdder::addParents(const std::vector<Item>& items, Numbers& numbers) 
 
 /// An instant of the log as if it came.
 Result<FieldAdder::Item> FieldAdder::itemOf(const Instant& instant) const {
+  assert(instant.number < manifest_.fields.size());
   Result<std::vector<std::int32_t>> values =
       historyValues(log_, *history_, static_cast<std::uint32_t>(instant.number));
   if (!values) return std::unexpected(values.error());
@@ -369,15 +375,18 @@ Status FieldAdder::takeBack(std::span<const Instant> instants, std::vector<Item>
 
 /// Adds the instants of windows that the items make full.
 Status FieldAdder::takeUnfinished(std::vector<Item>& items) {
-  std::map<SeriesState*, std::size_t> come;
+  std::map<SeriesKey, std::size_t> come;
   for (const Item& item : items) {
-    SeriesState* const series = seriesOf(item.info);
-    if (series == nullptr || series->instants.empty()) continue;
-    const bool isBehind = series->instants.back().time < instantName(item.info.name)->time;
-    if (!std::exchange(series->isExtended, true) || come.contains(series)) come[series] += isBehind;
+    const auto name = instantName(item.info.name);
+    if (!name) continue;
+    const SeriesKey key{item.info.association, std::string(name->series)};
+    SeriesState& series = series_[key];
+    // at first all instants that are there are the log's own
+    const bool isFirst = !std::exchange(series.isExtended, true) || come.contains(key);
+    if (isFirst && !series.instants.empty()) come[key] += series.instants.back().time < name->time;
   }
-  for (const auto& [series, count] : come) {
-    std::vector<Instant>& all = series->instants;
+  for (const auto& [key, count] : come) {
+    std::vector<Instant>& all = series_[key].instants;
     const std::size_t unfinished = (all.size() - 1) % kWindow;
     if (unfinished == 0 || unfinished + count < kWindow) continue;
     const std::size_t before = items.size();

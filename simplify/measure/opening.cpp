@@ -34,11 +34,13 @@ struct Extent {
   bool isSeries = false;  ///< its own range is that of all instants, and spans all colours
 };
 
-/// Outlying instants have another scale. They neither widen the extent nor open the log.
+/// Outlying instants have another scale, or more bits. They neither widen the extent nor open the
+/// log.
 std::vector<std::size_t> usualInstants(const LatticeMesh& mesh, const Series& series) {
   std::vector<std::size_t> out = series.fields;
   std::erase_if(out, [&](std::size_t f) {
-    return !haveOneScale(mesh.fields[series.fields.front()], mesh.fields[f]);
+    const FieldInfo &first = mesh.fields[series.fields.front()], &its = mesh.fields[f];
+    return !haveOneScale(first, its) || its.bits > first.bits;
   });
   return out;
 }

@@ -15,14 +15,15 @@ namespace qtet {
 ///
 /// The number of colours is 1 / sum of p^2 (inverse Simpson index), where p is the share of
 /// the area that has one of 256 colours. The colours span the values. If the middle 96 % of them
-/// take less than 0.4 of that, they span these, as the viewer's automatic range does. The colours of
-/// an instant span the values of its whole series. Nothing but + - * / and sqrt decides.
+/// take less than 0.4 of that, they span these, as the viewer's automatic range does. The colours
+/// of an instant span the values of its whole series. Nothing but + - * / and sqrt decides.
 [[nodiscard]] std::optional<Opening> openingOf(const LatticeMesh& mesh,
                                                const std::optional<Focus>& focus = std::nullopt);
 
 /// The time at which the series show most by the same measure, the first one of equals. Eight times
-/// at most are looked at. None if their first instants and the other fields show two thirds as much:
-/// a run is then seen from its beginning. REQUIRES: the first instants come before the others.
+/// at most are looked at. None if their first instants and the other fields show two thirds as
+/// much: a run is then seen from its beginning. REQUIRES: the first instants come before the
+/// others.
 [[nodiscard]] std::optional<double> openingTime(const LatticeMesh& mesh,
                                                 const std::optional<Focus>& focus = std::nullopt);
 

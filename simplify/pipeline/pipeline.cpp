@@ -74,20 +74,28 @@ struct Run {
   std::optional<Focus> focus{};      ///< the same
   std::optional<Opening> opening{};  ///< the same
   MovedFlips flips{};                ///< of the base mesh
+  decltype(Manifest::units) units{};
 
   void note(const std::vector<std::string>& sentences) {
     report.notes.insert(report.notes.end(), sentences.begin(), sentences.end());
   }
 };
 
-/// Errors: not-found (a unit of no field).
-Status checkUnits(const PipelineOptions& options, const std::vector<MeshField>& fields) {
-  for (const auto& [name, unit] : options.units) {
-    const auto isMeantBy = [&](const MeshField& field) {
+/// Statistics have the unit of their series, unless they are given one. Errors: not-found (a unit
+/// of no field).
+Status takeUnits(const std::vector<MeshField>& fields, Run& run) {
+  const auto isThere = [&](std::string_view name) {
+    return std::ranges::any_of(fields, [&](const MeshField& field) {
       return nameWithoutStep(field.name).value_or(field.name) == name;
-    };
-    if (!name.empty() && std::ranges::none_of(fields, isMeantBy))
+    });
+  };
+  run.units = run.options.units;
+  for (const auto& [name, unit] : run.options.units) {
+    if (name.empty()) continue;
+    if (!isThere(name))
       return fail(ErrorCode::kNotFound, "`units`: the mesh carries no field '" + name + "'");
+    for (const std::string& statistics : statisticsNames(name))
+      if (isThere(statistics)) run.units.try_emplace(statistics, unit);
   }
   return {};
 }
@@ -104,10 +112,10 @@ void openAt(double time, TetMesh& mesh, QuantisedMesh& quantised) {
 
 Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   TetMesh mesh = std::move(given);
-  if (Status s = checkUnits(run.options, mesh.fields); !s) return std::unexpected(s.error());
   if (run.options.timeStatistics)
     if (Status added = addTimeStatistics(mesh.fields); !added)
       return std::unexpected(added.error());
+  if (Status s = takeUnits(mesh.fields, run); !s) return std::unexpected(s.error());
   putInOrder(seriesOrder(mesh.fields), mesh.fields);
   const bool keeps = run.options.keep.any();
   run.report.tetrahedraIn = mesh.tetrahedra.size();
@@ -204,7 +212,7 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& ru
   options.errors = std::move(errors);
   options.focus = run.focus;
   options.opening = run.opening;
-  options.units = run.options.units;
+  options.units = run.units;
   options.valueCodec = run.options.valueCodec;
   if (run.options.keep.any())
     options.closing = [&](const FinestMesh& finest, const ClosingSink& give) -> Status {

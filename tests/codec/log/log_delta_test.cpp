@@ -121,6 +121,24 @@ TEST(LogDeltaOfSeries, sendsAStepAndNotTheListOfAll) {
   EXPECT_TRUE(out.isWhole && std::ranges::equal(out.bytes, log.bytes()));
 }
 
+TEST(LogDeltaOfSeries, isRightWhateverInstantsAreLeftOut) {
+  const LogFile log = logOfSteps(60);
+  for (std::uint32_t every = 2; every < 6; ++every) {
+    std::vector<std::uint32_t> kept;  // those that nothing that stays rests on
+    for (std::uint32_t f = 0; f < log.fields().size(); ++f)
+      if (f % every != 0 || f == 0) kept.push_back(f);
+    kept = withParents(log.fields(), kept);
+    if (kept.size() == log.fields().size()) kept.pop_back();
+    const LogFile fewer = *LogFile::fromBytes(withFields(log, kept, {})->together());
+    for (const auto& [from, to] : {std::pair{&log, &fewer}, std::pair{&fewer, &log}}) {
+      const Bytes made = makeDelta(from->index(), to->index(), to->bytes(), 0, 1 << 30).value();
+      const Outcome out = apply(made, from->bytes(), to->bytes().size(), 4096);
+      EXPECT_TRUE(out.isWhole && std::ranges::equal(out.bytes, to->bytes())) << every;
+      EXPECT_LT(made.size(), to->bytes().size());
+    }
+  }
+}
+
 TEST_F(LogDelta, isMadeUpToTheLimit) {
   const std::uint64_t bytes = delta()->size();
   EXPECT_TRUE(delta(0, bytes + DeltaReader::kHeadBytes));

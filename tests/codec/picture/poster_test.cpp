@@ -236,7 +236,8 @@ TEST(Poster, theLevelIsTheLastOneOfTheFirstChunkAndTheFieldTheOpenings) {
   EXPECT_EQ(posterFields(manifest), std::vector<std::uint32_t>{1});
 }
 
-/// A cube, and a manifest of `cells` cells, whose displacement along z is `share` of its side on top.
+/// A cube, and a manifest of `cells` cells, whose displacement along z is `share` of its side on
+/// top.
 Picture bentPoster(double share, std::uint32_t cells) {
   LatticeMesh mesh = cube([](const LatticePoint&) { return 50; });
   const double side = high(mesh, 0) - low(mesh, 0);
