@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "codec/picture/first_camera.h"
+#include "proto/limits.h"
 #include "proto/series.h"
 
 namespace qtet {
