@@ -373,7 +373,7 @@ TEST(ReadMesh, aFolderIsRefused) {
   const auto folder = testing::freshFolder("folder") / "f.vtu";
   std::filesystem::create_directory(folder);
   ASSERT_FALSE(readMesh(folder));
-  EXPECT_EQ(readMesh(folder).error().code, ErrorCode::kIo);
+  EXPECT_EQ(readMesh(folder).error().code, ErrorCode::kBadInput);
 }
 
 TEST(ReadMesh, anEmptyFileIsTruncated) {
