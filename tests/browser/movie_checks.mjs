@@ -115,6 +115,7 @@ async function cancelsAMovieAndTellsWhatFails(context) {
   await page.getByRole('button', {name: 'Controls'}).tap();
   await page.getByRole('button', {name: 'Save picture'}).tap();
   const dialog = page.getByRole('dialog', {name: 'Save picture'});
+  const before = await timeOf(viewer);
   let downloads = 0;
   page.on('download', () => ++downloads);
   await dialog.getByRole('button', {name: 'Save movie'}).tap();
@@ -122,7 +123,7 @@ async function cancelsAMovieAndTellsWhatFails(context) {
   await viewer.screenshot('movie-phone');
   await dialog.getByRole('button', {name: 'Cancel'}).tap();
   await dialog.getByText('Cancelled').waitFor();
-  assert.deepEqual(await timeOf(viewer), [null, 't = 0']);
+  assert.deepEqual(await timeOf(viewer), before);
   const pngs = await page.evaluate(async () => {
     delete globalThis.VideoEncoder; // as on a page without https
     const movie = await window.qtetViewer.movie({width: 200, height: 100, onlyLoaded: true});
