@@ -4,6 +4,8 @@
 #include <sstream>
 #include <utility>
 
+#include "proto/utf8.h"
+
 namespace qtet {
 namespace {
 
@@ -18,7 +20,9 @@ std::size_t controlBytes(std::string_view text) {
 
 }  // namespace
 
-std::string printable(std::string_view text, bool keepLines) {
+std::string printable(std::string_view given, bool keepLines) {
+  const std::string sound = soundUtf8(given);
+  std::string_view text = sound;
   std::string out;
   while (!text.empty()) {
     std::size_t control = controlBytes(text);

@@ -10,7 +10,8 @@
 namespace qtet {
 
 /// The text with U+FFFD for every control character (C0, DEL, C1), which a terminal might obey:
-/// colours, titles, keys. With `keepLines` line feeds stay.
+/// colours, titles, keys. A byte that is no UTF-8 becomes a question mark. With `keepLines` line
+/// feeds stay.
 [[nodiscard]] std::string printable(std::string_view text, bool keepLines = false);
 
 /// How many characters of UTF-8 the text has, which is its width in columns where none is a wide or

@@ -14,8 +14,10 @@ FILE* wrappedOutput = nullptr;
 
 namespace {
 
-/// Before std::cout is made, which takes its stream then.
-constexpr int kBeforeAll = 101;
+/// Before std::cout is made, which takes its stream then. Since g++ 13 that has priority 90, among
+/// those that g++ keeps for itself.
+constexpr int kBeforeAll = 89;
+#pragma GCC diagnostic ignored "-Wprio-ctor-dtor"
 
 __attribute__((constructor(kBeforeAll))) void copyStreams() {
   wrappedError = kRealError;
