@@ -17,7 +17,9 @@ namespace {
 /// Before std::cout is made, which takes its stream then. Since g++ 13 that has priority 90, among
 /// those that g++ keeps for itself.
 constexpr int kBeforeAll = 89;
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wprio-ctor-dtor"
+#endif
 
 __attribute__((constructor(kBeforeAll))) void copyStreams() {
   wrappedError = kRealError;
