@@ -29,7 +29,7 @@ step() { printf 'test-deb: %s\n' "$1"; }
 # With the end of what the failed command wrote.
 failWith() { tail -20 "$1" >&2; fail "$2"; }
 inside() {
-  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
+  chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
     DEBIAN_FRONTEND=noninteractive "$@"
 }
 get() { inside curl -fsS --max-time 20 "http://127.0.0.1:$port$1"; }
