@@ -159,8 +159,7 @@ Result<QuantisedField> quantiseFiner(const MeshField& field, const FieldExtents&
   return quantiseField(field, own, needed);
 }
 
-std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField& field,
-                                         int maxBits) {
+std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField& field) {
   if (scale.components != field.components || scale.type != field.type) return std::nullopt;
   const FieldExtents extents = extentsOf(field);
   int bits = scale.bits;
@@ -168,7 +167,7 @@ std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField
     const auto isBeyond = [&] {
       return extents.maximum[c] - scale.minimum[c] > scale.step * (std::ldexp(1.0, bits) - 0.5);
     };
-    while (isBeyond() && bits < maxBits) ++bits;
+    while (isBeyond() && bits < kMaxScaleBits) ++bits;
     if (isBeyond() || extents.minimum[c] < scale.minimum[c] - 0.5 * scale.step) return std::nullopt;
   }
   QuantisedField out;

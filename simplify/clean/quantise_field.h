@@ -53,11 +53,10 @@ struct FieldExtents {
 [[nodiscard]] Result<QuantisedField> quantiseFiner(const MeshField& field,
                                                    const FieldExtents& extents, int bits);
 /// With step and minimum of `scale`, and its bits or as many more as values above it need. Nullopt
-/// where a value lies below it or needs more than `maxBits`, or where the fields differ in
+/// where a value lies below it or needs more than kMaxScaleBits, or where the fields differ in
 /// components or type.
 [[nodiscard]] std::optional<QuantisedField> quantiseAs(const FieldInfo& scale,
-                                                       const MeshField& field,
-                                                       int maxBits = kMaxScaleBits);
+                                                       const MeshField& field);
 /// Equal integers of both are equal values.
 [[nodiscard]] bool haveOneScale(const FieldInfo& a, const FieldInfo& b);
 /// The box of the values that the scale holds in its bits.

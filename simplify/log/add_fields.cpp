@@ -130,9 +130,9 @@ Status FieldAdder::matchTo(const TetMesh& mesh) {
 }
 
 /// The series of an instant; nullptr of another field.
-FieldAdder::SeriesState* FieldAdder::seriesOf(const FieldInfo& info) {
-  const auto name = instantName(info.name);
-  return name ? &series_[{info.association, std::string(name->series)}] : nullptr;
+FieldAdder::SeriesState* FieldAdder::seriesOf(std::string_view association, std::string_view name) {
+  const auto instant = instantName(name);
+  return instant ? &series_[{std::string(association), std::string(instant->series)}] : nullptr;
 }
 
 void FieldAdder::keepScale(FieldInfo info, bool stays) {
@@ -141,7 +141,7 @@ void FieldAdder::keepScale(FieldInfo info, bool stays) {
     if (!isFloatType(info.type) || info.step == 1 || info.bits >= kMaxScaleBits) return;
     info = withRoomBelow(info, extentsOf(info));
   }
-  std::vector<Scale>& scales = seriesOf(info)->scales;
+  std::vector<Scale>& scales = seriesOf(info.association, info.name)->scales;
   const auto same = std::ranges::find_if(
       scales, [&](const Scale& scale) { return haveOneScale(scale.info, info); });
   if (same == scales.end()) {
@@ -153,14 +153,14 @@ void FieldAdder::keepScale(FieldInfo info, bool stays) {
 }
 
 void FieldAdder::keepInstant(const FieldInfo& info, double time, std::size_t number) {
-  std::vector<Instant>& instants = seriesOf(info)->instants;
+  std::vector<Instant>& instants = seriesOf(info.association, info.name)->instants;
   const auto behind = std::ranges::upper_bound(instants, time, {}, &Instant::time);
   instants.insert(behind, {time, number, info});
 }
 
 /// The last instant before this one that has its scale.
 const FieldAdder::Instant* FieldAdder::parentOf(const FieldInfo& info) {
-  SeriesState* const series = seriesOf(info);
+  SeriesState* const series = seriesOf(info.association, info.name);
   if (series == nullptr) return nullptr;
   const double time = instantName(info.name)->time;
   const auto behind = std::ranges::lower_bound(series->instants, time, {}, &Instant::time);
@@ -222,9 +222,7 @@ Result<QuantisedField> FieldAdder::quantised(const MeshField& field, const Field
     if (std::optional<QuantisedField> there = quantiseAs(*scale, field)) return std::move(*there);
   if (areFew) return quantiseFiner(field, others, scale->bits);
   if (!isFar) return quantiseBy(own, field, options_.fieldBits);
-  FieldInfo named;
-  named.name = field.name, named.association = field.association;
-  for (const Scale& other : seriesOf(named)->scales) {
+  for (const Scale& other : seriesOf(field.association, field.name)->scales) {
     const FieldExtents box = extentsOf(other.info);
     if (isOutlying(extents, box) || isOutlying(box, extents)) continue;
     if (std::optional<QuantisedField> there = quantiseAs(other.info, field))
@@ -237,11 +235,9 @@ Result<QuantisedField> FieldAdder::quantised(const MeshField& field, const Field
 std::map<const FieldAdder::SeriesState*, std::optional<FieldInfo>> FieldAdder::commonScales(
     const TetMesh& mesh) {
   std::map<const SeriesState*, std::vector<const MeshField*>> fields;
-  for (const MeshField& field : mesh.fields) {
-    FieldInfo named;
-    named.name = field.name, named.association = field.association;
-    if (const SeriesState* const series = seriesOf(named)) fields[series].push_back(&field);
-  }
+  for (const MeshField& field : mesh.fields)
+    if (const SeriesState* const series = seriesOf(field.association, field.name))
+      fields[series].push_back(&field);
   std::map<const SeriesState*, std::optional<FieldInfo>> out;
   for (const auto& [series, all] : fields) out[series] = commonScale(*series, all);
   return out;
@@ -253,9 +249,7 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
   std::vector<Item> out;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const MeshField& field = mesh.fields[f];
-    FieldInfo named;
-    named.name = field.name, named.association = field.association;
-    const auto scale = common.find(seriesOf(named));
+    const auto scale = common.find(seriesOf(field.association, field.name));
     Result<QuantisedField> quantised =
         this->quantised(field, all.scales[f], scale == common.end() ? std::nullopt : scale->second);
     if (!quantised) return std::unexpected(quantised.error());

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -108,7 +109,7 @@ class FieldAdder {
   void complete(std::vector<Item>& items, Numbers& numbers);
   [[nodiscard]] Status encode(const Numbers& numbers);
   [[nodiscard]] Status code(std::vector<Item> items);
-  [[nodiscard]] SeriesState* seriesOf(const FieldInfo& info);
+  [[nodiscard]] SeriesState* seriesOf(std::string_view association, std::string_view name);
   void keepScale(FieldInfo info, bool stays);
   void keepInstant(const FieldInfo& info, double time, std::size_t number);
   [[nodiscard]] static const FieldInfo* scaleOf(const SeriesState& series);

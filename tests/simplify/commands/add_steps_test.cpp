@@ -16,10 +16,7 @@ class AddStepsTool : public Tool {
   static constexpr int kSteps = 14;
 
   void SetUp() override {
-    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
-    mesh_ = readMesh(folder_ / "box.vtu").value().mesh;
-    mesh_.fields.resize(1);
-    mesh_.fields[0].name = "T";
+    mesh_ = boxWithT();
     scalar_ = mesh_.fields[0].values;
     for (int step = 0; step < kSteps; ++step) write(fileOf(step), at(step));
     put("run.pvd", collection(0, kSteps));

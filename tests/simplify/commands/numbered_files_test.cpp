@@ -11,10 +11,7 @@ namespace {
 class NumberedFilesTool : public Tool {
  protected:
   void SetUp() override {
-    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
-    TetMesh mesh = readMesh(folder_ / "box.vtu").value().mesh;
-    mesh.fields.resize(1);
-    mesh.fields[0].name = "T";
+    TetMesh mesh = boxWithT();
     std::filesystem::create_directory(folder_ / "run");
     for (const int step : {8, 9, 10, 11}) {
       for (double& value : mesh.fields[0].values) value *= 0.9;

@@ -21,10 +21,7 @@ namespace {
 class SegmentListTool : public Tool {
  protected:
   void SetUp() override {
-    ASSERT_EQ(run("sample box -o box.vtu").code, 0);
-    TetMesh mesh = readMesh(folder_ / "box.vtu").value().mesh;
-    mesh.fields.resize(1);
-    mesh.fields[0].name = "T";
+    TetMesh mesh = boxWithT();
     for (int step = 0; step < kSteps; ++step) {
       if (step == 3) mesh.tetrahedra.pop_back();
       std::ranges::fill(mesh.fields[0].values, 10. * step);

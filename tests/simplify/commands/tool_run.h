@@ -14,6 +14,7 @@
 
 #include "codec/files/atomic_file.h"
 #include "simplify/log/write_mesh.h"
+#include "simplify/read/read_mesh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/paths/test_paths.h"
 
@@ -55,6 +56,14 @@ class Tool : public ::testing::Test {
     if (code != 2) return;
     EXPECT_EQ(std::ranges::count(ran.err, '\n'), 2) << ran.err;
     EXPECT_NE(ran.err.find("\nqtet: see 'qtet "), std::string::npos) << ran.err;
+  }
+  /// The sample box with its one field called T, which box.vtu has as Scalar.
+  TetMesh boxWithT() {
+    EXPECT_EQ(run("sample box -o box.vtu").code, 0);
+    TetMesh mesh = readMesh(folder_ / "box.vtu").value().mesh;
+    mesh.fields.resize(1);
+    mesh.fields[0].name = "T";
+    return mesh;
   }
   void write(const std::string& name, const TetMesh& mesh) {
     ASSERT_TRUE(writeFileAtomically(folder_ / name, vtuBytes(mesh)));
