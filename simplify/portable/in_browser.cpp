@@ -66,10 +66,6 @@ Result<ReadOptions> withListedFiles(const std::filesystem::path&, const ReadOpti
 Result<std::vector<std::filesystem::path>> processorFolders(const std::filesystem::path& marker) {
   return refusal(marker);
 }
-Result<std::filesystem::path> caseOfProcessor(const std::filesystem::path& processor,
-                                              const std::filesystem::path&) {
-  return refusal(processor);
-}
 
 // No file is ever opened, so nothing below the functions named open is called.
 Result<HdfFile> HdfFile::open(const std::filesystem::path& path) { return refusal(path); }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "codec/coding/float_bits.h"
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/text/mesh_scanner.h"
 
@@ -14,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Labels between two looks at the clock: about a millisecond.
-constexpr std::uint32_t kLabelsBetweenLooks = 1 << 14;
 constexpr FoamList::Label kMaxLabel = (FoamList::Label{1} << 32) - 1;
 
 fs::path compressed(const fs::path& path) { return path.string() + ".gz"; }
@@ -25,11 +24,27 @@ bool isFile(const fs::path& path) {
   return fs::is_regular_file(path, code);
 }
 
+/// A word of the file in quotes.
+std::string shown(std::string_view word) {
+  constexpr std::size_t kMostShown = 20;
+  return "'" + std::string(word.substr(0, kMostShown)) + "'";
+}
+
 bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
 }  // namespace
 
 bool FoamList::isThere(const fs::path& path) { return isFile(path) || isFile(compressed(path)); }
+
+Result<std::string> FoamList::classOf(const fs::path& path) {
+  Result<std::string> text = beginningOf(path, kMostHeaderBytes);
+  if (!text) return text;
+  FoamList out(path, std::move(*text), kReadPatience);
+  if (out.word() != "FoamFile") return "";
+  out.at_ = 0;
+  if (Status done = out.readHeader(); !done) return std::unexpected(done.error());
+  return out.class_;
+}
 
 Result<FoamList> FoamList::open(const fs::path& path, std::chrono::seconds patience) {
   Result<std::string> text = std::string();
@@ -99,6 +114,7 @@ std::string_view FoamList::word() {
 /// "FoamFile { version 2.0; format binary; class faceCompactList; arch "LSB;label=64;scalar=64"; }"
 Status FoamList::readHeader() {
   if (word() != "FoamFile" || !take('{')) return bad("it does not begin with FoamFile");
+  bool isForeign = false;
   while (!take('}')) {
     const std::string key(word());
     skipBlanks();
@@ -109,22 +125,26 @@ Status FoamList::readHeader() {
     const std::string value = text_.substr(at_, end - at_);
     at_ = end + 1;
     if (key == "format") isBinary_ = value.starts_with("binary");
-    if (key == "class") isCompact_ = value.starts_with("faceCompactList");
-    if (key == "arch" && value.contains("label=64")) labelBytes_ = 8;
+    if (key == "class") class_ = value;
+    if (key != "arch") continue;
+    if (value.contains("label=64")) labelBytes_ = 8;
+    if (value.contains("scalar=32")) realBytes_ = 4;
+    isForeign = value.contains("MSB");
   }
+  if (isForeign && isBinary_)
+    return bad("its numbers have their highest byte first, which is not read");
   return {};
 }
 
 Result<FoamList::Label> FoamList::label() {
-  if (labelsRead_++ % kLabelsBetweenLooks == 0 && time_.isOver()) return badHere(time_.text());
+  if (isLate()) return badHere(time_.text());
   const std::string_view found = word();
   Label value = 0;
   const auto read = std::from_chars(found.data(), found.data() + found.size(), value);
   if (found.empty() || read.ec != std::errc{} || read.ptr != found.data() + found.size() ||
       value < -1 || value > kMaxLabel) {
     at_ -= found.size();
-    constexpr std::size_t kShown = 20;
-    return badHere("'" + std::string(found.substr(0, kShown)) + "' is not an index from 0 on");
+    return badHere(shown(found) + " is not an index from 0 on");
   }
   return value;
 }
@@ -140,16 +160,11 @@ Result<std::uint64_t> FoamList::count(std::uint64_t bytesEach) {
   return count;
 }
 
-Result<std::uint64_t> FoamList::size() {
+Result<std::uint64_t> FoamList::faceCount() {
   const std::size_t begin = at_;
   const Result<std::uint64_t> told = count(1);
   at_ = begin;
-  return told;
-}
-
-Result<std::uint64_t> FoamList::faceCount() {
-  const Result<std::uint64_t> told = size();
-  if (!told || !isBinary_ || !isCompact_) return told;
+  if (!told || !isCompact()) return told;
   return *told == 0 ? 0 : *told - 1;  // where each begins, and where the last one ends
 }
 
@@ -207,7 +222,7 @@ Result<std::vector<FoamList::Label>> FoamList::binaryLabels(std::uint64_t count)
 }
 
 Status FoamList::faces(const std::function<Status(std::span<const Label>)>& give) {
-  if (isBinary_ && isCompact_) return compactFaces(give);
+  if (isCompact()) return compactFaces(give);
   constexpr std::uint64_t kMinFaceBytes = 4;  // of a face: "0()" and a blank
   const Result<std::uint64_t> told = count(kMinFaceBytes);
   if (!told) return std::unexpected(told.error());
@@ -257,6 +272,121 @@ Result<std::uint64_t> FoamList::patchFaces() {
     return bad("it has " + std::to_string(patches) + " patches with nFaces, but says " +
                std::to_string(*told));
   return sum;
+}
+
+/// "(1 2 3)", or one number with or without parentheses.
+Status FoamList::readTuple(std::span<double> out) {
+  if (isLate()) return badHere(time_.text());
+  const bool isOpen = take('(');
+  if (!isOpen && out.size() != 1) return badHere("a tuple does not begin with (");
+  for (double& value : out) {
+    const std::string_view found = word();
+    const auto read = std::from_chars(found.data(), found.data() + found.size(), value);
+    if (read.ec == std::errc::result_out_of_range) value = MeshScanner::beyondRange(found);
+    if (!found.empty() && read.ec != std::errc::invalid_argument &&
+        read.ptr == found.data() + found.size())
+      continue;
+    at_ -= found.size();
+    return badHere(shown(found) + " is not a number");
+  }
+  if (isOpen && !take(')'))
+    return badHere("a tuple of " + std::to_string(out.size()) + " numbers does not end there");
+  return {};
+}
+
+Status FoamList::readReals(std::span<double> out, std::uint32_t components) {
+  if (!isBinary_) {
+    for (std::size_t i = 0; i < out.size(); i += components)
+      if (Status done = readTuple(out.subspan(i, components)); !done) return done;
+    return {};
+  }
+  if (out.size() > (text_.size() - at_) / realBytes_) return badHere("a list is cut off");
+  for (double& value : out) {
+    float narrow = 0;
+    if (realBytes_ == 8)
+      std::memcpy(&value, text_.data() + at_, 8);
+    else
+      std::memcpy(&narrow, text_.data() + at_, 4), value = widened(narrow);
+    at_ += realBytes_;
+  }
+  return {};
+}
+
+Result<std::vector<double>> FoamList::tuples(std::uint32_t components,
+                                             std::optional<std::uint64_t> wanted) {
+  const Result<Label> told = label();
+  if (!told) return std::unexpected(told.error());
+  const bool isUniform = take('{');
+  const std::uint64_t bytesEach = isBinary_ ? components * realBytes_ : 2 * components;
+  if (*told < 0 || (wanted && std::cmp_not_equal(*told, *wanted)))
+    return badHere("it has " + std::to_string(*told) + " values" +
+                   (wanted ? ", but the mesh needs " + std::to_string(*wanted) : ""));
+  const auto values = static_cast<std::uint64_t>(*told);
+  if (!(isUniform && wanted) && values > (text_.size() - at_) / bytesEach)
+    return badHere("a list of " + std::to_string(values) +
+                   " does not fit into the rest of the file");
+  std::vector<double> out(values * components);
+  if (isUniform) {
+    std::vector<double> one(components);
+    if (Status done = readTuple(one); !done) return std::unexpected(done.error());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = one[i % components];
+    if (!take('}')) return badHere("a list N{VALUE} does not end");
+    return out;
+  }
+  const bool isOpen = take('(');
+  if (!isOpen && values > 0) return badHere("a list does not begin with (");
+  if (Status done = readReals(out, components); !done) return std::unexpected(done.error());
+  if (isOpen && !take(')'))
+    return badHere("a list of " + std::to_string(values) + " does not end there");
+  return out;
+}
+
+/// Passes the entries of the file up to the value of this one.
+bool FoamList::find(std::string_view key) {
+  std::size_t depth = 0;
+  bool isFirst = true;  // of an entry
+  for (std::string_view found = word(); !found.empty(); found = word()) {
+    if (isFirst && depth == 0 && found == key) return true;
+    if (found == "{" || found == "(") ++depth;
+    if ((found == "}" || found == ")") && depth > 0) --depth;
+    isFirst = found == ";" || found == "}";
+    // an entry such as #include ends with its line
+    if (found.starts_with('#')) {
+      at_ = std::min(text_.find('\n', at_), text_.size());
+      isFirst = true;
+    }
+    if (isLate()) return false;
+  }
+  return false;
+}
+
+Result<std::optional<std::vector<double>>> FoamList::field(std::string_view key,
+                                                           std::uint32_t components,
+                                                           std::uint64_t count) {
+  if (!find(key)) return bad(time_.isOver() ? time_.text() : "it has no entry " + std::string(key));
+  const std::size_t begin = at_;
+  const std::string kind(word());
+  std::vector<double> out;
+  if (kind != "nonuniform" &&
+      std::string_view(text_).substr(begin, text_.find(';', begin) - begin).find_first_of("$#") !=
+          std::string_view::npos)
+    return std::nullopt;
+  if (kind == "uniform") {
+    std::vector<double> one(components);
+    if (Status done = readTuple(one); !done) return std::unexpected(done.error());
+    out.resize(count * components);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = one[i % components];
+  } else if (kind == "nonuniform") {
+    const std::size_t list = at_;
+    if (!word().starts_with("List<")) at_ = list;
+    Result<std::vector<double>> values = tuples(components, count);
+    if (!values) return std::unexpected(values.error());
+    out = std::move(*values);
+  } else {
+    return badHere(shown(kind) + " is neither uniform nor nonuniform");
+  }
+  if (!take(';')) return badHere("the entry " + std::string(key) + " does not end there");
+  return out;
 }
 
 }  // namespace qtet

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -117,19 +116,6 @@ Result<std::vector<fs::path>> processorFolders(const fs::path& marker) {
                                             " is missing; copy all processor folders");
   }
   return out;
-}
-
-Result<fs::path> caseOfProcessor(const fs::path& processor, const fs::path& into) {
-  std::error_code code;
-  fs::create_directory(into, code);
-  const fs::path from = fs::absolute(processor);
-  for (const fs::directory_entry& entry : fs::directory_iterator(from, code))
-    if (!code) fs::create_symlink(entry.path(), into / entry.path().filename(), code);
-  if (!code) fs::create_symlink(from.parent_path() / "system", into / "system", code);
-  const fs::path marker = into / "case.foam";
-  if (!code && std::ofstream(marker)) return marker;
-  return fail(ErrorCode::kIo,
-              processor.string() + " could not be opened as a case of its own: " + code.message());
 }
 
 }  // namespace qtet

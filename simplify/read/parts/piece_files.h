@@ -30,9 +30,4 @@ inline constexpr std::uint64_t kMaxPieceFiles = 1U << 24;
 [[nodiscard]] Result<std::vector<std::filesystem::path>> processorFolders(
     const std::filesystem::path& marker);
 
-/// Makes a case of its own of a processor's folder, in the new folder `into`, and gives its marker.
-/// Errors: io.
-[[nodiscard]] Result<std::filesystem::path> caseOfProcessor(const std::filesystem::path& processor,
-                                                            const std::filesystem::path& into);
-
 }  // namespace qtet
