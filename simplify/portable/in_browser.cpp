@@ -1,4 +1,4 @@
-// The readers that a browser does without: those of VTK, HDF5, meshio and OpenFOAM.
+// The readers that a browser does without: those of VTK, HDF5, meshio, and OpenFOAM's folders.
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/listed_files.h"

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kSymmTensor = 6;
 
-/// What the class in a file's header says of its field.
+/// A field as the class in its file's header says.
 struct FieldKind {
   const char* association;
   std::uint32_t components;

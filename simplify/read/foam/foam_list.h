@@ -18,7 +18,7 @@
 
 namespace qtet {
 
-/// A file of a mesh of OpenFOAM in memory. Labels are at least -1 and below 2^32.
+/// A file of OpenFOAM in memory. Labels are at least -1 and below 2^32.
 class FoamList {
  public:
   using Label = std::int64_t;
@@ -54,7 +54,8 @@ class FoamList {
   [[nodiscard]] Result<std::vector<double>> tuples(std::uint32_t components,
                                                    std::optional<std::uint64_t> count);
   /// The value of the entry `key` of a field, which is uniform or a list, for `count` cells or
-  /// points. nullopt: it is a macro ("$T", "#calc"), which is not read. Errors: as tuples'; bad-input (there is no such entry).
+  /// points. nullopt: it is a macro ("$T", "#calc"), which is not read. Errors: as tuples';
+  /// bad-input (there is no such entry).
   [[nodiscard]] Result<std::optional<std::vector<double>>> field(std::string_view key,
                                                                  std::uint32_t components,
                                                                  std::uint64_t count);
@@ -75,6 +76,8 @@ class FoamList {
   [[nodiscard]] bool isCompact() const {
     return isBinary_ && class_.starts_with("faceCompactList");
   }
+  /// The word in quotes, or its beginning.
+  [[nodiscard]] static std::string shown(std::string_view word);
   [[nodiscard]] bool find(std::string_view key);
   Status readTuple(std::span<double> out);
   Status readReals(std::span<double> out, std::uint32_t components);

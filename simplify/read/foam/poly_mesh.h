@@ -16,7 +16,7 @@ namespace qtet {
                                     std::chrono::seconds patience, CellMesh& out);
 
 /// Appends the cells of the folder to `out`, which has the points already. Its lists must have as
-/// many things as they say and fit together, each cell's faces must close, and the patches must
+/// many things as they say, and fit together. Each cell's faces must close, and the patches must
 /// have all faces of the boundary. Errors: as readFoamPoints's, bad-input also with the cell.
 [[nodiscard]] Status readPolyMesh(const std::filesystem::path& folder,
                                   std::chrono::seconds patience, CellMesh& out);

@@ -188,6 +188,54 @@ TEST(ReadFoam, aRegionWithoutAMeshYetIsRefused) {
   EXPECT_NEAR(filledBy(readAt(marker, "2").mesh).volume, 4, 1e-9);
 }
 
+/// Bytes of a file are cut off or changed; labels, numbers and counts go wrong everywhere.
+TEST(ReadFoam, everyTruncationAndEveryChangedByteIsAnErrorOrAMesh) {
+  const fs::path folder = testing::freshFolder("damaged-case"), mesh = folder / "constant/polyMesh",
+                 field = folder / "1/T";
+  const std::string arch = "LSB;label=32;scalar=32";
+  using testing::bytesOf;
+  const auto write = [](const fs::path& path, const std::string& text) {
+    fs::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << text;
+  };
+  testing::writeOneTetrahedron(mesh);
+  const std::pair<fs::path, std::string> files[] = {
+      {mesh / "points", "4(" + bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) + ")"},
+      {mesh / "faces", "5(" + bytesOf<std::int32_t>({0, 3, 6, 9, 12}) + ")12(" +
+                           bytesOf<std::int32_t>({0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}) + ")"},
+      {mesh / "owner", "4(" + bytesOf<std::int32_t>({0, 0, 0, 0}) + ")"},
+      {field, "internalField nonuniform List<scalar> 1(" + bytesOf<float>({7}) + ");"}};
+  const auto header = [&](const fs::path& path) {
+    const std::string name = path.filename().string();
+    return testing::foamHeader(name == "faces" ? "faceCompactList" : "volScalarField", "binary",
+                               arch);
+  };
+  for (const auto& [path, body] : files) write(path, header(path) + body);
+  const ReadMesh whole = readAt(folder, "last", Names{"cell:T"});
+  EXPECT_EQ(whole.mesh.tetrahedra.size(), 1u);
+  EXPECT_EQ(whole.mesh.fields[0].values, std::vector<double>{7});
+  std::size_t refused = 0, tried = 0;
+  const auto tryIt = [&](const fs::path& path, const std::string& body) {
+    write(path, header(path) + body);
+    const Result<ReadMesh> read = readMesh(folder);
+    EXPECT_TRUE(read || !read.error().message.empty());
+    refused += read ? 0 : 1;
+    ++tried;
+  };
+  for (const auto& [path, body] : files) {
+    for (std::size_t at = 0; at < body.size(); ++at) {
+      tryIt(path, body.substr(0, at));
+      std::string changed = body;
+      const unsigned flip = at % 2 == 0 ? 0x01U : 0x80U;
+      changed[at] = static_cast<char>(static_cast<unsigned char>(changed[at]) ^ flip);
+      tryIt(path, changed);
+    }
+    write(path, header(path) + body);
+  }
+  EXPECT_GT(refused, tried / 2);
+  EXPECT_LT(refused, tried);
+}
+
 TEST(ReadFoam, processorsAreReadTogether) {
   const fs::path marker = testing::fileWith("pieces.foam", ""), folder = marker.parent_path();
   for (int i = 0; i < 2; ++i) {
