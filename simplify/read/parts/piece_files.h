@@ -20,8 +20,8 @@ inline constexpr std::uint64_t kMaxPieceFiles = 1U << 24;
 [[nodiscard]] Result<std::vector<std::filesystem::path>> exodusPieces(
     const std::filesystem::path& path);
 
-/// Whether the folder is a case of OpenFOAM: it has constant/polyMesh, that of a region, or a folder
-/// of a process.
+/// Whether the folder is a case of OpenFOAM: it has constant/polyMesh, also that of a region, or a
+/// folder of a process.
 [[nodiscard]] bool isFoamCase(const std::filesystem::path& folder);
 
 /// The folders processor0, processor1 ... beside an OpenFOAM case's marker, where the case is to be
