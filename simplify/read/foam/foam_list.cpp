@@ -1,7 +1,6 @@
 #include "simplify/read/foam/foam_list.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstring>
 #include <system_error>
@@ -23,7 +22,11 @@ bool isFile(const fs::path& path) {
   return fs::is_regular_file(path, code);
 }
 
-bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
+bool isBlank(char c) {
+  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
+bool isSign(char c) { return c == '(' || c == ')' || c == '{' || c == '}' || c == ';'; }
 
 }  // namespace
 
@@ -77,12 +80,12 @@ std::string FoamList::shown(std::string_view word) {
 }
 
 void FoamList::skipBlanks() {
-  while (at_ < text_.size()) {
+  for (;;) {
+    while (at_ < text_.size() && isBlank(text_[at_])) ++at_;
+    if (at_ >= text_.size() || text_[at_] != '/') return;
     const std::string_view rest = std::string_view(text_).substr(at_);
     std::size_t end = 0;
-    if (isBlank(rest[0]))
-      end = 1;
-    else if (rest.starts_with("//"))
+    if (rest.starts_with("//"))
       end = rest.find('\n');
     else if (rest.starts_with("/*"))
       end = std::min(rest.find("*/"), rest.size() - 2) + 2;
@@ -102,9 +105,8 @@ bool FoamList::take(char sign) {
 /// The signs up to a blank or one that ends a word; one such sign by itself.
 std::string_view FoamList::word() {
   skipBlanks();
-  constexpr std::string_view kSigns = "(){};";
   const std::size_t begin = at_;
-  while (at_ < text_.size() && !isBlank(text_[at_]) && !kSigns.contains(text_[at_])) ++at_;
+  while (at_ < text_.size() && !isBlank(text_[at_]) && !isSign(text_[at_])) ++at_;
   if (at_ == begin && at_ < text_.size()) ++at_;
   return std::string_view(text_).substr(begin, at_ - begin);
 }
