@@ -1,11 +1,11 @@
 // Files of OpenFOAM for the tests of its reader.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <bit>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
