@@ -1,4 +1,4 @@
-// The readers that a browser does without: those of VTK, HDF5, meshio and OpenFOAM.
+// The readers that a browser does without: those of VTK, HDF5, meshio, and OpenFOAM's folders.
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/listed_files.h"
@@ -65,10 +65,6 @@ Result<ReadOptions> withListedFiles(const std::filesystem::path&, const ReadOpti
 }
 Result<std::vector<std::filesystem::path>> processorFolders(const std::filesystem::path& marker) {
   return refusal(marker);
-}
-Result<std::filesystem::path> caseOfProcessor(const std::filesystem::path& processor,
-                                              const std::filesystem::path&) {
-  return refusal(processor);
 }
 
 // No file is ever opened, so nothing below the functions named open is called.

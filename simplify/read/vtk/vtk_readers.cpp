@@ -13,7 +13,6 @@
 #include <vtkGenericEnSightReader.h>
 #include <vtkHDFReader.h>
 #include <vtkMultiBlockPLOT3DReader.h>
-#include <vtkOpenFOAMReader.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
@@ -71,17 +70,6 @@ vtkSmartPointer<vtkAlgorithm> enSightReader(const std::filesystem::path& path) {
   const auto reader = vtkSmartPointer<vtkGenericEnSightReader>::New();
   reader->SetCaseFileName(path.c_str());
   reader->ReadAllVariablesOn();
-  return reader;
-}
-
-vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
-  reader->SetFileName(path.c_str());
-  reader->CreateCellToPointOff();  // its means do not know the cells of other processes
-  reader->DecomposePolyhedraOff();
-  reader->UpdateInformation();
-  reader->EnableAllCellArrays();
-  reader->EnableAllPointArrays();
   return reader;
 }
 
@@ -165,7 +153,6 @@ vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, Mes
     case MeshFormat::kExodus: return exodusReader(path);
     case MeshFormat::kCgns: return cgnsReader(path);
     case MeshFormat::kEnSight: return enSightReader(path);
-    case MeshFormat::kOpenFoam: return foamReader(path);
     case MeshFormat::kFluent: return fluentReader(path);
     case MeshFormat::kVtkHdf: return hdfReader(path);
     case MeshFormat::kPlot3d: return plot3dReader(path, options.plot3dSolution);
