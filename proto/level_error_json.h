@@ -1,5 +1,5 @@
-// What both the manifest and other reports hold, as JSON: a LevelError (FORMAT.md, "Known error"),
-// and the names of labels. For .cpp files only, because it includes nlohmann-json.
+// A LevelError (FORMAT.md, "Known error") and the names of labels as JSON. For .cpp files only,
+// because it includes nlohmann-json.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -58,7 +58,7 @@ struct Opening {
   [[nodiscard]] bool operator==(const Opening&) const = default;
 };
 
-/// What values of a label are called.
+/// Names of a label's values.
 using LabelNames = std::map<std::int32_t, std::string>;
 /// Cell fields of one integer that say what a cell is, such as its material. By a field's name
 /// without @TIME; what values are called, as far as that is known.

@@ -15,8 +15,8 @@ struct LabelCost {
 };
 
 /// LabelCost::weight where nobody gives one: a sixteenth of the boundary's, at least 0.01. More
-/// takes cells from the fields, but makes labels hardly better: what is wrong then are the steps of
-/// an interface between cells, which fusing smooths.
+/// takes cells from the fields, but makes labels hardly better: the steps of an interface between
+/// cells are wrong then, which fusing smooths.
 [[nodiscard]] inline double labelWeightBeside(double boundaryWeight) {
   return std::max(boundaryWeight / 16, 0.01);
 }
@@ -28,7 +28,7 @@ struct CostOptions {
   /// The weight of the boundary's squared distance beside the fields, with areas and distances over
   /// the mesh's diagonal. Without: balancedBoundaryWeight (boundary_weight.h).
   std::optional<double> boundaryWeight;
-  /// What the interfaces of labels count. Without fields in the cost those of a weight above 0
+  /// The weights of labels. Without fields in the cost those of a weight above 0
   /// count like the boundary.
   std::vector<LabelCost> labels{};
   /// Without fields: how many times its area a boundary plane counts, the paper's "weighted planar

@@ -21,8 +21,8 @@ inline constexpr double kLabelNeighbours = 0.6;
 /// of 2 to kMaxLabelValues values. REQUIRES: field < mesh.fields.size().
 [[nodiscard]] bool canBeLabel(const LatticeMesh& mesh, std::size_t field);
 
-/// The fields that are labels, ascending: those that can be, and are among `known` or have a usual
-/// name of one, or whose neighbours mostly agree. The numbers of processes are none.
+/// The fields that are labels, ascending. They can be, and are among `known`, have a usual name of
+/// one, or neighbours that mostly agree. The numbers of processes are none.
 [[nodiscard]] std::vector<std::size_t> labelsOf(const LatticeMesh& mesh, const Labels& known = {});
 
 /// The faces between cells of different labels, outward from the lower one, by their smallest

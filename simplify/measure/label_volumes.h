@@ -19,8 +19,8 @@ class LabelVolumes {
   /// component.
   LabelVolumes(const FusionHistory& history, const std::vector<std::uint32_t>& labels);
 
-  /// The largest |V / V0 - 1| of all values, V in the level that the history stands at and V0 in
-  /// the finest; 0 without labels.
+  /// The largest |V / V0 - 1| of all values; 0 without labels. V is the volume in the level that
+  /// the history stands at, V0 that in the finest.
   [[nodiscard]] double worst() const;
 
  private:

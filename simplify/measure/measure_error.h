@@ -36,8 +36,8 @@ struct ErrorBounds {
 
 /// BaseRule's distance where nothing else is asked for: seven pixels of a picture of 800.
 inline constexpr double kBaseError = 0.01;
-/// The same for the share of the volume that has another label, and for the volume of each label:
-/// grains and layers are still to be told apart.
+/// The same for the share of the volume that has another label, and for the volume of each label.
+/// Grains and layers can still be told apart.
 inline constexpr double kMaxBaseLabelError = 0.1;
 /// Bytes of a base mesh at most, which a line of 1 Mbit/s brings in half a second.
 inline constexpr std::size_t kMaxBaseBytes = 64'000;

@@ -29,10 +29,10 @@ struct FieldOptions {
 /// The error of a field at a place is the Euclidean norm of the difference. It is relative to the
 /// diagonal of the box that the original's values fill. For one component that is their range; for
 /// a constant field the error is 0. The error of a label is 1 where it is another one, and its rms
-/// is the mean of that: a share of the volume. Where the level's solid does not cover a place, its value is
-/// that at the nearest point of its boundary. A cell field's value there is that of the cell that
-/// held the place last. Places are followed from cell to cell through the fusions. A place that the
-/// solid has left is covered again when a fusion at its nearest triangle covers it.
+/// is the mean of that: a share of the volume. Where the level's solid does not cover a place, its
+/// value is that at the nearest point of its boundary. A cell field's value there is that of the
+/// cell that held the place last. Places are followed from cell to cell through the fusions. A
+/// place that the solid has left is covered again when a fusion at its nearest triangle covers it.
 class FieldMeter {
  public:
   /// REQUIRES: `mesh` at its finest level. It must outlive this.

@@ -23,7 +23,7 @@ struct MeshField {
   std::string type = "float32";
   std::vector<double> values;
   std::string association = "point";  ///< point or cell
-  /// What the file calls values of it: those of materials, blocks, groups.
+  /// The file's names of values: those of materials, blocks, groups.
   LabelNames labelNames{};
 };
 

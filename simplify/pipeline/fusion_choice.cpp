@@ -98,7 +98,7 @@ Result<std::map<std::size_t, std::optional<double>>> namedLabels(
   return out;
 }
 
-/// What the interfaces of each label count. Equal instants of a series would count the same faces
+/// The weight of each label. Equal instants of a series would count the same faces
 /// again and again: its first one stands for it.
 std::vector<LabelCost> labelCosts(const std::vector<FieldInfo>& fields, double boundaryWeight,
                                   const std::map<std::size_t, std::optional<double>>& labels) {

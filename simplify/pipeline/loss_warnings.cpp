@@ -77,8 +77,8 @@ std::string reasonOf(const Manifest& manifest, const LossFacts& facts) {
   return "too few cells are left for this shape, " + std::to_string(cells) + ": " + enough;
 }
 
-/// Of labels in the base mesh, and the coarsest measured level of which it and all finer ones keep
-/// them.
+/// One a label that the base mesh does not keep. It names the coarsest measured level that does, as
+/// all finer ones do.
 std::vector<std::string> labelWarnings(const Manifest& manifest) {
   std::vector<std::string> out;
   for (std::size_t f = 0; f < manifest.fields.size(); ++f) {

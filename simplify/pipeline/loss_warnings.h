@@ -45,7 +45,8 @@ struct LossFacts {
   bool isByRule = false;        ///< the base mesh was chosen by the rule that holds unasked
 };
 
-/// One sentence of the shape, and one a label. Empty too where no error was measured. REQUIRES: a manifest with levels.
+/// One sentence of the shape, and one a label. Empty too where no error was measured. REQUIRES: a
+/// manifest with levels.
 [[nodiscard]] std::vector<std::string> lossWarnings(const Manifest& manifest,
                                                     const LossFacts& facts);
 

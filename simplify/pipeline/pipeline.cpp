@@ -103,7 +103,7 @@ Status takeUnits(const std::vector<MeshField>& fields, Run& run) {
   return {};
 }
 
-/// What the file calls values of fields, as far as it does.
+/// The names of values that the file has.
 Labels namesOf(const std::vector<MeshField>& fields) {
   Labels out;
   for (const MeshField& field : fields)

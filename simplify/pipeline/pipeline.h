@@ -39,8 +39,8 @@ struct PipelineOptions {
   FusionOptions fusion{};
   /// Point fields by name (proto/field_key.h) and what they count; 1 where none is given.
   std::vector<std::pair<std::string, double>> fieldWeights{};
-  /// Cell fields of integers by name, and what their interfaces count. A field named here is a label
-  /// (label_fields.h) unless it counts 0; without, labelWeightBeside.
+  /// Cell fields of integers by name, and what their interfaces count. A field named here is a
+  /// label (label_fields.h) unless it counts 0; without, labelWeightBeside.
   std::vector<std::pair<std::string, double>> labelWeights{};
   /// The name of the cell field whose values are regions that keep their topology.
   std::optional<std::string> regions{};

@@ -7,7 +7,7 @@ namespace {
 
 TEST(LogVersions, areThoseOfTheFormatsDocument) {
   EXPECT_EQ(oldestLogVersion(), "2.0");
-  EXPECT_EQ(newestLogVersion(), "3.4");
+  EXPECT_EQ(newestLogVersion(), "3.5");
 }
 
 }  // namespace

@@ -382,8 +382,10 @@ TEST(MeasureLevels, theErrorOfALabelIsTheShareOfTheVolumeThatIsWrong) {
   LatticeMesh mesh = gridMesh(8, 4);
   mesh.fields.push_back({"Half", 1, "int32", "cell", 1, 1, {0}, {0, 1}});
   std::vector<std::int32_t>& half = mesh.values.emplace_back();
-  for (const Tetrahedron& t : mesh.tetrahedra) half.push_back(mesh.points[t[0]][0] > 200);
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    half.push_back(std::ranges::all_of(t, [&](VertexId v) { return mesh.points[v][0] >= 256; }));
   FusionOptions fusion;
+  fusion.targetRatio = 0.2;
   const auto errorsBy = [&](const FusionOptions& options, const MeasureOptions& measuring) {
     FusionHistory history = simplify(mesh, options).value();
     return measureLevels(history, measuring).value().front()->fields.back();
@@ -394,7 +396,7 @@ TEST(MeasureLevels, theErrorOfALabelIsTheShareOfTheVolumeThatIsWrong) {
   EXPECT_GT(label.rms, 0.02);
   EXPECT_NEAR(label.rms, number.rms * number.rms, 0.01 * label.rms);
   EXPECT_EQ(label.max, 1);
-  fusion.cost.labels = {{mesh.fields.size() - 1, 1}};
+  fusion.cost.labels = {{mesh.fields.size() - 1, 1000}};
   EXPECT_LT(errorsBy(fusion, asLabel).rms, label.rms / 4) << "interfaces count";
   fusion.cost.labels[0].weight = 0;
   EXPECT_EQ(errorsBy(fusion, asLabel).rms, label.rms);
