@@ -53,8 +53,7 @@ std::vector<std::string> wordsOf(std::string_view text) {
 std::optional<std::int64_t> integerIn(std::string_view text) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size())
-    return std::nullopt;
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
@@ -130,8 +129,8 @@ class CaseLines {
     const std::size_t begin = line.find_first_not_of(kBlanksOfCase);
     if (begin == std::string_view::npos || line[begin] == '#') return {};
     line = line.substr(begin, line.find_last_not_of(kBlanksOfCase) - begin + 1);
-    constexpr std::array<std::string_view, 7> kSections{
-        "FORMAT", "GEOMETRY", "VARIABLE", "TIME", "FILE", "MATERIAL", "SCRIPTS"};
+    constexpr std::array<std::string_view, 7> kSections{"FORMAT", "GEOMETRY", "VARIABLE", "TIME",
+                                                        "FILE",   "MATERIAL", "SCRIPTS"};
     if (std::ranges::find(kSections, line) != kSections.end()) {
       section_ = line;
       list_ = nullptr;
@@ -171,8 +170,8 @@ class CaseLines {
     out_.model.file = words.front();
     out_.changesCoordinatesOnly = words.size() > 1 && words[1] == "change_coords_only";
     if (words.size() > 2)
-      out_.cellStep = static_cast<std::uint64_t>(
-          std::max<std::int64_t>(0, integerIn(words[2]).value_or(0)));
+      out_.cellStep =
+          static_cast<std::uint64_t>(std::max<std::int64_t>(0, integerIn(words[2]).value_or(0)));
     return {};
   }
 
@@ -232,7 +231,8 @@ class CaseLines {
     const std::vector<std::string> words = wordsOf(rest);
     const std::optional<std::int64_t> first =
         words.empty() ? std::nullopt : integerIn(words.front());
-    if (!first || *first < 0) return bad("\"" + key.substr(0, kShown) + ":\" of a FILE is no number");
+    if (!first || *first < 0)
+      return bad("\"" + key.substr(0, kShown) + ":\" of a FILE is no number");
     if (key == "file set") {
       runs_ = &out_.fileSets[*first];
       return {};
@@ -272,8 +272,8 @@ class CaseLines {
         return bad(which + " has a filename number that is none of 0 to " +
                    std::to_string(kMaxNumberInName));
       set.numbers.push_back(next);
-      next += std::clamp<std::int64_t>(raw.increment.value_or(1), -kMaxNumberInName,
-                                       kMaxNumberInName);
+      next +=
+          std::clamp<std::int64_t>(raw.increment.value_or(1), -kMaxNumberInName, kMaxNumberInName);
     }
     return {};
   }

@@ -39,7 +39,8 @@ constexpr std::array<ElementKind, 17> kElementKinds{{
     {"hexa20", 20, kQuadraticHexahedronCell},
     {"nfaced", 0, kPolyhedronCell},
 }};
-constexpr std::array<std::uint8_t, 15> kWedgeOrder{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
+constexpr std::array<std::uint8_t, 15> kWedgeOrder{0, 2,  1,  3, 5,  4,  8, 7,
+                                                   6, 11, 10, 9, 12, 14, 13};
 
 /// The memory of a grid's point and of the hexahedron that begins there.
 constexpr std::uint64_t kBytesOfGridPoint =
@@ -50,8 +51,7 @@ bool isWedge(std::uint8_t type) { return type == kWedgeCell || type == kQuadrati
 class GeometryReader {
  public:
   GeometryReader(std::string_view bytes, const std::filesystem::path& file,
-                 const EnSightEncoding& encoding, std::chrono::seconds patience,
-                 ReadReport& report)
+                 const EnSightEncoding& encoding, std::chrono::seconds patience, ReadReport& report)
       : in_(bytes, file, encoding, patience), report_(report) {}
 
   Result<EnSightGeometry> read(bool isGold) {
@@ -132,7 +132,8 @@ class GeometryReader {
   void sortIds() {
     if (!areNodeIdsMeant_) ids_.clear();
     std::ranges::sort(ids_);
-    const auto twice = std::ranges::adjacent_find(ids_, {}, [](const auto& id) { return id.first; });
+    const auto twice =
+        std::ranges::adjacent_find(ids_, {}, [](const auto& id) { return id.first; });
     if (twice != ids_.end())
       in_.fail("node " + std::to_string(twice->first) +
                " is there twice; the file is damaged, export it again");
@@ -145,13 +146,14 @@ class GeometryReader {
       return at != ids_.end() && at->first == id ? at->second : kGhost;
     }
     return id >= 1 && static_cast<std::uint64_t>(id) <= points ? static_cast<VertexId>(id - 1)
-                                                                : kGhost;
+                                                               : kGhost;
   }
 
   /// Reads a part behind its keyword. Gives the keyword behind it.
   std::string_view part(std::string_view keyword) {
     if (!keyword.starts_with("part")) refuse(keyword, "\"part\"");
-    const std::int64_t number = out_.isGold ? in_.integer("a part's number") : ensightPartNumber(keyword);
+    const std::int64_t number =
+        out_.isGold ? in_.integer("a part's number") : ensightPartNumber(keyword);
     in_.line();  // its description
     if (in_.failed()) return {};
     const auto [at, isNew] = out_.parts.try_emplace(number);
@@ -217,12 +219,13 @@ class GeometryReader {
     std::string_view name = line;
     name = name.substr(0, name.find_first_of(" \t"));
     const bool isGhost = name.starts_with("g_");
-    const auto kind = std::ranges::find(kElementKinds, name.substr(isGhost ? 2 : 0),
-                                        &ElementKind::name);
+    const auto kind =
+        std::ranges::find(kElementKinds, name.substr(isGhost ? 2 : 0), &ElementKind::name);
     if (kind == kElementKinds.end()) return refuse(line, "a kind of elements");
     const std::uint64_t count = in_.count("the number of elements");
     const auto [at, isNew] = part_->elements.try_emplace(std::string(name));
-    if (!isNew) return in_.fail("a part has " + std::string(name) + " twice; export the case again");
+    if (!isNew)
+      return in_.fail("a part has " + std::string(name) + " twice; export the case again");
     at->second = {block().elements, count};
     const bool isKept = !isGhost && kind->type > kPolygons;
     if (!isGhost && !isKept) report_.ignoredCells += count;
@@ -381,8 +384,9 @@ class GeometryReader {
         for (std::uint64_t i = 0; i + 1 < n[0]; ++i, ++row) {
           const auto at = static_cast<VertexId>(i + n[0] * (j + n[1] * k));
           const auto up = static_cast<VertexId>(n[0]), far = static_cast<VertexId>(n[0] * n[1]);
-          const std::array<VertexId, 8> ids{at,       at + 1,       at + 1 + up,       at + up,
-                                            at + far, at + 1 + far, at + 1 + up + far, at + up + far};
+          const std::array<VertexId, 8> ids{
+              at,       at + 1,       at + 1 + up,       at + up,
+              at + far, at + 1 + far, at + 1 + up + far, at + up + far};
           if (!isGhost.empty() && isGhost[row]) continue;
           if (!isBlank.empty() && std::ranges::any_of(ids, [&](VertexId v) { return isBlank[v]; }))
             continue;
@@ -400,7 +404,7 @@ class GeometryReader {
   EnSightGeometry out_;
   EnSightPart* part_ = nullptr;
   bool hasNodeIds_ = false, hasElementIds_ = false;
-  bool areNodeIdsMeant_ = false;  ///< by the cells of EnSight 6
+  bool areNodeIdsMeant_ = false;                        ///< by the cells of EnSight 6
   std::vector<std::pair<std::int64_t, VertexId>> ids_;  ///< sorted; empty: 1, 2, 3 ...
   std::uint64_t gridPoints_ = 0;                        ///< of grids that unfold
 };
@@ -422,9 +426,10 @@ Status movePoints(EnSightGeometry& geometry, const EnSightGeometry& moved,
   bool isSame = geometry.blocks.size() == moved.blocks.size();
   for (std::size_t i = 0; isSame && i < geometry.blocks.size(); ++i) isSame = fits(i);
   if (!isSame)
-    return badFile(file,
-                   "it has other points than the step whose cells it has by \"change_coords_only\"; "
-                   "export the case without it");
+    return badFile(
+        file,
+        "it has other points than the step whose cells it has by \"change_coords_only\"; "
+        "export the case without it");
   for (std::size_t i = 0; i < geometry.blocks.size(); ++i)
     geometry.blocks[i].mesh.points = moved.blocks[i].mesh.points;
   return {};

@@ -21,7 +21,7 @@ struct EnSightElements {
 
 struct EnSightPart {
   std::size_t block = 0;
-  bool isGrid = false;  ///< i x j x k points
+  bool isGrid = false;                                           ///< i x j x k points
   std::map<std::string, EnSightElements, std::less<>> elements;  ///< by kind; of a grid: "block"
 };
 
@@ -42,11 +42,9 @@ struct EnSightGeometry {
 /// Reads one file or step. Counts elements of other dimensions in `report`. Ids of points are
 /// unchecked (kGhost where there is none). Errors: bad-input, truncated (with the byte or line),
 /// limit-exceeded (a grid that fills the machine's memory).
-[[nodiscard]] Result<EnSightGeometry> readEnSightGeometry(std::string_view bytes,
-                                                          const std::filesystem::path& file,
-                                                          const EnSightEncoding& encoding,
-                                                          bool isGold, std::chrono::seconds patience,
-                                                          ReadReport& report);
+[[nodiscard]] Result<EnSightGeometry> readEnSightGeometry(
+    std::string_view bytes, const std::filesystem::path& file, const EnSightEncoding& encoding,
+    bool isGold, std::chrono::seconds patience, ReadReport& report);
 
 /// Gives the geometry the points of `moved`, which has the same parts. Errors: bad-input (it has
 /// not).

@@ -58,7 +58,8 @@ Status withoutRecordMarks(std::string& bytes, const std::filesystem::path& file,
       return fail(ErrorCode::kTruncated,
                   file.string() + ": its record at byte " + std::to_string(at) + " should have " +
                       std::to_string(length) + " bytes, but does not end there, and " +
-                      std::to_string(left) + " follow: the file was cut off; copy or export it "
+                      std::to_string(left) +
+                      " follow: the file was cut off; copy or export it "
                       "again",
                   at);
     std::memmove(bytes.data() + to, bytes.data() + at + kMarkBytes, length);
@@ -83,7 +84,7 @@ Result<EnSightEncoding> encodingOf(const std::filesystem::path& file, bool isGol
   if (front->substr(std::min(kMarkBytes, front->size())).starts_with("Fortran Binary")) {
     out.kind = EnSightEncoding::kFortran;
     out.order = wordAt(*front, 0, std::endian::little) == kLineBytes ? std::endian::little
-                                                                      : std::endian::big;
+                                                                     : std::endian::big;
   }
   return out;
 }
@@ -123,8 +124,7 @@ Result<const std::vector<EnSightFiles::Range>*> EnSightFiles::stepsOf(
   return &(steps_[path] = std::move(out));
 }
 
-Result<std::string> EnSightFiles::read(const EnSightPlace& place,
-                                       const EnSightEncoding& encoding) {
+Result<std::string> EnSightFiles::read(const EnSightPlace& place, const EnSightEncoding& encoding) {
   const auto steps = stepsOf(place.file, encoding);
   if (!steps) return std::unexpected(steps.error());
   const Result<VtuFile> file = openedFile(place.file);
@@ -175,8 +175,9 @@ std::string_view EnSightNumbers::line() {
   }
   const std::uint64_t at = in_.place();
   if (in_.remaining() < kLineBytes) {
-    in_.fail(ErrorCode::kTruncated, "the file ends within a line of 80 bytes: it was cut off; copy "
-                                    "or export it again");
+    in_.fail(ErrorCode::kTruncated,
+             "the file ends within a line of 80 bytes: it was cut off; copy "
+             "or export it again");
     return {};
   }
   in_.seek(at + kLineBytes);
@@ -188,7 +189,15 @@ std::string_view EnSightNumbers::line() {
 }
 
 std::string_view EnSightNumbers::keyword() {
-  if (!isText()) return atEnd() ? std::string_view{} : line();
+  if (!isText()) {
+    if (atEnd()) return {};
+    const std::string_view found = line();
+    if (found.empty())
+      fail(
+          "nothing is where a heading should be: the file is damaged, or has more numbers than the "
+          "mesh");
+    return found;
+  }
   endLine();
   while (!atEnd())
     if (const std::string_view found = in_.line(); !found.empty() && found.front() != '#')
@@ -275,6 +284,7 @@ void EnSightNumbers::findOrder(std::uint64_t numbersEach) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     const std::uint64_t nodes = wordAt(bytes_, in_.place(), order), each = 4 * numbersEach;
     const std::uint64_t behind = in_.remaining() - sizeof(std::uint32_t);
+    if (nodes == 0) return;  // in either order: what comes next decides
     if (nodes <= behind / each &&
         bytes_.substr(in_.place() + sizeof(std::uint32_t) + nodes * each).starts_with("part"))
       encoding_.order = order;

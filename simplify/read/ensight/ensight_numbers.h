@@ -33,7 +33,8 @@ class EnSightFiles {
  public:
   /// The bytes of the file or of its step, without Fortran's lengths of records. Errors: io,
   /// not-found, truncated (empty; a record that goes beyond the end), bad-input (no such step).
-  [[nodiscard]] Result<std::string> read(const EnSightPlace& place, const EnSightEncoding& encoding);
+  [[nodiscard]] Result<std::string> read(const EnSightPlace& place,
+                                         const EnSightEncoding& encoding);
 
  private:
   struct Range {

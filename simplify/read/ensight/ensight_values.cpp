@@ -95,8 +95,7 @@ class ValueReader {
     const float undefined = hasUndefined ? in_.real("the undefined value") : 0;
     std::vector<std::uint64_t> listed;
     if (isPartial) listed = list(rows.count, whose);
-    const std::uint64_t tuples = isPartial ? listed.size() : rows.count,
-                        n = variable_.components;
+    const std::uint64_t tuples = isPartial ? listed.size() : rows.count, n = variable_.components;
     if (in_.failed() || !areThere(tuples * n, whose)) return;
     isTaken_ = true;
     const CellMesh& mesh = geometry_.blocks[block].mesh;
@@ -148,8 +147,9 @@ class ValueReader {
     const std::uint64_t count =
         (variable_.isOfElements ? from.elements : from.mesh.points.size()) * variable_.components;
     if (count > room_ / sizeof(double)) {
-      in_.fail("the variables' values do not fit in this machine's memory; name those that are "
-               "needed by `fields`");
+      in_.fail(
+          "the variables' values do not fit in this machine's memory; name those that are "
+          "needed by `fields`");
       return false;
     }
     room_ -= count * sizeof(double);

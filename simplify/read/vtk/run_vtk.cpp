@@ -120,14 +120,14 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
   const auto reader = vtkReaderOf(path, format, options);
   reader->UpdateInformation();
   const std::vector<double> times = timesOf(*reader);
-  return readChosen(
-      times, path, options, report, [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
-        if (times.empty())
-          reader->Update();
-        else
-          reader->UpdateTimeStep(times[step]);
-        return cellsOfOutput(reader->GetOutputDataObject(0), options, path, ofStep);
-      });
+  return readChosen(times, path, options, report,
+                    [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
+                      if (times.empty())
+                        reader->Update();
+                      else
+                        reader->UpdateTimeStep(times[step]);
+                      return cellsOfOutput(reader->GetOutputDataObject(0), options, path, ofStep);
+                    });
 }
 
 /// A Fluent mesh alone is no fault; VTK looks for a file of results beside it.

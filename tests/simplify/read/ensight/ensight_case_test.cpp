@@ -109,8 +109,8 @@ TEST(EnSightCase, casesThatSayTooLittleAreRefused) {
 }
 
 TEST(EnSightCase, aWildcardThatNoSetFillsIsRefused) {
-  const Result<EnSightCase> read =
-      caseOf("FORMAT\ntype: ensight\nGEOMETRY\nmodel: 1 m.**\nVARIABLE\nscalar per node: 1 5 T T\n");
+  const Result<EnSightCase> read = caseOf(
+      "FORMAT\ntype: ensight\nGEOMETRY\nmodel: 1 m.**\nVARIABLE\nscalar per node: 1 5 T T\n");
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_NE(fileOf(read, read->model, 0).find("no time set has its filename number"),
             std::string::npos);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "simplify/read/ensight/ensight_values.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/read/ensight/ensight_files.h"
@@ -157,9 +158,8 @@ std::string refusal(const fs::path& path) {
 /// A case of one step with the geometry and one variable.
 fs::path caseWith(Dialect dialect, const std::string& geo, const std::string& variable,
                   const std::string& bytes) {
-  const fs::path path =
-      testing::fileWith("one.case", front(dialect) + "model: one.geo\nVARIABLE\n" + variable +
-                                        ": V one.V\n");
+  const fs::path path = testing::fileWith(
+      "one.case", front(dialect) + "model: one.geo\nVARIABLE\n" + variable + ": V one.V\n");
   writeBytes(path.parent_path() / "one.geo", geo);
   writeBytes(path.parent_path() / "one.V", bytes);
   return path;
@@ -184,7 +184,7 @@ TEST(ReadEnSight, everyKindOfFileGivesTheSameMesh) {
       EXPECT_EQ(mesh.points, barPoints(1));
       EXPECT_EQ(mesh.pointType, "float32");
       EXPECT_EQ(mesh.types, (std::vector<std::uint8_t>{kHexahedronCell, kWedgeCell, kWedgeCell}));
-      EXPECT_EQ(mesh.vertices, (std::vector<VertexId>{0, 1, 2, 3, 4,  5, 6, 7,  4, 6,
+      EXPECT_EQ(mesh.vertices, (std::vector<VertexId>{0, 1, 2,  3, 4, 5, 6, 7, 4,  6,
                                                       5, 8, 10, 9, 4, 7, 6, 8, 11, 10}));
       EXPECT_EQ(mesh.cellIds, (std::vector<std::uint64_t>{1, 2, 3}));
       EXPECT_EQ(report.ignoredCells, 1u);
@@ -195,8 +195,8 @@ TEST(ReadEnSight, everyKindOfFileGivesTheSameMesh) {
         for (std::size_t c = 0; c < 3; ++c)
           EXPECT_EQ(u->values[3 * i + c], mesh.points[i][0] + 0.5 + static_cast<double>(c));
       }
-      EXPECT_EQ(s->values, (std::vector<double>{1, 2, 3, 4, 6, 5, 2, 3, 4, 5, 7, 6, 3, 4, 5, 6, 8,
-                                                7}))
+      EXPECT_EQ(s->values,
+                (std::vector<double>{1, 2, 3, 4, 6, 5, 2, 3, 4, 5, 7, 6, 3, 4, 5, 6, 8, 7}))
           << "VTK's order: xy, yz, xz";
       const Result<ReadMesh> whole = readMesh(path);
       ASSERT_TRUE(whole) << whole.error().text();
@@ -229,15 +229,16 @@ void expectSteps(const fs::path& path) {
 
 TEST(ReadEnSight, stepsMayBeFilesOfTheirOwn) {
   for (const Dialect dialect : dialects()) {
-    const fs::path path = testing::fileWith(
-        "run.case", front(dialect) + "model: 1 run.***.geo\nVARIABLE\nscalar per node: 1 T "
-                                     "run.*.T\n" +
-                        kSteps);
+    const fs::path path =
+        testing::fileWith("run.case", front(dialect) +
+                                          "model: 1 run.***.geo\nVARIABLE\nscalar per node: 1 T "
+                                          "run.*.T\n" +
+                                          kSteps);
     for (int step = 0; step < 3; ++step) {
       const std::string number = std::to_string(8 + 2 * step);
-      writeBytes(path.parent_path() / ("run." + std::string(3 - number.size(), '0') + number +
-                                       ".geo"),
-                 geometry(dialect, 1 + 0.5 * step, "assign"));
+      writeBytes(
+          path.parent_path() / ("run." + std::string(3 - number.size(), '0') + number + ".geo"),
+          geometry(dialect, 1 + 0.5 * step, "assign"));
       writeBytes(path.parent_path() / ("run." + number + ".T"),
                  values(dialect, 1, false, static_cast<float>(10 + 5 * step)));
     }
@@ -248,8 +249,9 @@ TEST(ReadEnSight, stepsMayBeFilesOfTheirOwn) {
 TEST(ReadEnSight, stepsMayStandInOneFile) {
   for (const Dialect dialect : dialects()) {
     const fs::path path = testing::fileWith(
-        "run.case", front(dialect) + "model: 1 1 run.geo\nVARIABLE\nscalar per node: 1 1 T run.T\n" +
-                        kSteps + "FILE\nfile set: 1\nnumber of steps: 3\n");
+        "run.case", front(dialect) +
+                        "model: 1 1 run.geo\nVARIABLE\nscalar per node: 1 1 T run.T\n" + kSteps +
+                        "FILE\nfile set: 1\nnumber of steps: 3\n");
     std::string geo = EnSightWriter(dialect.kind, true).header().bytes(), variable;
     const auto within = [&](const std::string& bytes) {
       return EnSightWriter(dialect.kind, true).line("BEGIN TIME STEP").bytes() + bytes +
@@ -271,8 +273,7 @@ TEST(ReadEnSight, stepsMayStandInOneFile) {
 TEST(ReadEnSight, cellsOfOneStepMayHoldForAll) {
   const Dialect dialect{EnSightKind::kBig, true};
   const fs::path path = testing::fileWith(
-      "run.case",
-      front(dialect) + "model: 1 run.***.geo change_coords_only 1\n" + kSteps);
+      "run.case", front(dialect) + "model: 1 run.***.geo change_coords_only 1\n" + kSteps);
   const fs::path folder = path.parent_path();
   for (const int step : {0, 2}) {
     const std::string whole = geometry(dialect, 1 + 0.5 * step, "assign");
@@ -318,8 +319,8 @@ TEST(ReadEnSight, polyhedraAreReadAndPolygonsAndGhostsLeftOut) {
     EnSightWriter variable(kind, true);
     variable.line("").line("part").integers({7}).line("nsided").reals({1, 2});
     variable.line("g_hexa8").reals({3}).line("nfaced").reals({4});
-    const fs::path path = caseWith({kind, true}, geo.bytes(), "scalar per element",
-                                   variable.bytes());
+    const fs::path path =
+        caseWith({kind, true}, geo.bytes(), "scalar per element", variable.bytes());
     ReadReport report;
     const CellMesh mesh = readCase(path, "last", &report);
     EXPECT_EQ(mesh.types, std::vector<std::uint8_t>{kPolyhedronCell});
@@ -371,14 +372,44 @@ TEST(ReadEnSight, gridsBecomeHexahedraWithoutThoseThatAreBlank) {
   }
 }
 
+// EnSight 6 has the nodes of all parts first; without any the order of bytes is still open.
+TEST(ReadEnSight, gridsOfEnSight6StandBehindNoNodes) {
+  for (const EnSightKind kind : kEnSightKinds) {
+    EnSightWriter geo(kind, false), variable(kind, false);
+    geo.header().line("").line("").line("node id off").line("element id off");
+    geo.line("coordinates")
+        .integers({0})
+        .line("part 3")
+        .line("")
+        .line("block")
+        .integers({2, 2, 2}, 3);
+    geo.reals({0, 1, 0, 1, 0, 1, 0, 1}).reals({0, 0, 1, 1, 0, 0, 1, 1});
+    geo.reals({0, 0, 0, 0, 1, 1, 1, 1});
+    variable.line("").line("part 3").line("block");
+    variable.reals({1, 2, 3, 4, 5, 6, 7, 8})
+        .reals(std::vector<float>(8))
+        .reals(std::vector<float>(8, 9));
+    const CellMesh mesh =
+        readCase(caseWith({kind, false}, geo.bytes(), "vector per node", variable.bytes()));
+    EXPECT_EQ(mesh.types, std::vector<std::uint8_t>{kHexahedronCell});
+    ASSERT_TRUE(fieldOf(mesh, "V"));
+    const std::vector<double>& v = fieldOf(mesh, "V")->values;
+    EXPECT_EQ(std::vector<double>(v.begin(), v.begin() + 6),
+              (std::vector<double>{1, 0, 9, 2, 0, 9}));
+  }
+}
+
 TEST(ReadEnSight, aGridThatFewBytesUnfoldIsBoundedByMemory) {
   for (const std::vector<std::int32_t>& sides :
-       {std::vector<std::int32_t>{2147483647, 2147483647, 2147483647}, {65536, 65536, 1},
-        {0, 2, 2}, {-1, 2, 2}, {65535, 65535, 1}}) {
+       {std::vector<std::int32_t>{2147483647, 2147483647, 2147483647},
+        {65536, 65536, 1},
+        {0, 2, 2},
+        {-1, 2, 2},
+        {65535, 65535, 1}}) {
     EnSightWriter geo = partOfGold(EnSightKind::kBig, false);
     geo.line("block uniform").integers(sides, 3).reals({0, 0, 0, 1, 1, 1});
-    const std::string error = refusal(caseWith({EnSightKind::kBig, true}, geo.bytes(),
-                                               "scalar per node", "x"));
+    const std::string error =
+        refusal(caseWith({EnSightKind::kBig, true}, geo.bytes(), "scalar per node", "x"));
     EXPECT_TRUE(error.contains("points has none, or 2^32 and more") ||
                 error.contains("do not fit in this machine's memory"))
         << error;
@@ -392,8 +423,8 @@ TEST(ReadEnSight, undefinedValuesAndThoseThatAreNotListedAreMissing) {
     EnSightWriter undefined(kind, true), partial(kind, true);
     undefined.line("").line("part").integers({7}).line("coordinates undef").reals({-999});
     undefined.reals({-999, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, -999});
-    CellMesh mesh = readCase(caseWith({kind, true}, geo.bytes(), "scalar per node",
-                                      undefined.bytes()));
+    CellMesh mesh =
+        readCase(caseWith({kind, true}, geo.bytes(), "scalar per node", undefined.bytes()));
     ASSERT_TRUE(fieldOf(mesh, "V"));
     EXPECT_TRUE(std::isnan(fieldOf(mesh, "V")->values[0]));
     EXPECT_EQ(fieldOf(mesh, "V")->values[10], 10);
@@ -433,47 +464,81 @@ TEST(ReadEnSight, fullColumnsOfTextStandSideBySide) {
   EXPECT_EQ(fieldOf(mesh, "V")->values, (std::vector<double>{-1, -2, -3, 4}));
 }
 
+EnSightEncoding encodingOf(Dialect dialect) {
+  EnSightEncoding out;
+  out.digits = dialect.isGold ? 10 : 8;
+  if (dialect.kind != EnSightKind::kText) out.kind = EnSightEncoding::kC;
+  return out;
+}
+
+Result<EnSightGeometry> parsedGeometry(Dialect dialect, std::string_view bytes) {
+  ReadReport report;
+  return readEnSightGeometry(bytes, "g", encodingOf(dialect), dialect.isGold, kReadPatience,
+                             report);
+}
+
+bool areValuesRead(const EnSightGeometry& of, bool isOfElements, std::string_view bytes) {
+  std::uint64_t room = 1 << 20;
+  return readEnSightValues(bytes, "v", {"V", isOfElements, 3, {}}, of, kReadPatience, room)
+      .has_value();
+}
+
 TEST(ReadEnSight, everyCutOfAFileIsRefused) {
-  for (const Dialect dialect : dialects()) {
-    const std::string geo = geometry(dialect, 1, "given"),
-                      variable = values(dialect, 3, false, 0.25F);
-    const fs::path path = caseWith(dialect, geo, "vector per node", variable);
-    const fs::path folder = path.parent_path();
-    readCase(path);
-    const bool isText = dialect.kind == EnSightKind::kText;
-    // a cut within the last number of a text cannot be seen
-    const std::size_t unseen = isText ? 13 : 0;
-    for (std::size_t left = 0; left + unseen < variable.size(); ++left) {
-      writeBytes(folder / "one.V", variable.substr(0, left));
+  for (const EnSightKind kind : {EnSightKind::kText, EnSightKind::kLittle, EnSightKind::kBig}) {
+    for (const bool isGold : {true, false}) {
+      const Dialect dialect{kind, isGold};
+      const std::string geo = geometry(dialect, 1, "given");
+      const auto whole = parsedGeometry(dialect, geo);
+      ASSERT_TRUE(whole) << whole.error().text();
+      // a cut within the last number of a text cannot be seen
+      const std::size_t unseen = kind == EnSightKind::kText ? 12 : 0;
+      for (std::size_t left = 0; left + unseen < geo.size(); ++left) {
+        const auto read = parsedGeometry(dialect, std::string_view(geo).substr(0, left));
+        // between a part's kinds of cells nothing is cut, nor are its blanks behind
+        const std::size_t blocks = read ? read->blocks.size() : 0;
+        const bool hasLess = blocks == 0 || read->blocks[0].elements < 4;
+        EXPECT_TRUE(!read || hasLess) << left;
+      }
+      for (const bool isOfElements : {false, true}) {
+        const std::string variable = values(dialect, 3, isOfElements, 0.25F);
+        EXPECT_TRUE(areValuesRead(*whole, isOfElements, variable));
+        const std::size_t hexa = std::min(variable.find("hexa8"), variable.size());
+        for (std::size_t left = 0; left + unseen < hexa; ++left)
+          EXPECT_FALSE(
+              areValuesRead(*whole, isOfElements, std::string_view(variable).substr(0, left)))
+              << left << isOfElements;
+      }
+    }
+  }
+}
+
+TEST(ReadEnSight, aRecordOfFortranThatIsCutOffIsRefused) {
+  for (const EnSightKind kind : {EnSightKind::kFortranLittle, EnSightKind::kFortranBig}) {
+    const Dialect dialect{kind, true};
+    const std::string geo = geometry(dialect, 1, "off"), variable = values(dialect, 1, false, 0);
+    const fs::path path = caseWith(dialect, geo, "scalar per node", variable);
+    for (std::size_t left = 1; left < variable.size(); left += 5) {
+      writeBytes(path.parent_path() / "one.V", variable.substr(0, left));
       EXPECT_NE(refusal(path).find("its variable V: "), std::string::npos) << left;
     }
-    writeBytes(folder / "one.V", variable);
-    const std::size_t cells = geo.find("penta6");
-    for (std::size_t left = 0; left + unseen < geo.size(); ++left) {
-      writeBytes(folder / "one.geo", geo.substr(0, left));
-      ReadReport report;
-      const auto read = readEnSight(path, {}, report);
-      // between two kinds of cells nothing is cut
-      if (left < cells && !(read && read->front().cells.cells() < 3)) EXPECT_FALSE(read) << left;
-    }
+    writeBytes(path.parent_path() / "one.V", variable.substr(0, variable.size() - 1));
+    EXPECT_NE(refusal(path).find("should have 48 bytes"), std::string::npos) << refusal(path);
   }
 }
 
 TEST(ReadEnSight, countsThatAreTooLargeAreRefusedBeforeAllocating) {
   for (const bool isGold : {true, false}) {
     const Dialect dialect{EnSightKind::kBig, isGold};
-    const std::string geo = geometry(dialect, 1, "given"), variable = values(dialect, 1, true, 0);
-    const fs::path path = caseWith(dialect, geo, "scalar per element", variable);
-    for (const auto& [name, sound] : {std::pair{"one.geo", geo}, {"one.V", variable}}) {
-      for (const char* number : {"\x7F\xFF\xFF\xFF", "\xFF\xFF\xFF\xFF", "\x40\x01\x02\x03"}) {
-        for (std::size_t at = 0; at + 4 <= sound.size(); at += 4) {
-          std::string bytes = sound;
-          bytes.replace(at, 4, number, 4);
-          writeBytes(path.parent_path() / name, bytes);
-          (void)readMesh(path);  // an error or a mesh: the sanitizers see the rest
-        }
-      }
-      writeBytes(path.parent_path() / name, sound);
+    const std::string geo = geometry(dialect, 1, "given"), variable = values(dialect, 3, true, 0);
+    const auto whole = parsedGeometry(dialect, geo);
+    ASSERT_TRUE(whole) << whole.error().text();
+    for (const std::string_view number :
+         {"\x7F\xFF\xFF\xFF", "\xFF\xFF\xFF\xFF", "\x40\x01\x02\x03"}) {
+      // an error or a mesh: the sanitizers see the rest
+      for (std::size_t at = 0; at + number.size() <= geo.size(); ++at)
+        (void)parsedGeometry(dialect, std::string(geo).replace(at, number.size(), number));
+      for (std::size_t at = 0; at + number.size() <= variable.size(); ++at)
+        (void)areValuesRead(*whole, true, std::string(variable).replace(at, number.size(), number));
     }
   }
 }
@@ -497,7 +562,7 @@ TEST(ReadEnSight, aVariableOfAnotherMeshIsRefusedWithItsNameAndFile) {
                 .find("it has 2 of the 12 values of the nodes of part 7"),
             std::string::npos);
   EXPECT_NE(errorOf("scalar per node", begun(7).line("coordinates").reals(std::vector<float>(40)))
-                .find("has more values than the mesh"),
+                .find("has more numbers than the mesh"),
             std::string::npos);
   EXPECT_NE(errorOf("scalar per node", begun(7).line("block").reals({1, 2}))
                 .find("'block' is where \"coordinates\" should be"),
@@ -523,7 +588,7 @@ TEST(ReadEnSight, aPartWithoutValuesHasMissingOnesAndOneOfSurfacesIsNoField) {
   geo.line("hexa8").integers({1}).integers(kHexa, 8);
   for (const std::int32_t part : {8, 9}) {
     geo.line("part").integers({part}).line("").line("coordinates").integers({4});
-    geo.reals({2, 2, 2, 3}).reals({0, 1, 0, 0}).reals({0, 0, 1, 0});
+    geo.reals({5, 5, 5, 6}).reals({0, 1, 0, 0}).reals({0, 0, 1, 0});
     geo.line(part == 8 ? "tetra4" : "quad4").integers({1}).integers({1, 2, 3, 4}, 4);
   }
   EnSightWriter variable(dialect.kind, true), ofSurface(dialect.kind, true);
@@ -536,10 +601,10 @@ TEST(ReadEnSight, aPartWithoutValuesHasMissingOnesAndOneOfSurfacesIsNoField) {
   EXPECT_EQ(fieldOf(mesh, "V")->values[12], 1);
   ofSurface.line("").line("part").integers({9}).line("coordinates").reals({1, 2, 3, 4});
   ReadReport report;
-  EXPECT_FALSE(fieldOf(readCase(caseWith(dialect, geo.bytes(), "scalar per node",
-                                         ofSurface.bytes()),
-                                "last", &report),
-                       "V"));
+  EXPECT_FALSE(
+      fieldOf(readCase(caseWith(dialect, geo.bytes(), "scalar per node", ofSurface.bytes()), "last",
+                       &report),
+              "V"));
   EXPECT_TRUE(std::ranges::any_of(report.notes, [](const std::string& note) {
     return note.contains("parts without volumes alone");
   }));
