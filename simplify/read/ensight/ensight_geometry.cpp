@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "codec/coding/float_bits.h"
 #include "simplify/read/options/bad_file.h"
-#include "simplify/read/process/inflate_file.h"
 
 namespace qtet {
 namespace {
 
 constexpr std::uint8_t kNoSolid = 0, kPolygons = 1;  ///< VTK's numbers of no volume
 
-/// A kind of elements. VTK's reader gave a wedge's nodes `wedge`'s places: its triangles look
-/// the other way.
+/// A kind of elements, whose nodes stand in VTK's order but for wedges.
 struct ElementKind {
   std::string_view name;
   std::uint8_t nodes;  ///< 0: as many as the file says
@@ -39,23 +36,22 @@ constexpr std::array<ElementKind, 17> kElementKinds{{
     {"hexa20", 20, kQuadraticHexahedronCell},
     {"nfaced", 0, kPolyhedronCell},
 }};
+/// The place of each node in VTK's wedge, whose triangles look the other way.
 constexpr std::array<std::uint8_t, 15> kWedgeOrder{0, 2,  1,  3, 5,  4,  8, 7,
                                                    6, 11, 10, 9, 12, 14, 13};
-
-/// The memory of a grid's point and of the hexahedron that begins there.
-constexpr std::uint64_t kBytesOfGridPoint =
-    sizeof(Position) + 8 * sizeof(VertexId) + 2 * sizeof(std::uint64_t) + 1;
 
 bool isWedge(std::uint8_t type) { return type == kWedgeCell || type == kQuadraticWedgeCell; }
 
 class GeometryReader {
  public:
   GeometryReader(std::string_view bytes, const std::filesystem::path& file,
-                 const EnSightEncoding& encoding, std::chrono::seconds patience, ReadReport& report)
-      : in_(bytes, file, encoding, patience), report_(report) {}
+                 const EnSightEncoding& encoding, EnSightBounds& bounds, ReadReport& report)
+      : in_(bytes, file, encoding, bounds.patience),
+        isGold_(encoding.isGold),
+        bounds_(bounds),
+        report_(report) {}
 
-  Result<EnSightGeometry> read(bool isGold) {
-    out_.isGold = isGold;
+  Result<EnSightGeometry> read() {
     const std::string_view first = in_.line();
     if (!in_.isText() && (first.starts_with("C Binary") || first.starts_with("Fortran Binary")))
       in_.line();
@@ -69,7 +65,7 @@ class GeometryReader {
       for (int i = 0; i < 6; ++i) in_.real("an extent");
       next = in_.keyword();
     }
-    if (!isGold) {
+    if (!isGold_) {
       if (!next.starts_with("coordinates")) refuse(next, "\"coordinates\"");
       globalNodes();
       next = in_.keyword();
@@ -153,7 +149,7 @@ class GeometryReader {
   std::string_view part(std::string_view keyword) {
     if (!keyword.starts_with("part")) refuse(keyword, "\"part\"");
     const std::int64_t number =
-        out_.isGold ? in_.integer("a part's number") : ensightPartNumber(keyword);
+        isGold_ ? in_.integer("a part's number") : ensightPartNumber(keyword);
     in_.line();  // its description
     if (in_.failed()) return {};
     const auto [at, isNew] = out_.parts.try_emplace(number);
@@ -168,7 +164,7 @@ class GeometryReader {
       grid(std::string(next));
       next = in_.keyword();
       // ids of a grid stand behind it, in Gold alone
-      while (out_.isGold && (next.starts_with("node_ids") || next.starts_with("element_ids"))) {
+      while (isGold_ && (next.starts_with("node_ids") || next.starts_with("element_ids"))) {
         const std::uint64_t count =
             next.starts_with("node_ids") ? block().mesh.points.size() : block().elements;
         if (in_.fits(count, "ids of a grid")) in_.skipIntegers(count);
@@ -176,7 +172,7 @@ class GeometryReader {
       }
       return next;
     }
-    if (out_.isGold) {
+    if (isGold_) {
       addBlock();
       if (next.starts_with("coordinates")) {
         nodesOfPart();
@@ -229,7 +225,7 @@ class GeometryReader {
     at->second = {block().elements, count};
     const bool isKept = !isGhost && kind->type > kPolygons;
     if (!isGhost && !isKept) report_.ignoredCells += count;
-    const bool interleaves = !out_.isGold && in_.isText();
+    const bool interleaves = !isGold_ && in_.isText();
     if (hasElementIds_ && !interleaves) {
       if (!in_.fits(count, "ids of elements")) return;
       in_.skipIntegers(count);
@@ -351,10 +347,10 @@ class GeometryReader {
 
   /// A grid whose few numbers unfold into many points.
   void straightGrid(const std::array<std::uint64_t, 3>& n, std::uint64_t points, bool isUniform) {
-    gridPoints_ += points;
-    if (gridPoints_ > maxInflatedBytes() / kBytesOfGridPoint)
-      return in_.fail("its grids have " + std::to_string(gridPoints_) +
-                      " points or more, which do not fit in this machine's memory");
+    if (points > bounds_.room / kEnSightGridPointBytes)
+      return in_.fail("its grid of " + std::to_string(points) +
+                      " points does not fit in this machine's memory");
+    bounds_.room -= points * kEnSightGridPointBytes;
     if (!in_.fits(isUniform ? 6 : n[0] + n[1] + n[2], "coordinates of a grid")) return;
     std::array<std::vector<double>, 3> along;
     Position origin{};
@@ -400,22 +396,23 @@ class GeometryReader {
   static constexpr std::size_t kShown = 40;  ///< characters of the file that an error quotes
 
   EnSightNumbers in_;
+  const bool isGold_;
+  EnSightBounds& bounds_;
   ReadReport& report_;
   EnSightGeometry out_;
   EnSightPart* part_ = nullptr;
   bool hasNodeIds_ = false, hasElementIds_ = false;
   bool areNodeIdsMeant_ = false;                        ///< by the cells of EnSight 6
   std::vector<std::pair<std::int64_t, VertexId>> ids_;  ///< sorted; empty: 1, 2, 3 ...
-  std::uint64_t gridPoints_ = 0;                        ///< of grids that unfold
 };
 
 }  // namespace
 
 Result<EnSightGeometry> readEnSightGeometry(std::string_view bytes,
                                             const std::filesystem::path& file,
-                                            const EnSightEncoding& encoding, bool isGold,
-                                            std::chrono::seconds patience, ReadReport& report) {
-  return GeometryReader(bytes, file, encoding, patience, report).read(isGold);
+                                            const EnSightEncoding& encoding, EnSightBounds& bounds,
+                                            ReadReport& report) {
+  return GeometryReader(bytes, file, encoding, bounds, report).read();
 }
 
 Status movePoints(EnSightGeometry& geometry, const EnSightGeometry& moved,

@@ -14,6 +14,10 @@
 
 namespace qtet {
 
+/// The memory of a grid's point and of the hexahedron that begins there.
+inline constexpr std::uint64_t kEnSightGridPointBytes =
+    sizeof(Position) + 8 * sizeof(VertexId) + 2 * sizeof(std::uint64_t) + 1;
+
 /// Which row of a block's cells the first element of a kind is, and how many there are.
 struct EnSightElements {
   std::uint64_t firstRow = 0, count = 0;
@@ -36,15 +40,16 @@ struct EnSightGeometry {
   EnSightEncoding encoding;
   std::map<std::int64_t, EnSightPart> parts;  ///< by their numbers
   std::vector<EnSightBlock> blocks;
-  bool isGold = false;
 };
 
 /// Reads one file or step. Counts elements of other dimensions in `report`. Ids of points are
 /// unchecked (kGhost where there is none). Errors: bad-input, truncated (with the byte or line),
-/// limit-exceeded (a grid that fills the machine's memory).
-[[nodiscard]] Result<EnSightGeometry> readEnSightGeometry(
-    std::string_view bytes, const std::filesystem::path& file, const EnSightEncoding& encoding,
-    bool isGold, std::chrono::seconds patience, ReadReport& report);
+/// a grid beyond `bounds`.
+[[nodiscard]] Result<EnSightGeometry> readEnSightGeometry(std::string_view bytes,
+                                                          const std::filesystem::path& file,
+                                                          const EnSightEncoding& encoding,
+                                                          EnSightBounds& bounds,
+                                                          ReadReport& report);
 
 /// Gives the geometry the points of `moved`, which has the same parts. Errors: bad-input (it has
 /// not).

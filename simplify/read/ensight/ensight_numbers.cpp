@@ -79,7 +79,7 @@ Result<EnSightEncoding> encodingOf(const std::filesystem::path& file, bool isGol
       rangeOf(*opened, 0, std::min<std::uint64_t>(opened->size(), kMarkBytes + kLineBytes));
   if (!front) return std::unexpected(front.error());
   EnSightEncoding out;
-  out.digits = isGold ? 10 : 8;
+  out.isGold = isGold;
   if (front->starts_with("C Binary")) out.kind = EnSightEncoding::kC;
   if (front->substr(std::min(kMarkBytes, front->size())).starts_with("Fortran Binary")) {
     out.kind = EnSightEncoding::kFortran;
@@ -221,7 +221,8 @@ std::string_view EnSightNumbers::digitsHere() {
   const std::string_view rest = in_.rest();
   const std::size_t sign = rest.starts_with('-') || rest.starts_with('+') ? 1 : 0;
   const std::size_t end = std::min(rest.find_first_not_of("0123456789", sign), rest.size());
-  const std::size_t length = end > encoding_.digits ? (end - 1) % encoding_.digits + 1 : end;
+  const std::size_t columns = encoding_.isGold ? 10 : 8;
+  const std::size_t length = end > columns ? (end - 1) % columns + 1 : end;
   return rest.substr(0, length);
 }
 

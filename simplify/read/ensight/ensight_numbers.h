@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "simplify/read/ensight/ensight_case.h"
+#include "simplify/read/options/read_options.h"
 #include "simplify/read/text/mesh_scanner.h"
 
 namespace qtet {
@@ -20,10 +21,17 @@ namespace qtet {
 struct EnSightEncoding {
   enum Kind : std::uint8_t { kText, kC, kFortran } kind = kText;
   std::optional<std::endian> order;  ///< nullopt: not known yet
-  unsigned digits = 10;              ///< columns of an integer as text
+  bool isGold = false;               ///< else EnSight 6
 };
 
-/// Looks at the first bytes of a geometry. `isGold`: else EnSight 6. Errors: io, not-found,
+/// What reading may cost.
+struct EnSightBounds {
+  std::chrono::seconds patience = kReadPatience;  ///< for each file (ReadingTime)
+  /// Bytes that grids which few numbers describe, and variables, may have. Reading them takes off.
+  std::uint64_t room = 0;
+};
+
+/// Looks at the first bytes of a geometry. Errors: io, not-found,
 /// truncated (empty).
 [[nodiscard]] Result<EnSightEncoding> encodingOf(const std::filesystem::path& file, bool isGold);
 

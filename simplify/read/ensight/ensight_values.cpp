@@ -18,16 +18,16 @@ class ValueReader {
  public:
   ValueReader(std::string_view bytes, const std::filesystem::path& file,
               const EnSightVariable& variable, const EnSightGeometry& geometry,
-              std::chrono::seconds patience, std::uint64_t& room)
-      : in_(bytes, file, geometry.encoding, patience),
+              EnSightBounds& bounds)
+      : in_(bytes, file, geometry.encoding, bounds.patience),
         variable_(variable),
         geometry_(geometry),
-        room_(room),
+        room_(bounds.room),
         values_(geometry.blocks.size()) {}
 
   Result<std::vector<std::vector<double>>> read() {
     in_.line();  // its description
-    if (!in_.failed() && !geometry_.isGold && !variable_.isOfElements) {
+    if (!in_.failed() && !geometry_.encoding.isGold && !variable_.isOfElements) {
       // in EnSight 6 those of the nodes that all parts share come first, and have no heading
       if (const std::uint64_t nodes = geometry_.blocks.front().mesh.points.size(); nodes > 0)
         take("", 0, {0, nodes}, "the nodes of all parts");
@@ -57,7 +57,7 @@ class ValueReader {
   /// Reads the values of a part behind its keyword. Gives the keyword behind them.
   std::string_view part(std::string_view keyword) {
     const std::int64_t number =
-        geometry_.isGold ? in_.integer("a part's number") : ensightPartNumber(keyword);
+        geometry_.encoding.isGold ? in_.integer("a part's number") : ensightPartNumber(keyword);
     if (in_.failed()) return {};
     const auto at = geometry_.parts.find(number);
     const std::string which = "part " + std::to_string(number);
@@ -102,7 +102,7 @@ class ValueReader {
     if (mesh.cells() == 0) return in_.skipReals(tuples * n);
     std::vector<double>& to = values_[block];
     if (to.empty() && !makeRoom(to, block)) return;
-    const bool isInterleaved = !geometry_.isGold && !heading.starts_with("block");
+    const bool isInterleaved = !geometry_.encoding.isGold && !heading.starts_with("block");
     std::uint64_t done = 0;
     const auto put = [&](std::uint64_t tuple, std::uint64_t component) {
       if (in_.isText() && in_.atEnd()) cutOff(done, tuples * n, whose);
@@ -169,10 +169,12 @@ class ValueReader {
 
 }  // namespace
 
-Result<std::vector<std::vector<double>>> readEnSightValues(
-    std::string_view bytes, const std::filesystem::path& file, const EnSightVariable& variable,
-    const EnSightGeometry& geometry, std::chrono::seconds patience, std::uint64_t& room) {
-  return ValueReader(bytes, file, variable, geometry, patience, room).read();
+Result<std::vector<std::vector<double>>> readEnSightValues(std::string_view bytes,
+                                                           const std::filesystem::path& file,
+                                                           const EnSightVariable& variable,
+                                                           const EnSightGeometry& geometry,
+                                                           EnSightBounds& bounds) {
+  return ValueReader(bytes, file, variable, geometry, bounds).read();
 }
 
 }  // namespace qtet

@@ -11,10 +11,9 @@ namespace qtet {
 /// The variable's values by block, for each point, or for each row of elements (EnSightBlock);
 /// empty where the file has none for a block. NaN: undefined, or not listed. Errors: bad-input,
 /// without the file's name (too few or too many values; values of other parts than the geometry's;
-/// no values at all), limit-exceeded (values that fill the machine's memory; `room`: the bytes of
-/// those that it may still have, which shrink).
+/// no values at all; more than `bounds` have room for).
 [[nodiscard]] Result<std::vector<std::vector<double>>> readEnSightValues(
     std::string_view bytes, const std::filesystem::path& file, const EnSightVariable& variable,
-    const EnSightGeometry& geometry, std::chrono::seconds patience, std::uint64_t& room);
+    const EnSightGeometry& geometry, EnSightBounds& bounds);
 
 }  // namespace qtet

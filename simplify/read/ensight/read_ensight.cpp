@@ -23,9 +23,9 @@ class CaseReader {
       return time ? case_.stepAt(item, *time) : 0;
     };
     const std::uint64_t step = stepOf(case_.model);
-    Result<EnSightGeometry> geometry = geometryOf(step, report);
+    EnSightBounds bounds{options_.patience, maxInflatedBytes()};
+    Result<EnSightGeometry> geometry = geometryOf(step, bounds, report);
     if (!geometry) return std::unexpected(geometry.error());
-    std::uint64_t room = maxInflatedBytes();
     CellMesh unread;
     FieldChoice choice(options_.fields, report);
     int number = 0;
@@ -33,7 +33,7 @@ class CaseReader {
       const auto name = choice.nameOf({variable.name, number++, variable.components},
                                       variable.isOfElements ? "cell" : "point", unread);
       if (!name) continue;
-      if (Status done = addField(variable, *name, stepOf(variable.item), *geometry, room, report);
+      if (Status done = addField(variable, *name, stepOf(variable.item), *geometry, bounds, report);
           !done)
         return std::unexpected(done.error());
     }
@@ -45,11 +45,12 @@ class CaseReader {
   }
 
  private:
-  Result<EnSightGeometry> geometryOf(std::uint64_t step, ReadReport& report) {
-    Result<EnSightGeometry> out = oneGeometry(step, report);
+  Result<EnSightGeometry> geometryOf(std::uint64_t step, EnSightBounds& bounds,
+                                     ReadReport& report) {
+    Result<EnSightGeometry> out = oneGeometry(step, bounds, report);
     if (!out || !case_.changesCoordinatesOnly || step == case_.cellStep) return out;
     ReadReport ofCells;
-    Result<EnSightGeometry> cells = oneGeometry(case_.cellStep, ofCells);
+    Result<EnSightGeometry> cells = oneGeometry(case_.cellStep, bounds, ofCells);
     if (!cells) return cells;
     if (Status done = movePoints(*cells, *out, case_.path); !done)
       return std::unexpected(done.error());
@@ -57,15 +58,15 @@ class CaseReader {
     return cells;
   }
 
-  Result<EnSightGeometry> oneGeometry(std::uint64_t step, ReadReport& report) {
+  Result<EnSightGeometry> oneGeometry(std::uint64_t step, EnSightBounds& bounds,
+                                      ReadReport& report) {
     const Result<EnSightPlace> place = case_.placeOf(case_.model, step);
     if (!place) return std::unexpected(place.error());
     const Result<EnSightEncoding> encoding = encodingOf(place->file, case_.isGold);
     if (!encoding) return named("it names its model: ", encoding.error());
     const Result<std::string> bytes = files_.read(*place, *encoding);
     if (!bytes) return named("it names its model: ", bytes.error());
-    return readEnSightGeometry(*bytes, place->file, *encoding, case_.isGold, options_.patience,
-                               report);
+    return readEnSightGeometry(*bytes, place->file, *encoding, bounds, report);
   }
 
   [[nodiscard]] std::unexpected<Error> named(const std::string& what, const Error& error) const {
@@ -73,7 +74,7 @@ class CaseReader {
   }
 
   Status addField(const EnSightVariable& variable, const std::string& name, std::uint64_t step,
-                  EnSightGeometry& geometry, std::uint64_t& room, ReadReport& report) {
+                  EnSightGeometry& geometry, EnSightBounds& bounds, ReadReport& report) {
     const auto bad = [&](const Error& error) {
       return badFile(case_.path, "its variable " + variable.name + ": " + error.message +
                                      "; export the case again, or take the variable out of it");
@@ -82,8 +83,7 @@ class CaseReader {
     if (!place) return std::unexpected(place.error());
     const Result<std::string> bytes = files_.read(*place, geometry.encoding);
     if (!bytes) return bad(bytes.error());
-    auto values =
-        readEnSightValues(*bytes, place->file, variable, geometry, options_.patience, room);
+    auto values = readEnSightValues(*bytes, place->file, variable, geometry, bounds);
     if (!values) return bad(values.error());
     bool isAnywhere = false;
     for (std::size_t i = 0; i < values->size(); ++i) {

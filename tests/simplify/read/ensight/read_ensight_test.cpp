@@ -411,7 +411,7 @@ TEST(ReadEnSight, aGridThatFewBytesUnfoldIsBoundedByMemory) {
     const std::string error =
         refusal(caseWith({EnSightKind::kBig, true}, geo.bytes(), "scalar per node", "x"));
     EXPECT_TRUE(error.contains("points has none, or 2^32 and more") ||
-                error.contains("do not fit in this machine's memory"))
+                error.contains("does not fit in this machine's memory"))
         << error;
   }
 }
@@ -466,21 +466,40 @@ TEST(ReadEnSight, fullColumnsOfTextStandSideBySide) {
 
 EnSightEncoding encodingOf(Dialect dialect) {
   EnSightEncoding out;
-  out.digits = dialect.isGold ? 10 : 8;
+  out.isGold = dialect.isGold;
   if (dialect.kind != EnSightKind::kText) out.kind = EnSightEncoding::kC;
   return out;
 }
 
-Result<EnSightGeometry> parsedGeometry(Dialect dialect, std::string_view bytes) {
+Result<EnSightGeometry> parsedGeometry(Dialect dialect, std::string_view bytes,
+                                       std::uint64_t room = 1 << 20) {
   ReadReport report;
-  return readEnSightGeometry(bytes, "g", encodingOf(dialect), dialect.isGold, kReadPatience,
-                             report);
+  EnSightBounds bounds{kReadPatience, room};
+  return readEnSightGeometry(bytes, "g", encodingOf(dialect), bounds, report);
 }
 
 bool areValuesRead(const EnSightGeometry& of, bool isOfElements, std::string_view bytes) {
-  std::uint64_t room = 1 << 20;
-  return readEnSightValues(bytes, "v", {"V", isOfElements, 3, {}}, of, kReadPatience, room)
-      .has_value();
+  EnSightBounds bounds{kReadPatience, 1 << 20};
+  return readEnSightValues(bytes, "v", {"V", isOfElements, 3, {}}, of, bounds).has_value();
+}
+
+TEST(ReadEnSight, whatUnfoldsTakesNoMoreThanItsRoom) {
+  const Dialect dialect{EnSightKind::kText, true};
+  EnSightWriter geo = partOfGold(dialect.kind, false);
+  geo.line("block uniform").integers({2, 2, 2}, 3).reals({0, 0, 0, 1, 1, 1});
+  EXPECT_FALSE(parsedGeometry(dialect, geo.bytes(), 8 * kEnSightGridPointBytes - 1));
+  EXPECT_TRUE(parsedGeometry(dialect, geo.bytes(), 8 * kEnSightGridPointBytes));
+  EXPECT_TRUE(parsedGeometry(dialect, geo.bytes(), 8 * kEnSightGridPointBytes + 1));
+  const auto whole = parsedGeometry(dialect, geometry(dialect, 1, "off"));
+  ASSERT_TRUE(whole) << whole.error().text();
+  const std::uint64_t bytes = 12 * 3 * sizeof(double);  // of 12 vectors
+  for (const std::uint64_t room : {bytes - 1, bytes, bytes + 1}) {
+    EnSightBounds bounds{kReadPatience, room};
+    const auto read =
+        readEnSightValues(values(dialect, 3, false, 0), "v", {"V", false, 3, {}}, *whole, bounds);
+    EXPECT_EQ(read.has_value(), room >= bytes);
+    if (read) EXPECT_EQ(bounds.room, room - bytes);
+  }
 }
 
 TEST(ReadEnSight, everyCutOfAFileIsRefused) {
