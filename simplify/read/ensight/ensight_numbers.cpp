@@ -207,10 +207,11 @@ std::string_view EnSightNumbers::keyword() {
 
 std::uint32_t EnSightNumbers::word(const char* what, bool isInteger) {
   const auto value = in_.raw<std::uint32_t>(what);
-  if (isInteger && !encoding_.order && value != std::byteswap(value))
-    encoding_.order = value < std::byteswap(value) == (std::endian::native == std::endian::little)
-                          ? std::endian::little
-                          : std::endian::big;
+  if (isInteger && !encoding_.order && value != std::byteswap(value)) {
+    constexpr std::endian kOther =
+        std::endian::native == std::endian::little ? std::endian::big : std::endian::little;
+    encoding_.order = value < std::byteswap(value) ? std::endian::native : kOther;
+  }
   return encoding_.order.value_or(std::endian::native) == std::endian::native
              ? value
              : std::byteswap(value);
