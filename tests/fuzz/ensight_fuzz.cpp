@@ -1,6 +1,6 @@
-// Fuzzes the readers of EnSight's geometries and variables: an error or arrays that agree in length.
-// The first byte chooses the encoding, the next two how many words of four bytes
-// the geometry has, before the variable begins.
+// Fuzzes the readers of EnSight's geometries and variables: an error, or arrays that agree in
+// length. The first byte chooses the encoding. The next two say how many words of four bytes the
+// geometry has; the variable follows.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

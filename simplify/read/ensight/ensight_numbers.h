@@ -24,7 +24,7 @@ struct EnSightEncoding {
   bool isGold = false;               ///< else EnSight 6
 };
 
-/// What reading may cost.
+/// Limits of reading.
 struct EnSightBounds {
   std::chrono::seconds patience = kReadPatience;  ///< for each file (ReadingTime)
   /// Bytes that grids which few numbers describe, and variables, may have. Reading them takes off.
