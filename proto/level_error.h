@@ -15,7 +15,8 @@ struct OneSidedDistance {
   double max = 0;
 };
 
-/// Over the original's volume, as fractions of the field's range.
+/// Over the original's volume, as fractions of the field's range. Where the field is a label
+/// (Manifest::labels), `rms` is the share of the volume that has another one, and `max` 1 if any has.
 struct FieldError {
   double rms = 0;
   double max = 0;

@@ -26,6 +26,8 @@ inline constexpr std::uint32_t kMaxRequestFields = 1024;
 inline constexpr std::uint32_t kMaxAhead = kMaxRequestFields - 1;
 /// Bytes of a unit: it stands in one line beside a field's name.
 inline constexpr std::uint32_t kMaxUnitBytes = 64;
+/// Values of a label that have names: a field of more values is no label.
+inline constexpr std::uint32_t kMaxLabelNames = 4096;
 /// The highest number of a field that a manifest's opening can name, in a byte.
 inline constexpr std::uint32_t kMaxOpeningField = 255;
 /// Bytes of a name (field, mesh, source file): what file systems allow, and a label on a screen is

@@ -33,12 +33,30 @@ Error noSuchField(const Manifest& manifest, std::string_view key) {
           "the log has no field '" + std::string(key) + "'; it has: " + fieldList(keys)};
 }
 
+bool mayBeLabel(const ManifestField& field) {
+  return field.association == "cell" && field.components == 1 && !field.type.starts_with("float") &&
+         field.step == 1;
+}
+
 std::string_view unitOf(const Manifest& manifest, std::string_view name) {
   const std::string_view series = nameWithoutStep(name).value_or(name);
   if (const auto at = manifest.units.find(series); at != manifest.units.end()) return at->second;
   const std::size_t open = series.rfind(" [");
   if (open == std::string_view::npos || open == 0 || !series.ends_with(']')) return {};
   return series.substr(open + 2, series.size() - open - 3);
+}
+
+const LabelNames* labelNamesOf(const Manifest& manifest, std::size_t f) {
+  const ManifestField& field = manifest.fields[f];
+  if (!mayBeLabel(field)) return nullptr;
+  const auto at = manifest.labels.find(nameWithoutStep(field.name).value_or(field.name));
+  return at == manifest.labels.end() ? nullptr : &at->second;
+}
+
+std::vector<bool> labelsAmong(const Manifest& manifest) {
+  std::vector<bool> out(manifest.fields.size());
+  for (std::size_t f = 0; f < out.size(); ++f) out[f] = labelNamesOf(manifest, f) != nullptr;
+  return out;
 }
 
 std::string_view timeUnit(const Manifest& manifest) {
@@ -88,7 +106,10 @@ std::string manifestToJson(const Manifest& manifest) {
     if (manifest.fields[f].hasMissing) out["fields"][f]["gaps"] = true;
     if (const auto unit = unitOf(manifest, manifest.fields[f].name); !unit.empty())
       out["fields"][f]["unit"] = unit;
+    if (const LabelNames* names = labelNamesOf(manifest, f))
+      out["fields"][f]["labels"] = toJson(*names);
   }
+  const std::vector<bool> isLabel = labelsAmong(manifest);
   out["levels"] = Json::array();
   for (const ManifestLevel& l : manifest.levels) {
     out["levels"].push_back({{"level", l.level},
@@ -96,7 +117,7 @@ std::string manifestToJson(const Manifest& manifest) {
                              {"vertices", l.vertices},
                              {"boundaryTriangles", l.boundaryTriangles},
                              {"chunk", l.chunk}});
-    if (l.error) out["levels"].back()["error"] = toJson(*l.error);
+    if (l.error) out["levels"].back()["error"] = toJson(*l.error, isLabel);
   }
   return dumpJson(out);
 }

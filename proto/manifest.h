@@ -32,6 +32,9 @@ struct ManifestField {
   bool hasMissing = false;        ///< some values are missing: NaN
 };
 
+/// Whether it is a cell field of one component and of integers that are stored as they are.
+[[nodiscard]] bool mayBeLabel(const ManifestField& field);
+
 struct ManifestLevel {
   std::uint32_t level = 0;
   std::uint32_t tetrahedra = 0;
@@ -55,6 +58,14 @@ struct Opening {
   [[nodiscard]] bool operator==(const Opening&) const = default;
 };
 
+/// What values of a label are called.
+using LabelNames = std::map<std::int32_t, std::string>;
+/// Cell fields of one integer that say what a cell is, such as its material. By a field's name
+/// without @TIME; what values are called, as far as that is known.
+using Labels = std::map<std::string, LabelNames, std::less<>>;
+/// By a field's name without @TIME; that of times by the empty name. None is empty.
+using Units = std::map<std::string, std::string, std::less<>>;
+
 struct Manifest {
   std::string generator;
   std::string source;  ///< file name of the input, without its folder
@@ -65,8 +76,8 @@ struct Manifest {
   /// None: the first field on the boundary.
   std::optional<Opening> opening = std::nullopt;
   std::vector<ManifestField> fields;
-  /// By a field's name without @TIME; that of times by the empty name. None is empty.
-  std::map<std::string, std::string, std::less<>> units;
+  Units units;
+  Labels labels;
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
 };
 
@@ -84,6 +95,10 @@ struct Manifest {
 /// The unit of the field of this name or of its series: that of the manifest, else the "K" of a
 /// name "T [K]". Empty: unknown.
 [[nodiscard]] std::string_view unitOf(const Manifest& manifest, std::string_view name);
+/// The names of a label's values, perhaps none of them; null: field `f` is no label.
+[[nodiscard]] const LabelNames* labelNamesOf(const Manifest& manifest, std::size_t f);
+/// By field, whether it is a label.
+[[nodiscard]] std::vector<bool> labelsAmong(const Manifest& manifest);
 /// That of the times of instants. Empty: unknown.
 [[nodiscard]] std::string_view timeUnit(const Manifest& manifest);
 

@@ -42,6 +42,7 @@ struct qtet_log : qtet::Failure {
   qtet::Manifest manifest;               // of `file`
   std::vector<qtet::Series> series;      // of `manifest`
   std::vector<std::string> units;        // of its fields, and then of times
+  std::vector<std::string> labels;       // of its fields: names as JSON, "" without
   std::optional<qtet::Refiner> refiner;  // of `file`, with a complete level
 
   // Checks of a call's arguments. Each returns QTET_OK or refuses.

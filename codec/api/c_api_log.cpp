@@ -9,6 +9,7 @@
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
 #include "codec/refine/refiner.h"
+#include "proto/level_error_json.h"
 #include "proto/limits.h"
 
 using qtet::Bytes;
@@ -37,6 +38,10 @@ qtet_status take(qtet_log* log, Result<LogFile> file, const std::string& path) {
   for (const ManifestField& field : log->manifest.fields)
     log->units.emplace_back(qtet::unitOf(log->manifest, field.name));
   log->units.emplace_back(qtet::timeUnit(log->manifest));
+  for (std::size_t f = 0; f < log->manifest.fields.size(); ++f) {
+    const qtet::LabelNames* names = qtet::labelNamesOf(log->manifest, f);
+    log->labels.push_back(names == nullptr ? "" : qtet::toJson(*names).dump());
+  }
   log->file = std::move(*file);
   return QTET_OK;
 }
@@ -47,6 +52,7 @@ void close(qtet_log* log) {
   log->manifest = {};
   log->series.clear();
   log->units.clear();
+  log->labels.clear();
 }
 
 /// Bytes of the structs' first versions: to the end of their last member. No caller has fewer.
@@ -123,6 +129,7 @@ qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
   info.name = f.name.c_str();
   info.type = f.type.c_str();
   info.unit = log.units[field].c_str();
+  info.labels = log.labels[field].c_str();
   return info;
 }
 

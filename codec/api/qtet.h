@@ -136,6 +136,8 @@ typedef struct {
   const char* name;
   const char* type; /* of the input: float32, float64, int8 ... uint64 */
   const char* unit; /* Since 0.4; "": unknown */
+  /* Since 0.4. "": no label. Else {"1": "steel", "2": "oil"}: the values that have names, as JSON */
+  const char* labels;
 } qtet_field_info;
 
 typedef struct {
@@ -159,8 +161,8 @@ QTET_API qtet_status qtet_log_get_level(qtet_log* log, uint32_t level, size_t in
                                         qtet_level_info* info);
 /* The field that a name means: of points, else of cells; "cell:NAME" and "point:NAME" say which. */
 QTET_API qtet_status qtet_log_find_field(qtet_log* log, const char* name, uint32_t* field);
-/* Known error of a field at a level, over the field's range. QTET_NOT_FOUND if it was not measured.
- * */
+/* Known error of a field at a level, over the field's range. Of a label, rms is the share of the
+ * volume that has another one, and max 1 or 0. QTET_NOT_FOUND if it was not measured. */
 QTET_API qtet_status qtet_log_field_error(qtet_log* log, uint32_t level, uint32_t field,
                                           double* rms, double* max);
 

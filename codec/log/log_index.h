@@ -28,6 +28,8 @@ struct LogIndex {
   static constexpr std::uint16_t kMinorOfSomeErrors = 3;
   /// The minor version of a log whose manifest has units.
   static constexpr std::uint16_t kMinorOfUnits = 4;
+  /// The minor version of a log whose manifest has labels.
+  static constexpr std::uint16_t kMinorOfLabels = 5;
 
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;

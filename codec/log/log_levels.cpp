@@ -16,6 +16,7 @@ std::uint64_t prefixBytes(const Manifest& manifest, const LogIndex& index, std::
 
 nlohmann::ordered_json levelsJson(const Manifest& manifest, const LogIndex& index) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  const std::vector<bool> isLabel = labelsAmong(manifest);
   std::uint64_t before = 0;
   for (const ManifestLevel& level : manifest.levels) {
     const std::uint64_t prefix = prefixBytes(manifest, index, level.level);
@@ -25,7 +26,7 @@ nlohmann::ordered_json levelsJson(const Manifest& manifest, const LogIndex& inde
                    {"boundaryTriangles", level.boundaryTriangles},
                    {"bytes", prefix - before},
                    {"cumulativeBytes", prefix}});
-    if (level.error) out.back()["error"] = toJson(*level.error);
+    if (level.error) out.back()["error"] = toJson(*level.error, isLabel);
     before = prefix;
   }
   return out;

@@ -101,14 +101,15 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
 // ---- what follows the fields
 
 constexpr unsigned kAllErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4,
-                   kSomeErrorsFollow = 8, kUnitsFollow = 16;
-constexpr unsigned kKnownFlags = 2 * kUnitsFollow - 1;
+                   kSomeErrorsFollow = 8, kUnitsFollow = 16, kLabelsFollow = 32;
+constexpr unsigned kKnownFlags = 2 * kLabelsFollow - 1;
 constexpr std::uint8_t kNoCut = 3;
 
 unsigned flagsOf(const Manifest& manifest) {
   return (manifest.levels.front().error ? kSomeErrorsFollow : 0) |
          (manifest.focus ? kFocusFollows : 0) | (manifest.opening ? kOpeningFollows : 0) |
-         (manifest.units.empty() ? 0 : kUnitsFollow);
+         (manifest.units.empty() ? 0 : kUnitsFollow) |
+         (manifest.labels.empty() ? 0 : kLabelsFollow);
 }
 
 void writeFirstView(ByteWriter& w, const Manifest& manifest) {
@@ -119,13 +120,22 @@ void writeFirstView(ByteWriter& w, const Manifest& manifest) {
     w.write(manifest.opening->field);
     w.write(manifest.opening->cut.value_or(kNoCut));
   }
-  if (manifest.units.empty()) return;
-  w.writeVarint(static_cast<std::uint32_t>(manifest.units.size()));
-  for (const auto& [name, unit] : manifest.units) writeText(w, name), writeText(w, unit);
+  if (!manifest.units.empty()) {
+    w.writeVarint(static_cast<std::uint32_t>(manifest.units.size()));
+    for (const auto& [name, unit] : manifest.units) writeText(w, name), writeText(w, unit);
+  }
+  if (manifest.labels.empty()) return;
+  w.writeVarint(static_cast<std::uint32_t>(manifest.labels.size()));
+  for (const auto& [field, names] : manifest.labels) {
+    writeText(w, field);
+    w.writeVarint(static_cast<std::uint32_t>(names.size()));
+    for (const auto& [value, name] : names)
+      w.write(static_cast<std::uint32_t>(value)), writeText(w, name);
+  }
 }
 
-std::map<std::string, std::string, std::less<>> readUnits(ByteReader& r) {
-  std::map<std::string, std::string, std::less<>> out;
+Units readUnits(ByteReader& r) {
+  Units out;
   const std::uint32_t count = r.readVarint();
   for (std::uint32_t i = 0; i < count && !r.failed(); ++i) {
     std::string name = readText(r), unit = readText(r);
@@ -135,6 +145,38 @@ std::map<std::string, std::string, std::less<>> readUnits(ByteReader& r) {
              "the manifest's units are not in the order of their names, or one is empty or longer "
              "than 64 bytes; build the log again");
     out.emplace_hint(out.end(), std::move(name), std::move(unit));
+  }
+  return out;
+}
+
+LabelNames readLabelNames(ByteReader& r) {
+  LabelNames out;
+  const std::uint32_t count = r.readVarint();
+  for (std::uint32_t i = 0; i < count && !r.failed(); ++i) {
+    const auto value = static_cast<std::int32_t>(r.read<std::uint32_t>());
+    std::string name = readText(r);
+    if ((!out.empty() && value <= out.rbegin()->first) || name.empty() || i == kMaxLabelNames)
+      r.fail(ErrorCode::kBadValue,
+             "the names of a label's values are not in the order of these, one is empty, or there "
+             "are more than 4,096; build the log again");
+    out.emplace_hint(out.end(), value, std::move(name));
+  }
+  return out;
+}
+
+Labels readLabels(ByteReader& r, std::span<const ManifestField> fields) {
+  Labels out;
+  const std::uint32_t count = r.readVarint();
+  for (std::uint32_t i = 0; i < count && !r.failed(); ++i) {
+    std::string name = readText(r);
+    const auto isIt = [&](const ManifestField& field) {
+      return mayBeLabel(field) && nameWithoutStep(field.name).value_or(field.name) == name;
+    };
+    if ((!out.empty() && name <= out.rbegin()->first) || std::ranges::none_of(fields, isIt))
+      r.fail(ErrorCode::kBadValue,
+             "the manifest's labels are not in the order of their names, or one is no cell field "
+             "of one integer; build the log again");
+    out.emplace_hint(out.end(), std::move(name), readLabelNames(r));
   }
   return out;
 }
@@ -159,6 +201,7 @@ Opening readOpening(ByteReader& r, std::size_t fields) {
 }
 
 std::uint16_t minorOfFlags(unsigned flags) {
+  if ((flags & kLabelsFollow) != 0) return LogIndex::kMinorOfLabels;
   if ((flags & kUnitsFollow) != 0) return LogIndex::kMinorOfUnits;
   if ((flags & kSomeErrorsFollow) != 0) return LogIndex::kMinorOfSomeErrors;
   return flags > kAllErrorsFollow ? LogIndex::kMinorOfFirstView : 0;
@@ -177,6 +220,7 @@ KnownErrors readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
   if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
   if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, out.fields.size());
   if ((flags & kUnitsFollow) != 0) out.units = readUnits(r);
+  if ((flags & kLabelsFollow) != 0) out.labels = readLabels(r, out.fields);
   if ((flags & kSomeErrorsFollow) != 0) return KnownErrors::kSome;
   return (flags & kAllErrorsFollow) != 0 ? KnownErrors::kAll : KnownErrors::kNone;
 }
@@ -428,6 +472,12 @@ Status setManifest(LogIndex& index, Manifest manifest) {
            std::ranges::none_of(manifest.fields, [&](const ManifestField& field) {
              return nameWithoutStep(field.name).value_or(field.name) == entry.first;
            });
+  });
+  std::erase_if(manifest.labels, [&](const auto& entry) {
+    const auto front = std::span(manifest.fields).first(manifest.fields.size() - index.laterFields);
+    return std::ranges::none_of(front, [&](const ManifestField& field) {
+      return mayBeLabel(field) && nameWithoutStep(field.name).value_or(field.name) == entry.first;
+    });
   });
   Result<Bytes> front = manifestBlock(manifest, index.laterFields);
   if (!front) return std::unexpected(front.error());

@@ -10,7 +10,8 @@ namespace qtet {
 /// The newest version that it writes, for a log that needs all of it. Newer minor versions are read
 /// as well.
 [[nodiscard]] inline std::string newestLogVersion() {
-  return std::to_string(LogIndex::kVersionOfSeries) + "." + std::to_string(LogIndex::kMinorOfUnits);
+  return std::to_string(LogIndex::kVersionOfSeries) + "." +
+         std::to_string(LogIndex::kMinorOfLabels);
 }
 [[nodiscard]] inline std::string oldestLogVersion() {
   return std::to_string(LogIndex::kVersionMajor) + ".0";

@@ -106,6 +106,7 @@ Manifest manifestFor(const FusionHistory& history, const LogWriterOptions& optio
   m.focus = options.focus;
   m.opening = options.opening;
   m.units = options.units;
+  m.labels = options.labels;
   for (const FieldInfo& f : history.fields) m.fields.push_back(manifestFieldOf(f));
   m.levels = levelsOf(added, options.errors);
   return m;

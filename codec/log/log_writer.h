@@ -41,7 +41,8 @@ struct LogWriterOptions {
   LevelErrors errors;
   std::optional<Focus> focus = std::nullopt;      ///< for the manifest
   std::optional<Opening> opening = std::nullopt;  ///< the same
-  decltype(Manifest::units) units{};              ///< the same
+  Units units{};                                  ///< the same
+  Labels labels{};                                ///< the same
   /// Gives the closing blocks, once the chunks are written; none without it.
   std::function<Status(const FinestMesh&, const ClosingSink&)> closing{};
   std::function<void(double)> progress{};  ///< fraction done, 0..1

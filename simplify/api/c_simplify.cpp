@@ -76,8 +76,7 @@ Status checkChoices(const qtet_simplify_options& options) {
                                {options.lossless, 1, "lossless"},
                                {options.originalIds, 1, "originalIds"},
                                {options.timeStatistics, 1, "timeStatistics"},
-                               {options.reserved, 0, "reserved"},
-                               {options.reserved2, 0, "reserved2"}})
+                               {options.reserved, 0, "reserved"}})
     if (choice.number > choice.last)
       return fail(ErrorCode::kBadValue, std::string(choice.member) + " is " +
                                             std::to_string(choice.number) + "; the last is " +
@@ -143,6 +142,9 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
   Result<NamedNumbers> weights =
       namedNumbers(from.fieldWeights, from.fieldWeightCount, "fieldWeights");
   if (!weights) return std::unexpected(weights.error());
+  Result<NamedNumbers> labels =
+      namedNumbers(from.labelWeights, from.labelWeightCount, "labelWeights");
+  if (!labels) return std::unexpected(labels.error());
   Result<std::optional<qtet::MeasureOptions>> measure = measureOptionsOf(from);
   if (!measure) return std::unexpected(measure.error());
   PipelineOptions out;
@@ -154,6 +156,7 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
                   static_cast<int>(std::min(from.fieldBits, 1000u))};
   out.fusion = fusionOptionsOf(from);
   out.fieldWeights = std::move(*weights);
+  out.labelWeights = std::move(*labels);
   if (from.regions != nullptr) out.regions = from.regions;
   out.measure = std::move(*measure);
   out.valueCodec =

@@ -129,7 +129,10 @@ typedef struct {
   /* Since 0.4. 1: each series NAME@TIME gives the fields NAME_average, NAME_minimum, NAME_maximum
    * and NAME_stddev, its statistics over all instants; 0 */
   uint32_t timeStatistics;
-  uint32_t reserved2; /* 0 */
+  /* Since 0.4. Cell fields of integers that are labels, such as materials, and what their
+   * interfaces count; 0 leaves them out. Others: a sixteenth of the boundary's weight */
+  uint32_t labelWeightCount;
+  const qtet_named_number* labelWeights;
 } qtet_simplify_options;
 
 QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);

@@ -231,14 +231,17 @@ MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
   std::vector<ManifestField> fields;
   LevelError error = told.error.value_or(LevelError());
   error.fields.clear();
+  std::vector<bool> isLabel;
   for (const auto& [f, name, isInstant] : wanted) {
     if (!holdsFields(ending, known[f].association)) continue;
     fields.push_back(known[f]);
     fields.back().name = name;
-    if (told.error && f < told.error->fields.size()) error.fields.push_back(told.error->fields[f]);
+    if (!told.error || f >= told.error->fields.size()) continue;
+    error.fields.push_back(told.error->fields[f]);
+    isLabel.push_back(labelNamesOf(manifest, f) != nullptr);
   }
   out.json["fields"] = writtenFieldsJson(fields, ending);
-  if (told.error) out.json["error"] = toJson(error);
+  if (told.error) out.json["error"] = toJson(error, isLabel);
   return out;
 }
 

@@ -22,6 +22,20 @@ PlacementRule placementRuleOf(const std::string& name) {
   throw UsageError("--placement '" + name + "' is not known; give optimal, vertex or auto");
 }
 
+std::vector<std::pair<std::string, double>> namedWeights(const ParsedWords& parsed,
+                                                         const std::string& option,
+                                                         const std::string& example) {
+  std::vector<std::pair<std::string, double>> out;
+  if (!parsed.has(option)) return out;
+  for (const std::string& text : parsed.get<std::vector<std::string>>(option)) {
+    out.push_back(
+        parseNamedNumber(option, text, "a field's name and its weight such as " + example));
+    if (out.back().second > kMaxWeight)
+      throw UsageError("--" + option + " '" + text + "' is above 1,000,000");
+  }
+  return out;
+}
+
 }  // namespace
 
 void addFusionOptions(boost::program_options::options_description& options) {
@@ -37,6 +51,10 @@ void addFusionOptions(boost::program_options::options_description& options) {
       "field-weight", po::value<std::vector<std::string>>(),
       "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be "
       "given for several fields")(
+      "label-weight", po::value<std::vector<std::string>>(),
+      "NAME=W: what the interfaces of a cell field of integers, such as materials, count beside "
+      "the "
+      "fields; without, as the boundary by a weight of the mesh's; 0 leaves them out")(
       "shape-weight", po::value<double>()->default_value(FusionOptions().shapeWeight, "0.5"),
       "what badly shaped new cells cost: 0 for the least error, 1 and more for rounder cells")(
       "placement", po::value<std::string>()->default_value("auto"),
@@ -67,13 +85,8 @@ void takeFusionOptions(const ParsedWords& parsed, PipelineOptions& out) {
   if (parsed.has("envelope-tolerance"))
     fusion.envelopeTolerance = parsed.number("envelope-tolerance", 0, 1);
   fusion.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxThreads));
-  if (parsed.has("field-weight"))
-    for (const std::string& text : parsed.get<std::vector<std::string>>("field-weight")) {
-      out.fieldWeights.push_back(parseNamedNumber(
-          "field-weight", text, "a field's name and its weight such as Density=2"));
-      if (out.fieldWeights.back().second > kMaxWeight)
-        throw UsageError("--field-weight '" + text + "' is above 1,000,000");
-    }
+  out.fieldWeights = namedWeights(parsed, "field-weight", "Density=2");
+  out.labelWeights = namedWeights(parsed, "label-weight", "Material=1");
   if (parsed.has("preserve-regions")) out.regions = parsed.get<std::string>("preserve-regions");
 }
 

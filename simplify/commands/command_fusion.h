@@ -8,7 +8,7 @@
 namespace qtet {
 
 void addFusionOptions(boost::program_options::options_description& options);
-/// Sets `fusion`, `fieldWeights` and `regions`. Throws UsageError.
+/// Sets `fusion`, `fieldWeights`, `labelWeights` and `regions`. Throws UsageError.
 void takeFusionOptions(const ParsedWords& parsed, PipelineOptions& out);
 
 }  // namespace qtet

@@ -35,6 +35,8 @@ OrderedJson infoJson(const OpenedLog& log) {
                       {"missingValues", field.hasMissing},
                       {"bytes", bytes}});
     if (const auto unit = unitOf(manifest, field.name); !unit.empty()) fields.back()["unit"] = unit;
+    if (const LabelNames* names = labelNamesOf(manifest, f))
+      fields.back()["labels"] = toJson(*names);
   }
   OrderedJson out = {{"digest", log.file.digest()},
                      {"generator", manifest.generator},
@@ -84,6 +86,18 @@ std::string originText(const Manifest& manifest) {
   return out + ")";
 }
 
+/// ": 1 = steel, 2 = oil, and 12 more"; empty without names.
+std::string labelText(const LabelNames& names) {
+  constexpr std::size_t kShown = 8;
+  std::string out;
+  std::size_t shown = 0;
+  for (const auto& [value, name] : names) {
+    if (shown == kShown) return out + ", and " + std::to_string(names.size() - shown) + " more";
+    out += (shown++ == 0 ? ": " : ", ") + std::to_string(value) + " = " + name;
+  }
+  return out;
+}
+
 /// A line of the head: what it is, bright where colours are allowed, and what there is to say.
 void line(const Console& console, const std::string& what, const std::string& said) {
   constexpr std::size_t kWidth = 10;
@@ -118,6 +132,9 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
          series.name + ": " + std::to_string(series.fields.size()) + " instants, " +
              brief(series.times.front()) + " to " + brief(series.times.back()) +
              (timeUnit(log.manifest).empty() ? "" : " ") + std::string(timeUnit(log.manifest)));
+  for (std::size_t f = 0; f < log.manifest.fields.size(); ++f)
+    if (const LabelNames* names = labelNamesOf(log.manifest, f))
+      line(console, "label", fieldKey(log.manifest, f) + labelText(*names));
   if (info["fields"].empty()) return;
   console.out << "\n";
   std::vector<std::vector<std::string>> rows{

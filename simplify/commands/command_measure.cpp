@@ -67,12 +67,12 @@ std::optional<MeasureOptions> measureOptionsOf(const ParsedWords& parsed) {
   return std::nullopt;
 }
 
-OrderedJson measureReport(const std::optional<MeasureOptions>& options,
-                          const std::optional<LevelError>& base) {
+OrderedJson measureReport(const std::optional<MeasureOptions>& options, const Manifest& manifest) {
   OrderedJson out = {{"measure", !options                          ? "none"
                                  : options->effort == Effort::kAll ? "all"
                                                                    : "levels"}};
-  if (base) out["base"] = toJson(*base);
+  if (const auto& base = manifest.levels.front().error)
+    out["base"] = toJson(*base, labelsAmong(manifest));
   return out;
 }
 
@@ -81,6 +81,12 @@ std::string percentText(double fraction) {
   out.precision(3);
   out << 100 * fraction << " %";
   return out.str();
+}
+
+std::string fieldErrorText(const OrderedJson& error) {
+  if (const auto wrong = error.find("wrong"); wrong != error.end())
+    return percentText(wrong->get<double>()) + " of the volume wrong";
+  return "rms " + percentText(error["rms"].get<double>());
 }
 
 std::string measureSentence(const OrderedJson& report) {

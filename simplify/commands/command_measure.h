@@ -27,9 +27,12 @@ void addMeasureOptions(boost::program_options::options_description& options);
 
 /// {measure, base}: the word given and the error of the base mesh, where it was measured.
 [[nodiscard]] OrderedJson measureReport(const std::optional<MeasureOptions>& options,
-                                        const std::optional<LevelError>& base);
+                                        const Manifest& manifest);
 /// The shape's figures of measureReport in a line for people; empty where nothing was measured.
 [[nodiscard]] std::string measureSentence(const OrderedJson& report);
+
+/// "rms 0.012 %", or of a label "12 % of the volume wrong": of a field's error as JSON.
+[[nodiscard]] std::string fieldErrorText(const OrderedJson& error);
 
 /// "0.012 %": a fraction for people, three significant digits.
 [[nodiscard]] std::string percentText(double fraction);

@@ -7,6 +7,7 @@
 
 #include "codec/files/atomic_file.h"
 #include "codec/refine/log_edit.h"
+#include "proto/level_error_json.h"
 #include "proto/series.h"
 #include "simplify/commands/columns.h"
 #include "simplify/commands/command_line.h"
@@ -114,8 +115,10 @@ Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
   if (error == nullptr) return out;
   out += ": boundary within " + percentText(error->boundaryDistance()) + " of the diagonal";
   const std::size_t shown = std::min(kShownFields, error->fields.size());
+  const std::vector<bool> isLabel = labelsAmong(log->manifest);
   for (std::size_t f = 0; f < shown; ++f)
-    out += ", " + fieldKey(log->manifest, f) + " rms " + percentText(error->fields[f].rms);
+    out += ", " + fieldKey(log->manifest, f) + " " +
+           fieldErrorText(toJson(*error, isLabel)["fields"][f]);
   if (shown < error->fields.size())
     out += ", and " + std::to_string(error->fields.size() - shown) + " more fields";
   return out;

@@ -28,8 +28,8 @@ Algorithm algorithmOf(const std::string& name) {
 }
 
 /// NAME=UNIT of each --unit, and --time-unit under the empty name. Throws UsageError.
-decltype(Manifest::units) unitsOf(const ParsedWords& parsed) {
-  decltype(Manifest::units) out;
+Units unitsOf(const ParsedWords& parsed) {
+  Units out;
   const auto add = [&](const std::string& option, std::string name, std::string unit) {
     if (unit.empty() || unit.size() > kMaxUnitBytes || !isUtf8(unit))
       throw UsageError(option + ": a unit is a text of 1 to " + std::to_string(kMaxUnitBytes) +
@@ -48,9 +48,12 @@ decltype(Manifest::units) unitsOf(const ParsedWords& parsed) {
   return out;
 }
 
-/// The input's name without its folder; a folder's own name.
+/// The input's name without its folder; a folder's own name, also that of ".".
 std::string sourceOf(const std::filesystem::path& input) {
-  const std::filesystem::path path = input.lexically_normal();
+  std::error_code code;
+  const std::filesystem::path path = std::filesystem::is_directory(input, code)
+                                         ? std::filesystem::weakly_canonical(input, code)
+                                         : input.lexically_normal();
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
@@ -140,7 +143,8 @@ int runSimplify(const Words& words, Console& console) {
        "--time all -o run.qtet\n  qtet simplify step_*.vtu --time all -o run.qtet\n"
        "  qtet simplify remeshed.pvd --time all -o remeshed.json\n",
        {{"input", {"format", "times", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
-        {"fields", {"field-bits", "field-weight", "time-statistics", "unit", "time-unit"}},
+        {"fields",
+         {"field-bits", "field-weight", "label-weight", "time-statistics", "unit", "time-unit"}},
         {"quality and base mesh",
          {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
           "placement", "shape-weight", "preserve-regions", "position-bits"}},

@@ -57,11 +57,17 @@ class FieldColumns {
     each([&](std::size_t f, std::size_t width) { heading(out, manifest_.fields[f].name, width); });
   }
   void kinds(std::ostream& out) const {
-    each([&](std::size_t, std::size_t width) { pair(out, width, "rms %", "max %"); });
+    each([&](std::size_t f, std::size_t width) {
+      if (labelNamesOf(manifest_, f))
+        pair(out, width, "wrong %", "");
+      else
+        pair(out, width, "rms %", "max %");
+    });
   }
   void values(std::ostream& out, const LevelError& error) const {
     each([&](std::size_t f, std::size_t width) {
-      pair(out, width, percentCell(error.fields[f].rms), percentCell(error.fields[f].max));
+      pair(out, width, percentCell(error.fields[f].rms),
+           labelNamesOf(manifest_, f) ? "" : percentCell(error.fields[f].max));
     });
   }
 

@@ -16,6 +16,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`fieldBits`", "--field-bits"},
     {"`fields`", "--fields"},
     {"`fieldWeights`", "--field-weight"},
+    {"`labelWeights`", "--label-weight"},
     {"`format`", "--format"},
     {"`keepOrder`", "--keep-order"},
     {"`lossless`", "--lossless"},

@@ -152,9 +152,10 @@ OrderedJson reportOf(const SimplifyRequest& request, const ReadReport& read,
       {"chunks", from.index.chunks.size()}};
   report["records"] = from.statistics.records;
   if (from.boundaryWeight) report["boundaryWeight"] = *from.boundaryWeight;
+  for (const auto& [name, weight] : from.labelWeights) report["labelWeights"][name] = weight;
   addSizes(from, written.bytes, report);
   if (!from.index.closing.empty()) report["kept"] = closingJson(from.index.closing, manifest);
-  report["error"] = measureReport(request.pipeline.measure, manifest.levels.front().error);
+  report["error"] = measureReport(request.pipeline.measure, manifest);
   report["lattice"] = {{"bits", manifest.latticeBits},
                        {"requestedBits", from.quantise.requestedBits},
                        {"step", manifest.latticeStep},
@@ -224,13 +225,12 @@ std::string fieldTable(const OrderedJson& fields, const OrderedJson& error) {
   };
   const bool isMeasured = error.contains("base");
   std::vector<std::vector<std::string>> rows{{"field", "bits a tetrahedron"}};
-  if (isMeasured) rows[0].emplace_back("rms of the base mesh, %");
+  if (isMeasured) rows[0].emplace_back("the base mesh");
   std::size_t f = 0;
   for (const auto& [name, bits] : fields.items()) {
     if (rows.size() > kShownFields) break;
     rows.push_back({printable(name), text(bits.get<double>())});
-    if (isMeasured)
-      rows.back().push_back(percentCell(error["base"]["fields"][f++]["rms"].get<double>()));
+    if (isMeasured) rows.back().push_back(fieldErrorText(error["base"]["fields"][f++]));
   }
   return columns(rows) + moreFields(fields.size(), "'qtet info --all' shows them");
 }
@@ -286,8 +286,8 @@ void printMadeLog(const OrderedJson& report, std::ostream& out) {
   if (const std::string measured = measureSentence(error); !measured.empty()) {
     out << measured;
     if (fields == 1)
-      out << ", " << printable(bits["fields"].begin().key()) << " rms "
-          << percentText(error["base"]["fields"][0]["rms"].get<double>());
+      out << ", " << printable(bits["fields"].begin().key()) << " "
+          << fieldErrorText(error["base"]["fields"][0]);
     out << "\n";
   }
   if (fields > 1) out << fieldTable(bits["fields"], error);
@@ -295,6 +295,9 @@ void printMadeLog(const OrderedJson& report, std::ostream& out) {
       << report["lattice"]["step"] << "; ";
   if (report.contains("boundaryWeight"))
     out << "boundary weight " << report["boundaryWeight"].get<double>() << "; ";
+  if (report.contains("labelWeights"))
+    for (const auto& [name, weight] : report["labelWeights"].items())
+      out << "weight of the label " << printable(name) << " " << weight.get<double>() << "; ";
   out << std::setprecision(1) << report["seconds"]["total"].get<double>() << " s\n";
 }
 

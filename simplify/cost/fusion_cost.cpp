@@ -8,6 +8,7 @@
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/face_groups.h"
 #include "simplify/cost/boundary_weight.h"
+#include "simplify/cost/label_fields.h"
 #include "simplify/mesh/large_pages.h"
 #include "simplify/mesh/workers.h"
 
@@ -49,17 +50,15 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice,
   useLargePages(quadrics_);
   quadrics_.resize(lattice.points.size() * stride_, 0);
   takeValues(lattice);
-  components_ == 0 ? addPlanes(lattice, options.boundaryFactor)
-                   : addSlopes(lattice, options.boundaryWeight, workers);
+  components_ == 0 ? addPlanes(lattice, options) : addSlopes(lattice, options, workers);
 }
 
 // Each worker adds to vertices of its own, in the order of the cells, so that every sum is that of
 // one worker. Ids that lie near one another mostly lie near one another in the mesh, too, so few
 // cells are visited by two workers. Where that is not so, one worker alone is quicker. Meanwhile
 // the boundary's weight is found.
-void FusionCost::addSlopes(const LatticeMesh& lattice, std::optional<double> boundaryWeight,
+void FusionCost::addSlopes(const LatticeMesh& lattice, const CostOptions& options,
                            Workers* workers) {
-  const std::vector<Triangle> interfaces = interfacesOf(lattice);
   const std::size_t vertices = lattice.points.size();
   const std::size_t runs =
       workers && areNear(lattice.tetrahedra, vertices / workers->count()) ? workers->count() : 1;
@@ -67,15 +66,19 @@ void FusionCost::addSlopes(const LatticeMesh& lattice, std::optional<double> bou
     return Vertices{static_cast<VertexId>(i * vertices / runs),
                     static_cast<VertexId>((i + 1) * vertices / runs)};
   };
+  double boundaryWeight = options.boundaryWeight.value_or(0);
   forEach(workers, runs + 1, 1, [&](std::size_t, std::size_t i) {
     if (i < runs) return addFields(lattice, run(i));
-    if (!boundaryWeight) boundaryWeight = balancedBoundaryWeight(lattice, parts_);
+    if (!options.boundaryWeight) boundaryWeight = balancedBoundaryWeight(lattice, parts_);
   });
-  const double boundaryFactor = *boundaryWeight / diagonal_;
-  forEach(workers, runs, 1, [&](std::size_t, std::size_t i) {
-    addTriangles(lattice.boundary, boundaryFactor, run(i)),
-        addTriangles(interfaces, boundaryFactor, run(i));
-  });
+  const auto add = [&](std::span<const Triangle> surface, double weight) {
+    forEach(workers, runs, 1,
+            [&](std::size_t, std::size_t i) { addTriangles(surface, weight / diagonal_, run(i)); });
+  };
+  add(lattice.boundary, boundaryWeight);
+  for (const LabelCost& label : options.labels) {
+    if (label.weight > 0) add(interfacesOf(lattice, label.field), label.weight);
+  }
 }
 
 void FusionCost::takeLimits(const LatticeMesh& lattice) {
@@ -141,18 +144,6 @@ void FusionCost::addFields(const LatticeMesh& lattice, const Vertices& own) {
   }
 }
 
-// Between regions, which count like the boundary.
-std::vector<Triangle> FusionCost::interfacesOf(const LatticeMesh& lattice) const {
-  std::vector<Triangle> interfaces;
-  if (!mesh_.hasRegions()) return interfaces;
-  FaceGroups(lattice.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
-    if (sides.size() == 2 && mesh_.region(cellOf(sides[0])) != mesh_.region(cellOf(sides[1])))
-      interfaces.push_back(
-          cellFace(lattice.tetrahedra[cellOf(sides[0])], oppositeCornerOf(sides[0])));
-  });
-  return interfaces;
-}
-
 // Over each triangle of the boundary: the boundary's distance, and the fields' gradients in the
 // triangle with the weight of a thin layer.
 void FusionCost::addTriangles(std::span<const Triangle> triangles, double boundaryFactor,
@@ -178,17 +169,23 @@ void FusionCost::addTriangles(std::span<const Triangle> triangles, double bounda
 }
 
 // Eq. 1-3: weight a_p^2, so n / 2 as it is.
-void FusionCost::addPlanes(const LatticeMesh& lattice, double boundaryFactor) {
+void FusionCost::addPlanes(const LatticeMesh& lattice, const CostOptions& options) {
   // A length to the sixth power in lattice steps would pass the largest float on fine lattices; a
   // power of two changes nothing else.
   const double scale = std::ldexp(0.25, -3 * lattice.lattice.bits);
+  const auto isSurface = [&](std::span<const FaceSide> sides) {
+    return sides.size() == 1 || std::ranges::any_of(options.labels, [&](const LabelCost& label) {
+             const std::vector<std::int32_t>& labels = lattice.values[label.field];
+             return label.weight > 0 && labels[cellOf(sides[0])] != labels[cellOf(sides[1])];
+           });
+  };
   FaceGroups(lattice.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
     const Tetrahedron& cell = lattice.tetrahedra[cellOf(sides[0])];
     const Triangle face = cellFace(cell, oppositeCornerOf(sides[0]));
     const Vector3 p = mesh_.position(face[0]);
     const Vector3 n = cross(mesh_.position(face[1]) - p, mesh_.position(face[2]) - p);
     Symmetric3 a;
-    a.addOuter(n, scale * (sides.size() == 1 ? boundaryFactor * boundaryFactor : 1));
+    a.addOuter(n, scale * (isSurface(sides) ? options.boundaryFactor * options.boundaryFactor : 1));
     addSlope(face, {}, 0, a, Vertices{});
   });
 }

@@ -115,15 +115,13 @@ class FusionCost {
 
   void takeLimits(const LatticeMesh& lattice);
   void takeValues(const LatticeMesh& lattice);
-  void addSlopes(const LatticeMesh& lattice, std::optional<double> boundaryWeight,
-                 Workers* workers);
+  void addSlopes(const LatticeMesh& lattice, const CostOptions& options, Workers* workers);
   void addFields(const LatticeMesh& lattice, const Vertices& own);
-  [[nodiscard]] std::vector<Triangle> interfacesOf(const LatticeMesh& lattice) const;
   void addTriangles(std::span<const Triangle> triangles, double boundaryFactor,
                     const Vertices& own);
   void addSlope(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight,
                 Symmetric3 a, const Vertices& own);
-  void addPlanes(const LatticeMesh& lattice, double boundaryFactor);
+  void addPlanes(const LatticeMesh& lattice, const CostOptions& options);
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
   enum Part : std::size_t { kSlope = 0, kOffset = 3, kValue = 4 };
   [[nodiscard]] std::size_t placeOf(std::size_t part, std::size_t f) const {

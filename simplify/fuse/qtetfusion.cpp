@@ -150,17 +150,18 @@ Status checkWeights(const LatticeMesh& mesh, const FusionOptions& options) {
   if (!weights.empty() && weights.size() != mesh.fields.size())
     return fail(ErrorCode::kBadInput, "there must be one field weight a field");
   const auto bad = [](double w) { return !(w >= 0) || std::isinf(w); };
+  const auto badLabel = [&](const LabelCost& label) { return bad(label.weight); };
   if (std::ranges::any_of(weights, bad) || bad(options.cost.boundaryWeight.value_or(0)) ||
-      bad(options.shapeWeight))
+      std::ranges::any_of(options.cost.labels, badLabel) || bad(options.shapeWeight))
     return fail(ErrorCode::kBadInput, "weights must be finite and not negative");
   return {};
 }
 
-Status checkRegions(const LatticeMesh& mesh, const FusionOptions& options) {
-  if (!options.regionField) return {};
-  if (*options.regionField >= mesh.fields.size())
+/// A field of regions or labels.
+Status checkRegions(const LatticeMesh& mesh, std::size_t number) {
+  if (number >= mesh.fields.size())
     return fail(ErrorCode::kBadInput, "there is no such field of regions");
-  const FieldInfo& field = mesh.fields[*options.regionField];
+  const FieldInfo& field = mesh.fields[number];
   if (!isCellField(field) || field.components != 1)
     return fail(ErrorCode::kBadInput,
                 "field '" + field.name +
@@ -186,7 +187,9 @@ Status check(const LatticeMesh& mesh, const FusionOptions& options) {
   if (std::ranges::any_of(options.kept, isNone))
     return fail(ErrorCode::kBadInput, "a vertex that is to be kept is none of the mesh");
   if (Status weights = checkWeights(mesh, options); !weights) return weights;
-  return checkRegions(mesh, options);
+  for (const LabelCost& label : options.cost.labels)
+    if (Status regions = checkRegions(mesh, label.field); !regions) return regions;
+  return options.regionField ? checkRegions(mesh, *options.regionField) : Status{};
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ struct FusionOptions {
   CostOptions cost;
   /// How far the solid may leave the original one, over the diagonal of its bounding box, >= 0.
   std::optional<double> envelopeTolerance{};
-  /// The cell field of one component whose values are regions that keep their topology.
+  /// The cell field of one component whose values are regions that keep their topology. Their
+  /// interfaces count if cost.labels has it.
   std::optional<std::size_t> regionField;
   /// The weight of badly shaped new cells in the cost, >= 0 (ALGORITHM.md, "Shape").
   double shapeWeight = 0.5;

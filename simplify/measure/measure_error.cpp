@@ -9,6 +9,7 @@
 #include "codec/coding/error_figure.h"
 #include "codec/coding/level_columns.h"
 #include "proto/field_key.h"
+#include "simplify/measure/label_volumes.h"
 #include "simplify/measure/measure_boundary.h"
 #include "simplify/measure/measure_fields.h"
 #include "simplify/mesh/stopping.h"
@@ -78,7 +79,7 @@ class ErrorMeter {
         mesh_(levels),
         boundary_(mesh_, {samples.surface, samples.levelSurface,
                           options.countsRounding ? kSquaredRounding : 0, options.seed, &workers_}),
-        fields_(mesh_, {samples.volume, samples.vertices, options.countsRounding,
+        fields_(mesh_, {samples.volume, samples.vertices, options.countsRounding, options.labels,
                         options.seed ^ kFieldSeed, &workers_}) {}
 
   void coarsen() {
@@ -151,6 +152,12 @@ Result<std::vector<FieldBound>> fieldBounds(const FusionHistory& history,
   return out;
 }
 
+/// A level's error, and what the rule for the base mesh asks for beside it.
+struct MeasuredLevel {
+  LevelError error;
+  double labelVolumes = 0;  ///< LabelVolumes::worst()
+};
+
 /// How many cells and vertices a level has.
 struct LevelSize {
   std::size_t tetrahedra = 0, vertices = 0;
@@ -186,7 +193,9 @@ class LevelBounds {
 
   /// Whether a level with this error may be the base mesh, instead of the finer one of this size.
   /// Bounds count with this share of them.
-  [[nodiscard]] bool hold(const LevelError& error, const LevelSize& size, double share = 1) const {
+  [[nodiscard]] bool hold(const MeasuredLevel& level, const LevelSize& size,
+                          double share = 1) const {
+    const LevelError& error = level.error;
     return (!options_.bounds.boundary || isNear(error, share * *options_.bounds.boundary)) &&
            std::ranges::all_of(fields_,
                                [&](const FieldBound& bound) {
@@ -194,22 +203,27 @@ class LevelBounds {
                                         std::max(share * bound.second,
                                                  least_.fields[bound.first].rms);
                                }) &&
-           (!options_.base || isBase(*options_.base, error, size, share));
+           (!options_.base || isBase(*options_.base, level, size, share));
   }
 
  private:
   [[nodiscard]] bool isNear(const LevelError& error, double bound) const {
     return error.boundaryDistance() <= std::max(bound, least_.boundaryDistance());
   }
-  [[nodiscard]] bool isBase(const BaseRule& rule, const LevelError& error, const LevelSize& size,
+  [[nodiscard]] bool isBase(const BaseRule& rule, const MeasuredLevel& level, const LevelSize& size,
                             double share) const {
+    const LevelError& error = level.error;
     const auto isAbove = [share](std::size_t count, std::size_t most) {
       return share * static_cast<double>(count) > static_cast<double>(most);
     };
     return isAbove(size.tetrahedra, rule.maxCells) ||
            isAbove(baseBytesOf(size.vertices, components_), rule.maxBytes) ||
            (isNear(error, share * rule.error) &&
-            std::max(error.volumeLost, error.volumeGained) <= share * 2 * rule.error);
+            std::max(error.volumeLost, error.volumeGained) <= share * 2 * rule.error &&
+            level.labelVolumes <= share * rule.labelError &&
+            std::ranges::all_of(options_.labels, [&](std::uint32_t label) {
+              return error.fields[label].rms <= share * rule.labelError;
+            }));
   }
 
   const MeasureOptions& options_;
@@ -253,6 +267,7 @@ Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& optio
   ErrorMeter meter(levels, options, samplesFor(options.effort, history));
   LevelSize size(history), base = size;
   const LevelBounds bounds(history, options, std::move(*fields), meter.rounding());
+  const LabelVolumes labels(history, options.labels);
   LevelRow row(options, levels.finest());
   LevelErrors out(levels.finest() + std::size_t{1});
   std::uint32_t coarsest = levels.finest();
@@ -263,10 +278,10 @@ Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& optio
     if (options.progress)
       options.progress(1 - static_cast<double>(levels.level()) / levels.finest());
     if (!row.isNext(levels.level())) continue;
-    LevelError error = meter.measure();
-    if (!bounds.hold(error, base)) break;
-    if (!bounds.hold(error, size, kNearTheEnd)) row.takeAllFromNowOn();
-    out[levels.level()] = std::move(error);
+    MeasuredLevel level{meter.measure(), labels.worst()};
+    if (!bounds.hold(level, base)) break;
+    if (!bounds.hold(level, size, kNearTheEnd)) row.takeAllFromNowOn();
+    out[levels.level()] = std::move(level.error);
     coarsest = levels.level();
     base = size;
   }

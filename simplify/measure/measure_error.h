@@ -36,6 +36,9 @@ struct ErrorBounds {
 
 /// BaseRule's distance where nothing else is asked for: seven pixels of a picture of 800.
 inline constexpr double kBaseError = 0.01;
+/// The same for the share of the volume that has another label, and for the volume of each label:
+/// grains and layers are still to be told apart.
+inline constexpr double kMaxBaseLabelError = 0.1;
 /// Bytes of a base mesh at most, which a line of 1 Mbit/s brings in half a second.
 inline constexpr std::size_t kMaxBaseBytes = 64'000;
 
@@ -48,6 +51,9 @@ struct BaseRule {
   /// A larger level is no base mesh, however far from the original the coarser ones are.
   std::size_t maxCells = std::numeric_limits<std::size_t>::max();
   std::size_t maxBytes = std::numeric_limits<std::size_t>::max();  ///< as baseBytesOf tells
+  /// The largest share of the volume that has another label (FieldError), and the largest
+  /// LabelVolumes::worst().
+  double labelError = kMaxBaseLabelError;
 };
 
 /// The bytes that a base mesh takes in a log, to some 20 % (measured on nine meshes with fields of
@@ -60,6 +66,8 @@ struct MeasureOptions {
   std::vector<std::uint8_t> levels;
   ErrorBounds bounds;
   std::optional<BaseRule> base{};  ///< where no level's size was asked for
+  /// The fields that are labels (label_fields.h). REQUIRES: fields of the history of one component.
+  std::vector<std::uint32_t> labels{};
   /// Whether what the lattice and the fields' steps have moved counts too: the original is then the
   /// input, not the input on the lattice. A bound below what they may move is taken as that.
   bool countsRounding = false;

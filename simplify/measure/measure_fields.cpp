@@ -196,7 +196,8 @@ void FieldMeter::measure(std::size_t place) {
       const double apart = valueAt(places_[place], f, c) - truth_[f][place * components + c];
       squared += apart * apart;
     }
-    squaredErrors_[f][place] = squared / (ranges_[f] * ranges_[f]);
+    squaredErrors_[f][place] =
+        isLabel(f) ? (squared > 0 ? 1 : 0) : squared / (ranges_[f] * ranges_[f]);
   }
 }
 
@@ -225,8 +226,8 @@ std::vector<FieldError> FieldMeter::errors() const {
       if (i < uniform_) sum += squared[i] + (isOriginal(places_[i], f) ? added : 0);
       worst = std::max(worst, squared[i]);
     }
-    out.push_back({uniform_ == 0 ? 0 : std::sqrt(sum / static_cast<double>(uniform_)),
-                   std::sqrt(worst) + rounding[f].max});
+    const double mean = uniform_ == 0 ? 0 : sum / static_cast<double>(uniform_);
+    out.push_back({isLabel(f) ? mean : std::sqrt(mean), std::sqrt(worst) + rounding[f].max});
   }
   return out;
 }

@@ -2,6 +2,7 @@
 // of that volume the level does not cover.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,13 +21,15 @@ struct FieldOptions {
   std::uint32_t vertices = 0;
   /// Whether what rounding has moved counts (MeasureOptions::countsRounding).
   bool countsRounding = false;
+  std::vector<std::uint32_t> labels{};  ///< MeasureOptions::labels
   std::uint64_t seed = 0;
   Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
 };
 
 /// The error of a field at a place is the Euclidean norm of the difference. It is relative to the
 /// diagonal of the box that the original's values fill. For one component that is their range; for
-/// a constant field the error is 0. Where the level's solid does not cover a place, its value is
+/// a constant field the error is 0. The error of a label is 1 where it is another one, and its rms
+/// is the mean of that: a share of the volume. Where the level's solid does not cover a place, its value is
 /// that at the nearest point of its boundary. A cell field's value there is that of the cell that
 /// held the place last. Places are followed from cell to cell through the fusions. A place that the
 /// solid has left is covered again when a fusion at its nearest triangle covers it.
@@ -58,6 +61,9 @@ class FieldMeter {
     bool isMeasured = true;
   };
 
+  [[nodiscard]] bool isLabel(std::size_t field) const {
+    return std::ranges::find(options_.labels, field) != options_.labels.end();
+  }
   void findRanges(const std::vector<std::uint8_t>& isOriginal);
   void addVertices(std::vector<std::uint8_t> isOriginal);
   void keepTruth();

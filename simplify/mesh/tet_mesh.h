@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/mesh/mesh.h"
+#include "proto/manifest.h"
 
 namespace qtet {
 
@@ -22,6 +23,8 @@ struct MeshField {
   std::string type = "float32";
   std::vector<double> values;
   std::string association = "point";  ///< point or cell
+  /// What the file calls values of it: those of materials, blocks, groups.
+  LabelNames labelNames{};
 };
 
 struct TetMesh {

@@ -1,11 +1,15 @@
 #include "simplify/pipeline/fusion_choice.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include "proto/field_key.h"
 #include "proto/number_text.h"
 #include "simplify/cost/boundary_weight.h"
+#include "simplify/cost/label_fields.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -70,6 +74,44 @@ std::vector<double> weightsOf(const QuantisedMesh& quantised,
   return weights;
 }
 
+/// The labels' numbers: those found, those named, and the regions.
+Result<std::map<std::size_t, std::optional<double>>> namedLabels(
+    const PipelineOptions& options, const LatticeMesh& mesh, const Labels& known,
+    const std::optional<std::size_t>& regions) {
+  std::map<std::size_t, std::optional<double>> out;
+  for (const std::size_t f : labelsOf(mesh, known)) out.emplace(f, std::nullopt);
+  if (regions) out.emplace(*regions, std::nullopt);
+  for (const auto& [name, weight] : options.labelWeights) {
+    const std::vector<std::uint32_t> meant = meantBy(name, true, mesh.fields);
+    if (meant.empty())
+      return fail(ErrorCode::kNotFound,
+                  "`labelWeights`: the mesh carries no cell field '" + name + "'");
+    for (const std::uint32_t f : meant) {
+      if (weight > 0 && !canBeLabel(mesh, f))
+        return fail(ErrorCode::kBadInput,
+                    "`labelWeights`: '" + name +
+                        "' is no label: that takes a cell field of one component of 2 to " +
+                        std::to_string(kMaxLabelValues) + " integers");
+      if (weight > 0 || out.contains(f)) out[f] = weight;
+    }
+  }
+  return out;
+}
+
+/// What the interfaces of each label count. Equal instants of a series would count the same faces
+/// again and again: its first one stands for it.
+std::vector<LabelCost> labelCosts(const std::vector<FieldInfo>& fields, double boundaryWeight,
+                                  const std::map<std::size_t, std::optional<double>>& labels) {
+  std::vector<LabelCost> out;
+  std::set<std::string_view> series;
+  for (const auto& [field, named] : labels) {
+    const auto name = nameWithoutStep(fields[field].name);
+    const bool isLater = name && !series.insert(*name).second;
+    out.push_back({field, named.value_or(isLater ? 0 : labelWeightBeside(boundaryWeight))});
+  }
+  return out;
+}
+
 Result<std::size_t> regionFieldOf(const std::string& name, const std::vector<FieldInfo>& fields) {
   const std::vector<std::uint32_t> meant = meantBy(name, true, fields);
   if (meant.size() == 1) return meant.front();
@@ -83,7 +125,7 @@ Result<std::size_t> regionFieldOf(const std::string& name, const std::vector<Fie
 }  // namespace
 
 Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
-                                       const QuantisedMesh& quantised,
+                                       const QuantisedMesh& quantised, const Labels& known,
                                        std::vector<std::string>& notes) {
   const LatticeMesh& mesh = quantised.mesh;
   const auto named = namedWeights(options, mesh.fields);
@@ -100,6 +142,10 @@ Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
     if (!field) return std::unexpected(field.error());
     out.regionField = *field;
   }
+  if (options.algorithm == Algorithm::kPaper) return out;
+  const auto labels = namedLabels(options, mesh, known, out.regionField);
+  if (!labels) return std::unexpected(labels.error());
+  out.cost.labels = labelCosts(mesh.fields, *out.cost.boundaryWeight, *labels);
   return out;
 }
 

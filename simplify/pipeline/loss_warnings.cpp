@@ -77,6 +77,27 @@ std::string reasonOf(const Manifest& manifest, const LossFacts& facts) {
   return "too few cells are left for this shape, " + std::to_string(cells) + ": " + enough;
 }
 
+/// Of labels in the base mesh, and the coarsest measured level of which it and all finer ones keep
+/// them.
+std::vector<std::string> labelWarnings(const Manifest& manifest) {
+  std::vector<std::string> out;
+  for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
+    const auto isOff = [&](const ManifestLevel& level) {
+      return level.error && level.error->fields[f].rms > kLabelErrorWarned;
+    };
+    if (labelNamesOf(manifest, f) == nullptr || !isOff(manifest.levels.front())) continue;
+    std::size_t level = manifest.levels.size() - 1;
+    for (std::size_t coarser = level; coarser-- > 0 && !isOff(manifest.levels[coarser]);)
+      if (manifest.levels[coarser].error) level = coarser;
+    out.push_back(percent(manifest.levels.front().error->fields[f].rms) +
+                  " of the volume of the base mesh have another label " + fieldKey(manifest, f) +
+                  " than the original: give `baseCells` " +
+                  std::to_string(manifest.levels[level].tetrahedra) + ", or a larger weight of " +
+                  fieldKey(manifest, f) + " by `labelWeights`");
+  }
+  return out;
+}
+
 }  // namespace
 
 double wallThicknessOf(const LatticeMesh& mesh) {
@@ -98,9 +119,12 @@ double wallThicknessOf(const LatticeMesh& mesh) {
 
 std::vector<std::string> lossWarnings(const Manifest& manifest, const LossFacts& facts) {
   const ManifestLevel& base = manifest.levels.front();
-  if (!isOff(base, facts)) return {};
-  return {whatIsLost(*base.error, volumeIsOff(*base.error), boundaryIsOff(*base.error, facts)) +
-          "; the most probable reason: " + reasonOf(manifest, facts)};
+  std::vector<std::string> out = labelWarnings(manifest);
+  if (!isOff(base, facts)) return out;
+  out.insert(out.begin(),
+             whatIsLost(*base.error, volumeIsOff(*base.error), boundaryIsOff(*base.error, facts)) +
+                 "; the most probable reason: " + reasonOf(manifest, facts));
+  return out;
 }
 
 }  // namespace qtet

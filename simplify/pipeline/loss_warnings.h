@@ -18,6 +18,9 @@ inline constexpr double kVolumeLossWarned = 0.02;
 /// picture of 800.
 inline constexpr double kBoundaryErrorWarned = 0.02;
 
+/// The same for the share of the volume that has another label.
+inline constexpr double kLabelErrorWarned = 0.02;
+
 /// Walls thinner on average than this fraction of the diagonal: compact bodies have 0.07 to 0.19,
 /// brackets and vessels 0.03. A boundary error that one hardly sees changes much of their volume.
 inline constexpr double kThinWall = 0.05;
@@ -42,7 +45,7 @@ struct LossFacts {
   bool isByRule = false;        ///< the base mesh was chosen by the rule that holds unasked
 };
 
-/// One sentence or none. Empty too where no error was measured. REQUIRES: a manifest with levels.
+/// One sentence of the shape, and one a label. Empty too where no error was measured. REQUIRES: a manifest with levels.
 [[nodiscard]] std::vector<std::string> lossWarnings(const Manifest& manifest,
                                                     const LossFacts& facts);
 

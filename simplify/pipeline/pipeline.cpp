@@ -74,7 +74,10 @@ struct Run {
   std::optional<Focus> focus{};      ///< the same
   std::optional<Opening> opening{};  ///< the same
   MovedFlips flips{};                ///< of the base mesh
-  decltype(Manifest::units) units{};
+  Units units{};
+  Labels names{};   ///< of values, in the input
+  Labels labels{};  ///< for the manifest
+  std::vector<std::uint32_t> labelFields{};
 
   void note(const std::vector<std::string>& sentences) {
     report.notes.insert(report.notes.end(), sentences.begin(), sentences.end());
@@ -100,6 +103,16 @@ Status takeUnits(const std::vector<MeshField>& fields, Run& run) {
   return {};
 }
 
+/// What the file calls values of fields, as far as it does.
+Labels namesOf(const std::vector<MeshField>& fields) {
+  Labels out;
+  for (const MeshField& field : fields)
+    if (!field.labelNames.empty())
+      out[std::string(nameWithoutStep(field.name).value_or(field.name))].insert(
+          field.labelNames.begin(), field.labelNames.end());
+  return out;
+}
+
 /// The instants of that time come before the others of their series.
 void openAt(double time, TetMesh& mesh, QuantisedMesh& quantised) {
   const std::vector<std::size_t> order = seriesOrder(mesh.fields, time);
@@ -116,6 +129,7 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
     if (Status added = addTimeStatistics(mesh.fields); !added)
       return std::unexpected(added.error());
   if (Status s = takeUnits(mesh.fields, run); !s) return std::unexpected(s.error());
+  run.names = namesOf(mesh.fields);
   putInOrder(seriesOrder(mesh.fields), mesh.fields);
   const bool keeps = run.options.keep.any();
   run.report.tetrahedraIn = mesh.tetrahedra.size();
@@ -160,7 +174,8 @@ constexpr double kFusingShare = 0.8;
 /// The history, with predictions of instants from others in the order of seriesOrder.
 Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
-  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
+  Result<FusionOptions> options =
+      fusionOptionsFor(run.options, quantised, run.names, run.report.notes);
   if (!options) return std::unexpected(options.error());
   const bool hasSeries = !seriesOf(std::span<const FieldInfo>(quantised.mesh.fields)).empty();
   options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
@@ -168,6 +183,13 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (run.options.algorithm != Algorithm::kPaper &&
       !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
     run.report.boundaryWeight = options->cost.boundaryWeight;
+  for (const LabelCost& label : options->cost.labels) {
+    const std::string& name = quantised.mesh.fields[label.field].name;
+    const std::string series(nameWithoutStep(name).value_or(name));
+    run.labelFields.push_back(static_cast<std::uint32_t>(label.field));
+    run.labels[series] = run.names[series];
+    if (label.weight > 0) run.report.labelWeights.emplace_back(name, label.weight);
+  }
   Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
   if (!history) return history;
   // before measuring, since it moves values
@@ -192,6 +214,7 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   if (Status s = run.stages.begin(Stage::kMeasure); !s) return std::unexpected(s.error());
   MeasureOptions options = *run.options.measure;
   options.countsRounding = true;
+  options.labels = run.labelFields;
   options.base = baseRuleOf(run.options);
   options.threads = run.options.fusion.threads;
   options.progress = run.stages.progress();
@@ -213,6 +236,7 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& ru
   options.focus = run.focus;
   options.opening = run.opening;
   options.units = run.units;
+  options.labels = run.labels;
   options.valueCodec = run.options.valueCodec;
   if (run.options.keep.any())
     options.closing = [&](const FinestMesh& finest, const ClosingSink& give) -> Status {
@@ -263,13 +287,15 @@ Status checkOptions(const PipelineOptions& options) {
   const FusionOptions& fusion = options.fusion;
   const bool isPaper = options.algorithm == Algorithm::kPaper;
   if (isPaper && (options.regions || fusion.envelopeTolerance.value_or(0) > 0 ||
-                  !options.fieldWeights.empty()))
+                  !options.fieldWeights.empty() || !options.labelWeights.empty()))
     return badValue(
-        "`algorithm` paper knows no `regions`, `envelopeTolerance` or `fieldWeights`; "
-        "leave them out");
-  for (const auto& [name, weight] : options.fieldWeights)
-    if (!(weight >= 0) || std::isinf(weight))
-      return badValue("`fieldWeights` of " + name + " is negative or not finite");
+        "`algorithm` paper knows no `regions`, `envelopeTolerance`, `fieldWeights` or "
+        "`labelWeights`; leave them out");
+  for (const auto& [weights, option] : {std::pair(&options.fieldWeights, "`fieldWeights`"),
+                                        std::pair(&options.labelWeights, "`labelWeights`")})
+    for (const auto& [name, weight] : *weights)
+      if (!(weight >= 0) || std::isinf(weight))
+        return badValue(std::string(option) + " of " + name + " is negative or not finite");
   return {};
 }
 

@@ -39,6 +39,9 @@ struct PipelineOptions {
   FusionOptions fusion{};
   /// Point fields by name (proto/field_key.h) and what they count; 1 where none is given.
   std::vector<std::pair<std::string, double>> fieldWeights{};
+  /// Cell fields of integers by name, and what their interfaces count. A field named here is a label
+  /// (label_fields.h) unless it counts 0; without, labelWeightBeside.
+  std::vector<std::pair<std::string, double>> labelWeights{};
   /// The name of the cell field whose values are regions that keep their topology.
   std::optional<std::string> regions{};
   /// Only its effort, bounds and rule for the base mesh count. Without it nothing is measured, and
@@ -46,7 +49,7 @@ struct PipelineOptions {
   std::optional<MeasureOptions> measure{std::in_place};
   CodecId valueCodec = CodecId::kDraco;
   KeepOptions keep{};
-  decltype(Manifest::units) units{};
+  Units units{};
   /// Each series gives four more fields, its statistics over all instants (time_statistics.h).
   bool timeStatistics = false;
   /// Series open at their first instants, whatever these show.
@@ -66,6 +69,8 @@ struct PipelineReport {
   QuantiseReport quantise;
   /// The weight that the fusions were ordered by, where there were fields to weigh it against.
   std::optional<double> boundaryWeight;
+  /// The names of labels and the weights of their interfaces, where these count.
+  std::vector<std::pair<std::string, double>> labelWeights;
   std::optional<PaperFigures> paper;  ///< with Algorithm::kPaper
   LogStatistics statistics;
   /// Read from the head of the log, not from what was meant to be written.
@@ -102,7 +107,8 @@ struct PipelineOutput {
 /// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and
 /// options give the same bytes, whatever the number of threads. Errors: checkOptions's,
 /// addTimeStatistics's, cleanMesh's, quantise's, simplify's, measureLevels's, the spool's and
-/// encodeLog's; not-found (a weight, a unit or regions name no field); cancelled. REQUIRES: a mesh
+/// encodeLog's; not-found (a weight, a unit or regions name no field); bad-input (a label
+/// that cannot be one); cancelled. REQUIRES: a mesh
 /// that checkArrays or readMesh has passed.
 [[nodiscard]] Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options);
 

@@ -1,4 +1,5 @@
-// The readers that a browser does without: those of VTK, HDF5, meshio, EnSight and OpenFOAM.
+// The readers that a browser does without: those of VTK, HDF5, meshio, EnSight, and OpenFOAM's
+// folders.
 #include "simplify/read/ensight/read_ensight.h"
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
@@ -70,10 +71,6 @@ Result<ReadOptions> withListedFiles(const std::filesystem::path&, const ReadOpti
 }
 Result<std::vector<std::filesystem::path>> processorFolders(const std::filesystem::path& marker) {
   return refusal(marker);
-}
-Result<std::filesystem::path> caseOfProcessor(const std::filesystem::path& processor,
-                                              const std::filesystem::path&) {
-  return refusal(processor);
 }
 
 // No file is ever opened, so nothing below the functions named open is called.

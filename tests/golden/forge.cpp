@@ -164,6 +164,33 @@ Bytes withUnits(const Bytes& log, const std::string& unit,
   return parts.together();
 }
 
+/// With the field as a label that has names of its values.
+Bytes withLabel(const Bytes& log, const std::string& field, const LabelNames& names,
+                std::uint16_t minor = LogIndex::kMinorOfLabels) {
+  testing::TakenApart parts = testing::takeApart(log);
+  Manifest m = manifestOf(parts.index).value();
+  m.labels = {{field, names}};
+  parts.index.manifest = manifestBlock(m).value();
+  parts.index.manifestMinor = minor;
+  return parts.together();
+}
+
+const LabelNames kSomeNames{{-7, "air"}, {1, "steel"}, {4, "oil"}};
+
+void writeBadLabels(const std::filesystem::path& folder, const Bytes& good) {
+  write(folder / "bad-value.manifest-labels-of-an-older-version.qtet",
+        withLabel(good, "Region", kSomeNames, LogIndex::kMinorOfUnits));
+  write(folder / "bad-value.manifest-label-of-two-components.qtet",
+        withLabel(good, "Height", kSomeNames));
+  write(folder / "bad-value.manifest-label-without-a-name.qtet",
+        withLabel(good, "Region", {{1, ""}}));
+  LabelNames many;
+  for (std::int32_t value = 0; value <= static_cast<std::int32_t>(kMaxLabelNames); ++value)
+    many[value] = "x";
+  write(folder / "bad-value.manifest-label-of-too-many-names.qtet",
+        withLabel(good, "Region", many));
+}
+
 /// With the errors of levels 0, 3, 4, 9 and the last.
 Bytes withSomeErrors(const Bytes& log) {
   testing::TakenApart parts = testing::takeApart(log);
@@ -433,7 +460,11 @@ int main(int argc, char** argv) {
   qtet::write(folder / "valid" / "no-fields.qtet", qtet::logOf(bare, 32768));
   qtet::LatticeMesh cells = gridMesh(3, 5);
   qtet::testing::addCellFields(cells);
-  qtet::write(folder / "valid" / "cell-fields.qtet", qtet::logOf(cells, 800));
+  const qtet::Bytes withCells = qtet::logOf(cells, 800);
+  qtet::write(folder / "valid" / "cell-fields.qtet", withCells);
+  qtet::write(folder / "valid" / "labels.qtet",
+              qtet::withLabel(withCells, "Region", qtet::kSomeNames));
+  qtet::writeBadLabels(folder / "must-fail", withCells);
   qtet::write(folder / "valid" / "adaptive.qtet",
               qtet::logOf(gridMesh(3, 5), 400, {}, qtet::CodecId::kAdaptive));
   const qtet::Bytes kept = qtet::keptLog();

@@ -47,6 +47,7 @@ class CFieldInfo(ctypes.Structure):
         ("name", _text),
         ("type", _text),
         ("unit", _text),
+        ("labels", _text),
     ]
 
 
@@ -102,6 +103,7 @@ class FieldInfo:
     name: str
     type: str
     unit: str  # "" where it is unknown
+    labels: dict[int, str] | None  # names of values, as far as known; None: the field is no label
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ level needs are fetched, where the host answers Range requests."""
 from __future__ import annotations
 
 import ctypes
+import json
 import math
 import operator
 import os
@@ -210,6 +211,10 @@ class Log:
     def _field_info(self, field: int) -> FieldInfo:
         members = self._struct(CFieldInfo, self.c.qtet_log_get_field, _u32(field))
         members["minimum"] = members["minimum"][: members["components"]]
+        names = members["labels"]
+        members["labels"] = (
+            {int(value): name for value, name in json.loads(names).items()} if names else None
+        )
         return FieldInfo(**members)
 
     def _one_series(self, series: int) -> Series:

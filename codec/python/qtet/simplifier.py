@@ -118,7 +118,8 @@ class _Options(ctypes.Structure):
         ("baseCells", _u32),
         ("baseError", _f64),
         ("timeStatistics", _u32),
-        ("reserved2", _u32),
+        ("labelWeightCount", _u32),
+        ("labelWeights", ctypes.POINTER(_NamedNumber)),
     ]
 
 
@@ -361,6 +362,7 @@ def simplify(
     max_boundary_error: float | None = None,
     max_field_errors: Mapping[str, float] | None = None,
     field_weights: Mapping[str, float] | None = None,
+    label_weights: Mapping[str, float] | None = None,
     regions: str | None = None,
 ) -> Any:
     """Makes the log of a mesh: its bytes, or, with `path`, a file (and the path). The path ends in
@@ -393,6 +395,8 @@ def simplify(
     max_boundary_error    coarsest level: the boundary's distance, over the diagonal
     max_field_errors      {name: rms error over the field's range}
     field_weights         {name: what a point field counts, 1 otherwise}
+    label_weights         {name: what the interfaces of a cell field of integers count, such as
+                          materials; 0 leaves them out}
     regions               the name of a cell field whose values keep their topology
 
     Raises ValueError (arrays of another shape or type, a word that is not known), OSError (a file
@@ -453,6 +457,7 @@ def simplify(
     options.threads = int(threads)
     options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
     options.fieldWeights, options.fieldWeightCount = _named(field_weights)
+    options.labelWeights, options.labelWeightCount = _named(label_weights)
     options.regions = regions.encode() if regions is not None else None
     options.source = source.encode()
     work = _Work(c, _Input(points, cells, point_data, cell_data), options)

@@ -1,7 +1,6 @@
 #include "simplify/read/foam/foam_list.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstring>
 #include <system_error>
@@ -14,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Labels between two looks at the clock: about a millisecond.
-constexpr std::uint32_t kLabelsBetweenLooks = 1 << 14;
 constexpr FoamList::Label kMaxLabel = (FoamList::Label{1} << 32) - 1;
 
 fs::path compressed(const fs::path& path) { return path.string() + ".gz"; }
@@ -25,11 +22,25 @@ bool isFile(const fs::path& path) {
   return fs::is_regular_file(path, code);
 }
 
-bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
+bool isBlank(char c) {
+  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
+bool isSign(char c) { return c == '(' || c == ')' || c == '{' || c == '}' || c == ';'; }
 
 }  // namespace
 
 bool FoamList::isThere(const fs::path& path) { return isFile(path) || isFile(compressed(path)); }
+
+Result<std::string> FoamList::classOf(const fs::path& path) {
+  Result<std::string> text = beginningOf(path, kMostHeaderBytes);
+  if (!text) return text;
+  FoamList out(path, std::move(*text), kReadPatience);
+  if (out.word() != "FoamFile") return "";
+  out.at_ = 0;
+  if (Status done = out.readHeader(); !done) return std::unexpected(done.error());
+  return out.class_;
+}
 
 Result<FoamList> FoamList::open(const fs::path& path, std::chrono::seconds patience) {
   Result<std::string> text = std::string();
@@ -63,13 +74,18 @@ std::unexpected<Error> FoamList::badHere(const std::string& what) const {
               path_.string() + ", " + place + ": " + what + "; write the case again");
 }
 
+std::string FoamList::shown(std::string_view word) {
+  constexpr std::size_t kMostShown = 20;
+  return "'" + std::string(word.substr(0, kMostShown)) + "'";
+}
+
 void FoamList::skipBlanks() {
-  while (at_ < text_.size()) {
+  for (;;) {
+    while (at_ < text_.size() && isBlank(text_[at_])) ++at_;
+    if (at_ >= text_.size() || text_[at_] != '/') return;
     const std::string_view rest = std::string_view(text_).substr(at_);
     std::size_t end = 0;
-    if (isBlank(rest[0]))
-      end = 1;
-    else if (rest.starts_with("//"))
+    if (rest.starts_with("//"))
       end = rest.find('\n');
     else if (rest.starts_with("/*"))
       end = std::min(rest.find("*/"), rest.size() - 2) + 2;
@@ -89,9 +105,8 @@ bool FoamList::take(char sign) {
 /// The signs up to a blank or one that ends a word; one such sign by itself.
 std::string_view FoamList::word() {
   skipBlanks();
-  constexpr std::string_view kSigns = "(){};";
   const std::size_t begin = at_;
-  while (at_ < text_.size() && !isBlank(text_[at_]) && !kSigns.contains(text_[at_])) ++at_;
+  while (at_ < text_.size() && !isBlank(text_[at_]) && !isSign(text_[at_])) ++at_;
   if (at_ == begin && at_ < text_.size()) ++at_;
   return std::string_view(text_).substr(begin, at_ - begin);
 }
@@ -99,6 +114,7 @@ std::string_view FoamList::word() {
 /// "FoamFile { version 2.0; format binary; class faceCompactList; arch "LSB;label=64;scalar=64"; }"
 Status FoamList::readHeader() {
   if (word() != "FoamFile" || !take('{')) return bad("it does not begin with FoamFile");
+  bool isForeign = false;
   while (!take('}')) {
     const std::string key(word());
     skipBlanks();
@@ -109,22 +125,26 @@ Status FoamList::readHeader() {
     const std::string value = text_.substr(at_, end - at_);
     at_ = end + 1;
     if (key == "format") isBinary_ = value.starts_with("binary");
-    if (key == "class") isCompact_ = value.starts_with("faceCompactList");
-    if (key == "arch" && value.contains("label=64")) labelBytes_ = 8;
+    if (key == "class") class_ = value;
+    if (key != "arch") continue;
+    if (value.contains("label=64")) labelBytes_ = 8;
+    if (value.contains("scalar=32")) realBytes_ = 4;
+    isForeign = value.contains("MSB");
   }
+  if (isForeign && isBinary_)
+    return bad("its numbers have their highest byte first, which is not read");
   return {};
 }
 
 Result<FoamList::Label> FoamList::label() {
-  if (labelsRead_++ % kLabelsBetweenLooks == 0 && time_.isOver()) return badHere(time_.text());
+  if (isLate()) return badHere(time_.text());
   const std::string_view found = word();
   Label value = 0;
   const auto read = std::from_chars(found.data(), found.data() + found.size(), value);
   if (found.empty() || read.ec != std::errc{} || read.ptr != found.data() + found.size() ||
       value < -1 || value > kMaxLabel) {
     at_ -= found.size();
-    constexpr std::size_t kShown = 20;
-    return badHere("'" + std::string(found.substr(0, kShown)) + "' is not an index from 0 on");
+    return badHere(shown(found) + " is not an index from 0 on");
   }
   return value;
 }
@@ -140,16 +160,11 @@ Result<std::uint64_t> FoamList::count(std::uint64_t bytesEach) {
   return count;
 }
 
-Result<std::uint64_t> FoamList::size() {
+Result<std::uint64_t> FoamList::faceCount() {
   const std::size_t begin = at_;
   const Result<std::uint64_t> told = count(1);
   at_ = begin;
-  return told;
-}
-
-Result<std::uint64_t> FoamList::faceCount() {
-  const Result<std::uint64_t> told = size();
-  if (!told || !isBinary_ || !isCompact_) return told;
+  if (!told || !isCompact()) return told;
   return *told == 0 ? 0 : *told - 1;  // where each begins, and where the last one ends
 }
 
@@ -207,7 +222,7 @@ Result<std::vector<FoamList::Label>> FoamList::binaryLabels(std::uint64_t count)
 }
 
 Status FoamList::faces(const std::function<Status(std::span<const Label>)>& give) {
-  if (isBinary_ && isCompact_) return compactFaces(give);
+  if (isCompact()) return compactFaces(give);
   constexpr std::uint64_t kMinFaceBytes = 4;  // of a face: "0()" and a blank
   const Result<std::uint64_t> told = count(kMinFaceBytes);
   if (!told) return std::unexpected(told.error());

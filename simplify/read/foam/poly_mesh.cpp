@@ -1,13 +1,15 @@
 #include "simplify/read/foam/poly_mesh.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "simplify/mesh/split_mix64.h"
+#include "simplify/read/foam/cell_shaper.h"
 #include "simplify/read/foam/foam_list.h"
-#include "simplify/read/options/time_text.h"
+#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {
@@ -16,130 +18,168 @@ namespace fs = std::filesystem;
 using Label = FoamList::Label;
 
 /// A number that looks random for each pair of points.
-std::uint64_t hashOf(Label a, Label b) {
-  return SplitMix64(static_cast<std::uint64_t>(a) << 32 ^ static_cast<std::uint64_t>(b)).next();
+std::uint64_t hashOf(VertexId a, VertexId b) {
+  return SplitMix64(std::uint64_t{a} << 32 ^ b).next();
 }
 
 /// Sums up the directed edges of a face. An edge and its reverse give 0 together. So the sum over
 /// the faces of a closed cell is 0. That of an open cell is 0 by a chance of 2^-64.
-std::uint64_t edgesOf(std::span<const Label> corners) {
+std::uint64_t edgesOf(std::span<const VertexId> corners) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Label a = corners[i], b = corners[i + 1 == corners.size() ? 0 : i + 1];
+    const VertexId a = corners[i], b = corners[i + 1 == corners.size() ? 0 : i + 1];
     if (a != b) sum += a < b ? hashOf(a, b) : std::uint64_t{0} - hashOf(b, a);
   }
   return sum;
 }
 
-/// Checks one folder, and returns its number of cells.
-Result<std::uint64_t> checkPolyMesh(const fs::path& folder, std::chrono::seconds patience) {
-  Result<FoamList> points = FoamList::open(folder / "points", patience);
-  if (!points && FoamList::isThere(folder / "points")) return std::unexpected(points.error());
-  Label pointCount = INT64_MAX;  // those of another time, if there are none here
-  if (points) {
-    const auto told = points->size();
-    if (!told) return std::unexpected(told.error());
-    pointCount = static_cast<Label>(*told);
+/// The lists of one folder but for its points.
+class MeshFolder {
+ public:
+  MeshFolder(fs::path folder, std::chrono::seconds patience)
+      : folder_(std::move(folder)), patience_(patience) {}
+
+  Status read(std::size_t points) {
+    Result<FoamList> faces = open("faces"), owner = open("owner"), neighbour = open("neighbour");
+    for (const auto* file : {&faces, &owner, &neighbour})
+      if (!*file) return std::unexpected(file->error());
+    const auto count = faces->faceCount();
+    if (!count) return std::unexpected(count.error());
+    for (const auto& [file, into] :
+         {std::pair{&*owner, &owner_}, std::pair{&*neighbour, &neighbour_}}) {
+      Result<std::vector<Label>> labels = file->labels(*count);
+      if (!labels) return std::unexpected(labels.error());
+      *into = std::move(*labels);
+    }
+    if (Status done = countCells(*owner); !done) return done;
+    if (Status done = readCorners(*faces, *owner, points); !done) return done;
+    if (Status done = checkClosed(*faces); !done) return done;
+    return checkBoundary();
   }
-  Result<FoamList> facesFile = FoamList::open(folder / "faces", patience);
-  if (!facesFile) return std::unexpected(facesFile.error());
-  const auto faceCount = facesFile->faceCount();
-  if (!faceCount) return std::unexpected(faceCount.error());
-  Result<FoamList> ownerFile = FoamList::open(folder / "owner", patience);
-  if (!ownerFile) return std::unexpected(ownerFile.error());
-  const auto owner = ownerFile->labels(*faceCount);
-  if (!owner) return std::unexpected(owner.error());
-  Result<FoamList> neighbourFile = FoamList::open(folder / "neighbour", patience);
-  if (!neighbourFile) return std::unexpected(neighbourFile.error());
-  const auto neighbour = neighbourFile->labels(*faceCount);
-  if (!neighbour) return std::unexpected(neighbour.error());
 
-  Label last = -1;
-  for (const Label cell : *owner) last = std::max(last, cell);
-  for (const Label cell : *neighbour) last = std::max(last, cell);
-  if (std::cmp_greater_equal(last, owner->size()))
-    return ownerFile->bad("a cell has number " + std::to_string(last) + ", but there are only " +
-                          std::to_string(owner->size()) + " faces");
-  std::vector<std::uint64_t> open(static_cast<std::size_t>(last + 1));
+  /// The cells with their faces in ascending order.
+  void addCellsTo(CellMesh& out) const {
+    std::vector<std::size_t> ends(cells_ + 1);
+    forEachSide([&](std::size_t cell, std::size_t) { ++ends[cell + 1]; });
+    for (std::size_t c = 0; c < cells_; ++c) ends[c + 1] += ends[c];
+    std::vector<std::size_t> facesOf(ends[cells_]);
+    // each cell's place moves to the end of its faces, where the next cell's begin
+    forEachSide([&](std::size_t cell, std::size_t face) { facesOf[ends[cell]++] = face; });
+    CellShaper shaper;
+    for (std::size_t c = 0, at = 0; c < cells_; ++c) {
+      shaper.clear();
+      for (; at < ends[c]; ++at)
+        shaper.addFace(cornersOf(facesOf[at]), std::cmp_not_equal(owner_[facesOf[at]], c));
+      shaper.addTo(out);
+    }
+  }
 
-  std::size_t face = 0, inner = 0;
-  const Status done = facesFile->faces([&](std::span<const Label> corners) -> Status {
-    if (face >= owner->size()) return ownerFile->bad("it has fewer lines than there are faces");
-    for (const Label v : corners)
-      if (v < 0 || v >= pointCount)
-        return facesFile->badHere("face " + std::to_string(face) + " has a corner " +
-                                  std::to_string(v) + " that is none of the " +
-                                  std::to_string(pointCount) + " points");
-    if ((*owner)[face] < 0) return ownerFile->bad("face " + std::to_string(face) + " has no cell");
-    const std::uint64_t edges = edgesOf(corners);
-    open[static_cast<std::size_t>((*owner)[face])] += edges;
-    const bool isInner = face < neighbour->size() && (*neighbour)[face] >= 0;
-    if (isInner) open[static_cast<std::size_t>((*neighbour)[face])] -= edges;
-    inner += isInner ? 1 : 0;
-    ++face;
-    return {};
-  });
-  if (!done) return std::unexpected(done.error());
-  if (face != owner->size() || neighbour->size() > face)
-    return facesFile->bad("it has " + std::to_string(face) + " faces, but owner has " +
-                          std::to_string(owner->size()) + " lines and neighbour " +
-                          std::to_string(neighbour->size()));
-  const auto isOpen = [](std::uint64_t sum) { return sum != 0; };
-  if (const auto torn = std::ranges::find_if(open, isOpen); torn != open.end())
-    return facesFile->bad("the faces of " + std::to_string(std::ranges::count_if(open, isOpen)) +
-                          " cells do not close, first those of cell " +
-                          std::to_string(torn - open.begin()) +
-                          ": lines of faces, owner or neighbour are wrong");
+ private:
+  Result<FoamList> open(const char* name) const {
+    return FoamList::open(folder_ / name, patience_);
+  }
+  [[nodiscard]] bool isInner(std::size_t face) const {
+    return face < neighbour_.size() && neighbour_[face] >= 0;
+  }
+  [[nodiscard]] std::span<const VertexId> cornersOf(std::size_t face) const {
+    const std::size_t begin = face == 0 ? 0 : ends_[face - 1];
+    return std::span(corners_).subspan(begin, ends_[face] - begin);
+  }
+  /// Calls visit(cell, face) for each side of each face, faces ascending.
+  template <class Visit>
+  void forEachSide(const Visit& visit) const {
+    for (std::size_t face = 0; face < owner_.size(); ++face) {
+      visit(static_cast<std::size_t>(owner_[face]), face);
+      if (isInner(face)) visit(static_cast<std::size_t>(neighbour_[face]), face);
+    }
+  }
 
-  Result<FoamList> boundary = FoamList::open(folder / "boundary", patience);
-  if (!boundary) return std::unexpected(boundary.error());
-  const auto outer = boundary->patchFaces();
-  if (!outer) return std::unexpected(outer.error());
-  if (*outer != face - inner)
-    return boundary->bad("its patches have " + std::to_string(*outer) +
-                         " faces, but the mesh has " + std::to_string(face - inner) +
-                         " at its boundary");
-  return open.size();
-}
+  Status countCells(const FoamList& file) {
+    Label last = -1;
+    for (const Label cell : owner_) last = std::max(last, cell);
+    for (const Label cell : neighbour_) last = std::max(last, cell);
+    cells_ = static_cast<std::size_t>(last + 1);
+    if (cells_ <= owner_.size()) return {};
+    return file.bad("a cell has number " + std::to_string(last) + ", but there are only " +
+                    std::to_string(owner_.size()) + " faces");
+  }
 
-/// The meshes in a folder of the case and in the folders of its regions. A folder polyMesh that has
-/// points alone says where a mesh has moved.
-void addMeshes(const fs::path& folder, std::vector<fs::path>& out) {
-  const auto add = [&](const fs::path& at) {
-    const auto has = [&](const char* name) { return FoamList::isThere(at / "polyMesh" / name); };
-    if (has("faces") || has("owner") || has("neighbour")) out.push_back(at / "polyMesh");
-  };
-  add(folder);
-  std::error_code code;
-  for (const fs::directory_entry& region : fs::directory_iterator(folder, code))
-    if (region.is_directory(code)) add(region.path());
-}
+  Status readCorners(FoamList& file, const FoamList& owner, std::size_t points) {
+    const Status done = file.faces([&](std::span<const Label> corners) -> Status {
+      const std::string face = "face " + std::to_string(ends_.size());
+      if (ends_.size() >= owner_.size())
+        return owner.bad("it has fewer lines than there are faces");
+      if (corners.size() < 3) return file.badHere(face + " has fewer than three corners");
+      for (const Label v : corners) {
+        if (v < 0 || std::cmp_greater_equal(v, points))
+          return file.badHere(face + " has a corner " + std::to_string(v) +
+                              " that is none of the " + std::to_string(points) + " points");
+        corners_.push_back(narrowedId(v));
+      }
+      if (owner_[ends_.size()] < 0) return owner.bad(face + " has no cell");
+      ends_.push_back(corners_.size());
+      return {};
+    });
+    if (!done || (ends_.size() == owner_.size() && neighbour_.size() <= ends_.size())) return done;
+    return file.bad("it has " + std::to_string(ends_.size()) + " faces, but owner has " +
+                    std::to_string(owner_.size()) + " lines and neighbour " +
+                    std::to_string(neighbour_.size()));
+  }
+
+  [[nodiscard]] Status checkClosed(const FoamList& file) const {
+    std::vector<std::uint64_t> open(cells_);
+    for (std::size_t face = 0; face < owner_.size(); ++face) {
+      const std::uint64_t edges = edgesOf(cornersOf(face));
+      open[static_cast<std::size_t>(owner_[face])] += edges;
+      if (isInner(face)) open[static_cast<std::size_t>(neighbour_[face])] -= edges;
+    }
+    const auto isOpen = [](std::uint64_t sum) { return sum != 0; };
+    const auto torn = std::ranges::find_if(open, isOpen);
+    if (torn == open.end()) return {};
+    return file.bad("the faces of " + std::to_string(std::ranges::count_if(open, isOpen)) +
+                    " cells do not close, first those of cell " +
+                    std::to_string(torn - open.begin()) +
+                    ": lines of faces, owner or neighbour are wrong");
+  }
+
+  [[nodiscard]] Status checkBoundary() const {
+    Result<FoamList> file = open("boundary");
+    if (!file) return std::unexpected(file.error());
+    const auto patches = file->patchFaces();
+    if (!patches) return std::unexpected(patches.error());
+    std::uint64_t outer = 0;
+    for (std::size_t face = 0; face < owner_.size(); ++face) outer += isInner(face) ? 0 : 1;
+    if (*patches == outer) return {};
+    return file->bad("its patches have " + std::to_string(*patches) + " faces, but the mesh has " +
+                     std::to_string(outer) + " at its boundary");
+  }
+
+  fs::path folder_;
+  std::chrono::seconds patience_;
+  std::vector<std::size_t> ends_;  ///< behind each face's corners
+  std::vector<VertexId> corners_;
+  std::vector<Label> owner_, neighbour_;  ///< each face's cells; -1 or nothing: the boundary
+  std::size_t cells_ = 0;
+};
 
 }  // namespace
 
-Result<std::optional<std::uint64_t>> checkPolyMeshes(const fs::path& folder,
-                                                     std::chrono::seconds patience) {
-  std::vector<fs::path> meshes;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
-    const std::string name = entry.path().filename().string();
-    if ((name == "constant" || plainTime(name)) && entry.is_directory(code))
-      addMeshes(entry.path(), meshes);
-  }
-  if (meshes.empty())
-    return fail(ErrorCode::kNotFound,
-                folder.string() +
-                    " has no mesh: its constant/polyMesh is missing; copy the case "
-                    "whole");
-  std::ranges::sort(meshes);  // of several faults always the same one is reported
-  std::uint64_t cells = 0;
-  for (const fs::path& mesh : meshes) {
-    const Result<std::uint64_t> found = checkPolyMesh(mesh, patience);
-    if (!found) return std::unexpected(found.error());
-    cells = *found;
-  }
-  if (meshes.size() != 1) return std::nullopt;
-  return cells;
+Status readFoamPoints(const fs::path& folder, std::chrono::seconds patience, CellMesh& out) {
+  Result<FoamList> file = FoamList::open(folder / "points", patience);
+  if (!file) return std::unexpected(file.error());
+  const auto numbers = file->tuples(3, std::nullopt);
+  if (!numbers) return std::unexpected(numbers.error());
+  out.pointType = file->realType();
+  out.points.resize(numbers->size() / 3);
+  for (std::size_t i = 0; i < numbers->size(); ++i) out.points[i / 3][i % 3] = (*numbers)[i];
+  return {};
+}
+
+Status readPolyMesh(const fs::path& folder, std::chrono::seconds patience, CellMesh& out) {
+  MeshFolder mesh(folder, patience);
+  if (Status done = mesh.read(out.points.size()); !done) return done;
+  mesh.addCellsTo(out);
+  return {};
 }
 
 }  // namespace qtet

@@ -1,23 +1,24 @@
-// Checks a mesh of OpenFOAM before VTK reads it. VTK takes lists that contradict each other, and
-// makes other cells of them or none.
+// A mesh of OpenFOAM: the lists in a folder polyMesh, checked and turned into cells.
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
-#include <optional>
 
 #include "proto/error.h"
 #include "simplify/read/options/read_options.h"
+#include "simplify/split/cell_mesh.h"
 
 namespace qtet {
 
-/// Checks each mesh of the case in `folder`: those of constant/, of constant/REGION/ and of times,
-/// also compressed. Its lists must have as many things as they say and fit together, and each
-/// cell's faces must close. Returns the number of cells if the case has one mesh. Errors: not-found
-/// (no mesh, a file), bad-input (the file and the line, or the cell), truncated, io.
-/// `patience` holds for each file (FoamList::open).
-[[nodiscard]] Result<std::optional<std::uint64_t>> checkPolyMeshes(
-    const std::filesystem::path& folder, std::chrono::seconds patience = kReadPatience);
+/// The points of the folder and their type. Errors: not-found (no such file), bad-input (the file
+/// and the line), truncated, io. `patience` holds for each file (FoamList::open).
+[[nodiscard]] Status readFoamPoints(const std::filesystem::path& folder,
+                                    std::chrono::seconds patience, CellMesh& out);
+
+/// Appends the cells of the folder to `out`, which has the points already. Its lists must have as
+/// many things as they say, and fit together. Each cell's faces must close, and the patches must
+/// have all faces of the boundary. Errors: as readFoamPoints's, bad-input also with the cell.
+[[nodiscard]] Status readPolyMesh(const std::filesystem::path& folder,
+                                  std::chrono::seconds patience, CellMesh& out);
 
 }  // namespace qtet

@@ -1,55 +1,169 @@
 #include "simplify/read/foam/read_foam.h"
 
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "simplify/read/foam/field_files.h"
 #include "simplify/read/foam/foam_fields.h"
+#include "simplify/read/foam/foam_list.h"
 #include "simplify/read/foam/poly_mesh.h"
-#include "simplify/read/options/bad_file.h"
+#include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/piece_files.h"
-#include "simplify/read/process/guarded_folder.h"
-#include "simplify/read/process/inflate_file.h"
-#include "simplify/read/steps/read_apart.h"
+#include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/step_reports.h"
-#include "simplify/read/vtk/run_vtk.h"
 
 namespace qtet {
 namespace {
 
-/// A case of OpenFOAM in one folder. `marker` is the file that VTK opens for it.
-Result<std::vector<TimedCells>> readFoamCase(const std::filesystem::path& folder,
-                                             const std::filesystem::path& marker,
-                                             const ReadOptions& options, ReadReport& report) {
-  const auto cells = checkPolyMeshes(folder, options.patience);
-  if (!cells) return std::unexpected(cells.error());
-  Result<std::vector<TimedCells>> steps = readApart(
-      marker, options, report,
-      [&](ReadReport& found) { return runVtk(marker, MeshFormat::kOpenFoam, options, found); });
-  if (!steps) return steps;
-  for (const TimedCells& step : *steps)
-    if (*cells && step.cells.cells() != **cells)
-      return badFile(folder, "VTK found " + std::to_string(step.cells.cells()) + " of its " +
-                                 std::to_string(**cells) +
-                                 " cells; run checkMesh on the case, and write it again");
-  return steps;
+namespace fs = std::filesystem;
+
+/// The folders of a case that have fields: those of times, ascending. Without one it is constant,
+/// at time 0.
+struct Instants {
+  std::vector<double> times;
+  std::vector<fs::path> folders;
+};
+
+Instants instantsIn(const fs::path& folder, std::vector<std::string>& notes) {
+  std::set<std::pair<double, std::string>> found;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    const auto time = plainTime(name);
+    if (time && name[0] != '.' && entry.is_directory(code)) found.emplace(*time, name);
+  }
+  if (found.empty()) found.emplace(0, "constant");
+  Instants out;
+  for (const auto& [time, name] : found) {
+    if (!out.times.empty() && out.times.back() == time) {
+      notes.push_back((folder / name).string() + " has the time of " + out.folders.back().string() +
+                      ", and was ignored");
+      continue;
+    }
+    out.times.push_back(time);
+    out.folders.push_back(folder / name);
+  }
+  return out;
+}
+
+bool hasFile(const fs::path& folder, const char* name) {
+  return FoamList::isThere(folder / "polyMesh" / name);
+}
+
+/// A folder polyMesh that has points alone says where a mesh has moved.
+bool hasCells(const fs::path& folder) {
+  return hasFile(folder, "faces") || hasFile(folder, "owner") || hasFile(folder, "neighbour");
+}
+
+/// The mesh of one region ("": that of the case itself) at each time. Keeps the mesh of the step
+/// that it has read last.
+class Region {
+ public:
+  Region(const fs::path& folder, const Instants& instants, std::string name)
+      : instants_(instants), name_(std::move(name)) {
+    fs::path cells, points;
+    const auto look = [&](const fs::path& place) {
+      if (hasCells(place)) cells = points = place / "polyMesh";
+      if (hasFile(place, "points")) points = place / "polyMesh";
+    };
+    look(folder / "constant" / name_);
+    for (const fs::path& instant : instants_.folders) {
+      look(instant / name_);
+      places_.emplace_back(cells, points);
+    }
+  }
+
+  Result<CellMesh> at(std::size_t step, const ReadOptions& options, ReadReport& report) {
+    const auto& [cells, points] = places_[step];
+    const fs::path fields = instants_.folders[step] / name_;
+    if (cells.empty())
+      return fail(ErrorCode::kNotFound,
+                  fields.string() + " has no mesh, nor has an earlier time; copy the case whole");
+    if (Status done = readMesh(cells, points, options); !done) return std::unexpected(done.error());
+    CellMesh out = mesh_;
+    if (Status done = addFoamFields(fields, options.fields, options.patience, out, report); !done)
+      return std::unexpected(done.error());
+    return out;
+  }
+
+ private:
+  Status readMesh(const fs::path& cells, const fs::path& points, const ReadOptions& options) {
+    if (std::pair(cells, points) == read_) return {};
+    const bool isMoved = cells == read_.first;
+    const std::size_t before = mesh_.points.size();
+    read_ = {};
+    if (!isMoved) mesh_ = {};
+    if (Status done = readFoamPoints(points, options.patience, mesh_); !done) return done;
+    if (isMoved && mesh_.points.size() != before)
+      return fail(ErrorCode::kBadInput, (points / "points").string() + ": it has " +
+                                            std::to_string(mesh_.points.size()) +
+                                            " points, but the mesh of " + cells.string() + " has " +
+                                            std::to_string(before) + "; write the case again");
+    if (Status done = isMoved ? Status{} : readPolyMesh(cells, options.patience, mesh_); !done)
+      return done;
+    read_ = {cells, points};
+    return {};
+  }
+
+  const Instants& instants_;
+  std::string name_;
+  std::vector<std::pair<fs::path, fs::path>> places_;  ///< by step: the folders of cells and points
+  std::pair<fs::path, fs::path> read_;                 ///< those of mesh_
+  CellMesh mesh_;
+};
+
+/// The names of the regions that have a mesh at some time, the case itself first.
+std::set<std::string> regionsIn(const fs::path& folder, const Instants& instants) {
+  std::set<std::string> out;
+  std::vector<fs::path> places = instants.folders;
+  places.push_back(folder / "constant");
+  std::error_code code;
+  for (const fs::path& place : places) {
+    if (hasCells(place)) out.insert("");
+    for (const fs::directory_entry& entry : fs::directory_iterator(place, code))
+      if (entry.is_directory(code) && hasCells(entry.path()))
+        out.insert(entry.path().filename().string());
+  }
+  return out;
+}
+
+/// A case of OpenFOAM in one folder.
+Result<std::vector<TimedCells>> readFoamCase(const fs::path& folder, const ReadOptions& options,
+                                             ReadReport& report) {
+  const Instants instants = instantsIn(folder, report.notes);
+  std::vector<Region> regions;
+  for (const std::string& name : regionsIn(folder, instants))
+    regions.emplace_back(folder, instants, name);
+  if (regions.empty())
+    return fail(
+        ErrorCode::kNotFound,
+        folder.string() + " has no mesh: its constant/polyMesh is missing; copy the case whole");
+  return readChosen(instants.times, folder, options, report,
+                    [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
+                      std::vector<CellMesh> blocks;
+                      for (Region& region : regions) {
+                        Result<CellMesh> cells = region.at(step, options, ofStep);
+                        if (!cells) return cells;
+                        blocks.push_back(std::move(*cells));
+                      }
+                      return joinBlocks(std::move(blocks), options.joinPieces, ofStep);
+                    });
 }
 
 /// A decomposed case of OpenFOAM: each processor's folder is read as a case of its own.
-Result<std::vector<TimedCells>> readProcessors(const std::vector<std::filesystem::path>& processors,
-                                               const std::filesystem::path& path,
-                                               const ReadOptions& options, ReadReport& report) {
-  const GuardedFolder folder("foam");
-  if (Status made = folder.made(); !made) return std::unexpected(made.error());
+Result<std::vector<TimedCells>> readProcessors(const std::vector<fs::path>& processors,
+                                               const fs::path& path, const ReadOptions& options,
+                                               ReadReport& report) {
   std::vector<std::vector<TimedCells>> pieces;
-  for (const std::filesystem::path& processor : processors) {
-    const auto marker = caseOfProcessor(processor, folder.path() / processor.filename());
-    if (!marker) return std::unexpected(marker.error());
+  for (const fs::path& processor : processors) {
     ReadReport ofOne;
-    Result<std::vector<TimedCells>> steps = readFoamCase(processor, *marker, options, ofOne);
-    const auto named = [&](const std::string& text) {
-      return withName(withName(text, marker->string(), processor.string()),
-                      marker->parent_path().string(), processor.string());
-    };
-    for (std::string& note : ofOne.notes) note = named(note);
+    Result<std::vector<TimedCells>> steps = readFoamCase(processor, options, ofOne);
+    if (!steps) return steps;
     addPiece(std::move(ofOne), report);
-    if (!steps) return fail(steps.error().code, named(steps.error().message));
     pieces.push_back(std::move(*steps));
   }
   report.notes.push_back("the case was read from the folders of its " +
@@ -59,15 +173,15 @@ Result<std::vector<TimedCells>> readProcessors(const std::vector<std::filesystem
 
 }  // namespace
 
-Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path,
-                                         const ReadOptions& options, ReadReport& report) {
+Result<std::vector<TimedCells>> readFoam(const fs::path& path, const ReadOptions& options,
+                                         ReadReport& report) {
   const auto processors = processorFolders(path);
   if (!processors) return std::unexpected(processors.error());
   ReadOptions ofCells = options;
   ofCells.fields = foamFieldsToRead(options.fields);
-  const std::filesystem::path folder = path.parent_path().empty() ? "." : path.parent_path();
+  const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
   Result<std::vector<TimedCells>> steps = processors->empty()
-                                              ? readFoamCase(folder, path, ofCells, report)
+                                              ? readFoamCase(folder, ofCells, report)
                                               : readProcessors(*processors, path, ofCells, report);
   if (!steps) return steps;
   std::vector<std::string> notes;

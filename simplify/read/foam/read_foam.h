@@ -1,4 +1,4 @@
-// Cases of OpenFOAM, in one folder or in one of each processor. VTK reads the cells.
+// Cases of OpenFOAM, in one folder or in one of each processor, with their times and regions.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,9 @@
 
 namespace qtet {
 
-/// The case whose marker is at `path`. Errors: those of readApart and runVtk; bad-input (VTK found
-/// other cells than the mesh's files have), not-found (a processor's folder is missing).
+/// The case in whose folder `path` lies, which need not be there. Errors: those of readPolyMesh and
+/// addFoamFields; not-found (a processor's folder is missing; no mesh; no such time), bad-input
+/// (processors with different times).
 [[nodiscard]] Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path,
                                                        const ReadOptions& options,
                                                        ReadReport& report);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -40,6 +39,16 @@ bool isThere(const fs::path& path) {
   return fs::exists(path, code);
 }
 
+/// Whether the case has a mesh of its own, or one of a region.
+bool hasMesh(const fs::path& folder) {
+  const fs::path constant = folder / "constant";
+  if (isThere(constant / "polyMesh")) return true;
+  std::error_code code;
+  for (const fs::directory_entry& region : fs::directory_iterator(constant, code))
+    if (isThere(region.path() / "polyMesh")) return true;
+  return false;
+}
+
 /// The numbers of the processor folders, and whether there are folders of several processes each.
 struct Processors {
   std::set<std::uint64_t> numbers;
@@ -65,7 +74,7 @@ Processors processorsIn(const fs::path& folder) {
 /// Whether the processors' folders hold what the case itself does not.
 bool haveMore(const fs::path& folder, const fs::path& first) {
   const std::set<std::string> whole = timesIn(folder), parts = timesIn(first);
-  return !isThere(folder / "constant" / "polyMesh") || !std::ranges::includes(whole, parts);
+  return !hasMesh(folder) || !std::ranges::includes(whole, parts);
 }
 
 }  // namespace
@@ -94,14 +103,14 @@ Result<std::vector<fs::path>> exodusPieces(const fs::path& path) {
 
 bool isFoamCase(const fs::path& folder) {
   const auto [numbers, isCollated] = processorsIn(folder);
-  return !numbers.empty() || isCollated || isThere(folder / "constant" / "polyMesh");
+  return !numbers.empty() || isCollated || hasMesh(folder);
 }
 
 Result<std::vector<fs::path>> processorFolders(const fs::path& marker) {
   const fs::path folder = marker.parent_path().empty() ? fs::path(".") : marker.parent_path();
   const auto [numbers, isCollated] = processorsIn(folder);
   std::vector<fs::path> out;
-  if (isCollated && numbers.empty() && !isThere(folder / "constant" / "polyMesh"))
+  if (isCollated && numbers.empty() && !hasMesh(folder))
     return fail(ErrorCode::kBadInput,
                 marker.string() +
                     ": its processes have written into one folder (collated), which "
@@ -117,19 +126,6 @@ Result<std::vector<fs::path>> processorFolders(const fs::path& marker) {
                                             " is missing; copy all processor folders");
   }
   return out;
-}
-
-Result<fs::path> caseOfProcessor(const fs::path& processor, const fs::path& into) {
-  std::error_code code;
-  fs::create_directory(into, code);
-  const fs::path from = fs::absolute(processor);
-  for (const fs::directory_entry& entry : fs::directory_iterator(from, code))
-    if (!code) fs::create_symlink(entry.path(), into / entry.path().filename(), code);
-  if (!code) fs::create_symlink(from.parent_path() / "system", into / "system", code);
-  const fs::path marker = into / "case.foam";
-  if (!code && std::ofstream(marker)) return marker;
-  return fail(ErrorCode::kIo,
-              processor.string() + " could not be opened as a case of its own: " + code.message());
 }
 
 }  // namespace qtet

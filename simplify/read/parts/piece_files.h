@@ -20,7 +20,8 @@ inline constexpr std::uint64_t kMaxPieceFiles = 1U << 24;
 [[nodiscard]] Result<std::vector<std::filesystem::path>> exodusPieces(
     const std::filesystem::path& path);
 
-/// Whether the folder is a case of OpenFOAM: it has constant/polyMesh or a folder of a process.
+/// Whether the folder is a case of OpenFOAM: it has constant/polyMesh, also that of a region, or a
+/// folder of a process.
 [[nodiscard]] bool isFoamCase(const std::filesystem::path& folder);
 
 /// The folders processor0, processor1 ... beside an OpenFOAM case's marker, where the case is to be
@@ -29,10 +30,5 @@ inline constexpr std::uint64_t kMaxPieceFiles = 1U << 24;
 /// (all processes write into one folder).
 [[nodiscard]] Result<std::vector<std::filesystem::path>> processorFolders(
     const std::filesystem::path& marker);
-
-/// Makes a case of its own of a processor's folder, in the new folder `into`, and gives its marker.
-/// Errors: io.
-[[nodiscard]] Result<std::filesystem::path> caseOfProcessor(const std::filesystem::path& processor,
-                                                            const std::filesystem::path& into);
 
 }  // namespace qtet

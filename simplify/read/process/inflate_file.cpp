@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <vector>
 
 #include "simplify/read/process/guarded_folder.h"
@@ -29,7 +30,7 @@ class GzipFile {
   [[nodiscard]] bool isOpen() const { return file_ != nullptr; }
   [[nodiscard]] bool isPlain() const { return ::gzdirect(file_) == 1; }
   /// Less than the piece at the end or after an error, which error() tells.
-  [[nodiscard]] int read(std::vector<char>& piece) const {
+  [[nodiscard]] int read(std::span<char> piece) const {
     return ::gzread(file_, piece.data(), static_cast<unsigned>(piece.size()));
   }
   [[nodiscard]] int error() const {
@@ -42,7 +43,7 @@ class GzipFile {
   gzFile file_;
 };
 
-Status damaged(const fs::path& path, int code) {
+std::unexpected<Error> damaged(const fs::path& path, int code) {
   if (code == Z_BUF_ERROR)
     return fail(ErrorCode::kTruncated,
                 path.string() +
@@ -98,6 +99,17 @@ std::string withName(std::string text, const std::string& from, const std::strin
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
     text.replace(at, from.size(), to);
   return text;
+}
+
+Result<std::string> beginningOf(const fs::path& path, std::size_t bytes) {
+  const GzipFile in(path);
+  std::string out(bytes, '\0');
+  const int got = in.isOpen() ? in.read(out) : -1;
+  if (got < 0 && in.isOpen() && !in.isPlain()) return damaged(path, in.error());
+  if (got < 0)
+    return fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + std::strerror(errno));
+  out.resize(static_cast<std::size_t>(got));
+  return out;
 }
 
 Status inflated(const fs::path& path, const std::function<Status(const fs::path&)>& use,

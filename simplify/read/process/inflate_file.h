@@ -1,6 +1,7 @@
 // Mesh files that were compressed whole: NAME.vtu.gz and so on.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -21,6 +22,10 @@ namespace qtet {
 [[nodiscard]] Status inflated(const std::filesystem::path& path,
                               const std::function<Status(const std::filesystem::path&)>& use,
                               std::uint64_t most = maxInflatedBytes());
+
+/// The first `bytes` bytes, or all of them, of a file that gzip may have compressed. Errors: io,
+/// bad-input (it does not inflate), truncated.
+[[nodiscard]] Result<std::string> beginningOf(const std::filesystem::path& path, std::size_t bytes);
 
 /// The text, in which each `from` is `to`.
 [[nodiscard]] std::string withName(std::string text, const std::string& from,

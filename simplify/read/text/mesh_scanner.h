@@ -64,6 +64,9 @@ class MeshScanner {
     return failed() ? T{} : value;
   }
 
+  /// The value of a number that no double comes near: infinite or 0.
+  [[nodiscard]] static double beyondRange(std::string_view number);
+
   /// The next sizeof(T) bytes.
   template <class T>
   T raw(const char* what) {
@@ -107,7 +110,6 @@ class MeshScanner {
   static constexpr std::uint32_t kReadsBetweenLooks = 1 << 14;
 
   void look();
-  static double beyondRange(std::string_view number);
   void refuse(std::size_t place, std::string_view found, const char* what);
   void endsWithin(const char* what);
   void skipBlanks();

@@ -7,7 +7,6 @@
 #include <vtkFLUENTReader.h>
 #include <vtkHDFReader.h>
 #include <vtkMultiBlockPLOT3DReader.h>
-#include <vtkOpenFOAMReader.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
@@ -61,17 +60,6 @@ vtkSmartPointer<vtkAlgorithm> cgnsReader(const std::filesystem::path& path) {
   return reader;
 }
 
-vtkSmartPointer<vtkAlgorithm> foamReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
-  reader->SetFileName(path.c_str());
-  reader->CreateCellToPointOff();  // its means do not know the cells of other processes
-  reader->DecomposePolyhedraOff();
-  reader->UpdateInformation();
-  reader->EnableAllCellArrays();
-  reader->EnableAllPointArrays();
-  return reader;
-}
-
 vtkSmartPointer<vtkAlgorithm> fluentReader(const std::filesystem::path& path) {
   const auto reader = vtkSmartPointer<vtkFLUENTReader>::New();
   reader->SetFileName(path.c_str());
@@ -114,7 +102,6 @@ vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, Mes
     case MeshFormat::kLegacyVtk: return legacyReader(path);
     case MeshFormat::kExodus: return exodusReader(path);
     case MeshFormat::kCgns: return cgnsReader(path);
-    case MeshFormat::kOpenFoam: return foamReader(path);
     case MeshFormat::kFluent: return fluentReader(path);
     case MeshFormat::kVtkHdf: return hdfReader(path);
     case MeshFormat::kPlot3d: return plot3dReader(path, options.plot3dSolution);

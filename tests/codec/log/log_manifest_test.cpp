@@ -144,6 +144,38 @@ TEST(LogManifest, itsUnitsComeBack) {
   }
 }
 
+TEST(LogManifest, itsLabelsComeBackWithTheNamesOfTheirValues) {
+  Manifest m = sample();
+  m.fields[1] = {"Part@1", 1, "int32", "cell", 4, 1, {-7}, {-7, 4}};
+  m.labels = {{"Part", {{-7, "air"}, {4, "oil"}}}};
+  LogIndex index = indexOf(m);
+  EXPECT_EQ(index.manifestMinor, LogIndex::kMinorOfLabels);
+  const Result<Manifest> read = manifestOf(index);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->labels, m.labels);
+  EXPECT_EQ(labelNamesOf(*read, 0), nullptr);
+  ASSERT_NE(labelNamesOf(*read, 1), nullptr);
+  EXPECT_EQ(labelNamesOf(*read, 1)->at(4), "oil");
+  const std::string json = manifestToJson(m);
+  EXPECT_NE(json.find(R"("labels":{"-7":"air","4":"oil"})"), std::string::npos) << json;
+  EXPECT_NE(json.find(R"("wrong":)"), std::string::npos) << json;
+  index.manifestMinor = LogIndex::kMinorOfUnits;
+  expectRefused(index, ErrorCode::kBadValue, "does not know");
+  LabelNames names;
+  for (std::uint32_t i = 0; i < kMaxLabelNames; ++i) names[static_cast<std::int32_t>(i)] = "x";
+  m.labels = {{"Part", names}};
+  EXPECT_TRUE(manifestOf(indexOf(m)));
+  names[-1] = "x";
+  m.labels = {{"Part", names}};
+  expectRefused(indexOf(m), ErrorCode::kBadValue, "4,096");
+  m.labels = {{"Part", {{1, ""}}}};
+  expectRefused(indexOf(m), ErrorCode::kBadValue, "empty");
+  for (const char* other : {"density", "Part@1", "nothing"}) {
+    m.labels = {{other, {}}};
+    expectRefused(indexOf(m), ErrorCode::kBadValue, "no cell field");
+  }
+}
+
 TEST(LogManifest, aFocusIsABoxThatTheHeaderKnowsOf) {
   Manifest m = sample(false);
   m.focus = {0, 1, 2, 1, 0x8000, 0xffff};

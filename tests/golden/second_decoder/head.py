@@ -100,12 +100,14 @@ class Log:
         reader.text()
         reader.text()
         self.step, *self.origin = reader.unpack("4d")
+        self.may_be_labels = set()
         self.infos = [self.read_info(reader, shape) for shape in self.shapes]
         flags = self.flags = reader.u8()
-        refuse_unless(flags < 32 and flags & 9 != 9, "flags of the manifest")
+        refuse_unless(flags < 64 and flags & 9 != 9, "flags of the manifest")
         refuse_unless(flags <= 1 or self.minor >= 2, "a first view in an older version")
         refuse_unless(not flags & 8 or self.minor >= 3, "errors of some levels in an older version")
-        refuse_unless(flags < 16 or self.minor >= 4, "units in an older version")
+        refuse_unless(not flags & 16 or self.minor >= 4, "units in an older version")
+        refuse_unless(flags < 32 or self.minor >= 5, "labels in an older version")
         six = "6B" if self.misreading == "a focus has six bytes" else "6H"
         self.focus = reader.unpack(six) if flags & 2 else None
         if self.focus:
@@ -123,12 +125,28 @@ class Log:
                 names.append(reader.text())
                 refuse_unless(1 <= len(reader.text().encode()) <= 64, "a unit's length")
             refuse_unless(names == sorted(set(names)), "units in another order")
+        if flags & 32:
+            self.labels = dict(self.read_label(reader) for _ in range(reader.varint()))
+            refuse_unless(list(self.labels) == sorted(self.labels), "labels in another order")
         self.columns = self.columns_of(reader, flags, len(self.shapes))
+
+    def read_label(self, reader):
+        field, count = reader.text(), reader.varint()
+        refuse_unless(field in self.may_be_labels and count <= 4096, "a label")
+        names = {}
+        for _ in range(count):
+            (value,) = reader.unpack("I" if self.misreading == "labels are unsigned" else "i")
+            refuse_unless(all(value > before for before in names), "names in another order")
+            names[value] = reader.text()
+            refuse_unless(names[value], "a value without a name")
+        return field, names
 
     def read_info(self, reader, shape):
         components = shape[0]
-        reader.text()
+        name = reader.text()
         kind, bits, step = reader.unpack("BBd")
+        if shape[1] & 1 and components == 1 and kind & 127 >= 2 and step == 1:
+            self.may_be_labels |= {name, name.rpartition("@")[0]}
         minimum = reader.unpack(f"{components}d")
         reader.unpack("2d")
         return kind & 127, bits, step, minimum

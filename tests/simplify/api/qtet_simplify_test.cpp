@@ -306,7 +306,7 @@ TEST(QtetSimplify, aSeriesGivesItsStatisticsOnDemand) {
   EXPECT_EQ(LogIndex::parse(bytesOf(log)).value().fields.size(), mesh.fields.size() + 4);
   options.timeStatistics = 2;
   EXPECT_EQ(simplified(log, Arrays(mesh), options), QTET_BAD_VALUE);
-  options.timeStatistics = 0, options.reserved2 = 1;
+  options.timeStatistics = 0, options.labelWeightCount = 1;
   EXPECT_EQ(simplified(log, Arrays(mesh), options), QTET_BAD_VALUE);
 }
 

@@ -1,5 +1,4 @@
 #include "simplify/measure/measure_error.h"
-#include "codec/coding/error_figure.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +7,10 @@
 #include <numeric>
 #include <span>
 
+#include "codec/coding/error_figure.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/measure/farthest_point.h"
+#include "simplify/measure/label_volumes.h"
 #include "simplify/measure/measure_samples.h"
 #include "simplify/measure/measured_mesh.h"
 #include "simplify/mesh/split_mix64.h"
@@ -375,6 +376,49 @@ TEST(MeasureLevels, levelsThatAreAskedForAreMeasured) {
     EXPECT_EQ(errors[level].has_value(),
               level == 0 || level == 3 || level == 7 || level + 1 == errors.size())
         << level;
+}
+
+TEST(MeasureLevels, theErrorOfALabelIsTheShareOfTheVolumeThatIsWrong) {
+  LatticeMesh mesh = gridMesh(8, 4);
+  mesh.fields.push_back({"Half", 1, "int32", "cell", 1, 1, {0}, {0, 1}});
+  std::vector<std::int32_t>& half = mesh.values.emplace_back();
+  for (const Tetrahedron& t : mesh.tetrahedra) half.push_back(mesh.points[t[0]][0] > 200);
+  FusionOptions fusion;
+  const auto errorsBy = [&](const FusionOptions& options, const MeasureOptions& measuring) {
+    FusionHistory history = simplify(mesh, options).value();
+    return measureLevels(history, measuring).value().front()->fields.back();
+  };
+  MeasureOptions asLabel;
+  asLabel.labels = {static_cast<std::uint32_t>(mesh.fields.size() - 1)};
+  const FieldError number = errorsBy(fusion, {}), label = errorsBy(fusion, asLabel);
+  EXPECT_GT(label.rms, 0.02);
+  EXPECT_NEAR(label.rms, number.rms * number.rms, 0.01 * label.rms);
+  EXPECT_EQ(label.max, 1);
+  fusion.cost.labels = {{mesh.fields.size() - 1, 1}};
+  EXPECT_LT(errorsBy(fusion, asLabel).rms, label.rms / 4) << "interfaces count";
+  fusion.cost.labels[0].weight = 0;
+  EXPECT_EQ(errorsBy(fusion, asLabel).rms, label.rms);
+  asLabel.base = BaseRule{.error = 1, .labelError = label.rms / 2};
+  EXPECT_LE(errorsBy(fusion, asLabel).rms, label.rms / 2);
+}
+
+TEST(MeasureLevels, theRuleKeepsTheVolumeOfEachLabel) {
+  // the corner of a cube, an eighth of its volume, which goes over to the rest
+  FusionHistory history = simplify(gridMesh(8, 4), {}).value();
+  history.fields = {{"Corner", 1, "int32", "cell", 1, 1, {0}, {0, 1}}};
+  history.values = {{}};
+  for (const auto& cell : history.cells) {
+    if (cell[3] == kGhost) break;
+    const LatticePoint& p = history.points[cell[0]];
+    history.values[0].push_back(p[0] > 200 && p[1] > 200 && p[2] > 200);
+  }
+  HistoryLevels levels(history);
+  levels.moveTo(levels.finest());
+  const LabelVolumes volumes(history, {0});
+  EXPECT_EQ(volumes.worst(), 0);
+  levels.moveTo(0);
+  EXPECT_GT(volumes.worst(), 0.1);
+  EXPECT_EQ(LabelVolumes(history, {}).worst(), 0);
 }
 
 /// A corner goes in, its opposite out: a twelfth of the volume each.

@@ -111,6 +111,24 @@ TEST(LossWarnings, anOrdinaryMeshHasNone) {
   EXPECT_EQ(warningsOf(thinWave(), PipelineOptions()), std::vector<std::string>{});
 }
 
+TEST(LossWarnings, aLabelThatIsWrongInMuchOfTheVolumeIsNamed) {
+  TetMesh mesh = ball(8);
+  MeshField grain{"Grain", 1, "int32", {}, "cell"};
+  for (std::size_t c = 0; c < mesh.tetrahedra.size(); ++c)
+    grain.values.push_back(static_cast<double>(c / 12 % 40));
+  mesh.fields.push_back(grain);
+  PipelineOptions options;
+  options.fusion.targetRatio = 0.3;
+  options.labelWeights = {{"Grain", 1}};
+  expectWarning(warningsOf(mesh, options),
+                {" % of the volume of the base mesh have another label Grain", "give `baseCells` ",
+                 "`labelWeights`"});
+  options.labelWeights = {{"grain", 1}};
+  const Result<PipelineOutput> unknown = simplifyToLog(TetMesh(mesh), options);
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().code, ErrorCode::kNotFound);
+}
+
 TEST(LossWarnings, tooFewCellsAreTheReasonWhereNothingElseIs) {
   expectWarning(warningsOf(ball(8), 0.01),
                 {"has lost ", " % of the volume", "too few cells are left for this shape",

@@ -21,6 +21,25 @@ for mesh in run.pvd p.pvtu gmsh-mixed1.msh ens.0.case; do
   done
   cmp "$scratch/qtet.vtu" "$scratch/portable.vtu" || fail "$mesh is read otherwise"
 done
+
+# a case of OpenFOAM
+foam() {  # FILE CLASS BODY
+  mkdir -p "$(dirname "$1")"
+  printf 'FoamFile\n{\n format ascii;\n class %s;\n}\n%s\n' "$2" "$3" >"$1"
+}
+mesh=$scratch/case/constant/polyMesh
+foam "$mesh/points" vectorField '4((0 0 0) (1 0 0) (0 1 0) (0 0 1))'
+foam "$mesh/faces" faceList '4(3(0 2 1) 3(0 1 3) 3(0 3 2) 3(1 2 3))'
+foam "$mesh/owner" labelList '4{0}'
+foam "$mesh/neighbour" labelList '0()'
+foam "$mesh/boundary" polyBoundaryMesh '1(walls { type wall; nFaces 4; startFace 0; })'
+foam "$scratch/case/0.5/T" volScalarField 'internalField nonuniform List<scalar> 1(7);'
+for program in qtet portable; do
+  "${!program}" convert "$scratch/case" -o "$scratch/$program.vtu" --quiet 2>/dev/null
+done
+cmp "$scratch/qtet.vtu" "$scratch/portable.vtu" || fail "OpenFOAM is read otherwise"
+"$portable" check "$scratch/case" | grep -q '1 tetrahedr' || fail "it does not read OpenFOAM"
+
 "$qtet" sample box -o "$scratch/box.vtu" --quiet
 for program in qtet portable; do
   "${!program}" simplify "$scratch/box.vtu" -o "$scratch/$program.qtet" --quiet

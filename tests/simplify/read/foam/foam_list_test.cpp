@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <cmath>
+#include <limits>
 
-#include "simplify/read/foam/poly_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/simplify/read/foam/foam_files.h"
 
 namespace qtet {
 namespace {
@@ -69,28 +70,155 @@ TEST(FoamList, everyLabelIsReadInTime) {
   EXPECT_NE(late.error().message.find("`readSeconds`"), std::string::npos) << late.error().message;
 }
 
-TEST(PolyMesh, ownersOfOneValueAreAsManyAsThereAreFaces) {
-  const fs::path mesh = testing::freshFolder("uniform-owners") / "constant/polyMesh";
-  fs::create_directories(mesh);
-  const auto write = [&](const char* name, const std::string& body) {
-    std::ofstream(mesh / name) << kHeader << body;
+using Values = std::vector<double>;
+using testing::bytesOf;
+
+FoamList foamFile(const std::string& header, const std::string& body) {
+  return FoamList::open(testing::fileWith("values", header + body)).value();
+}
+
+struct ReadField {
+  Values values;
+  std::string refusal;  ///< also "a macro"
+};
+
+ReadField fieldIn(FoamList file, std::uint32_t components, std::uint64_t count) {
+  const auto values = file.field("internalField", components, count);
+  if (!values) {
+    EXPECT_EQ(values.error().code, ErrorCode::kBadInput);
+    return {{}, values.error().message};
+  }
+  if (!*values) return {{}, "a macro"};
+  return {**values, ""};
+}
+
+ReadField textField(const std::string& value, std::uint32_t components = 1,
+                    std::uint64_t count = 2) {
+  return fieldIn(foamFile(kHeader, "dimensions [0 1 0 0 0 0 0];\ninternalField " + value),
+                 components, count);
+}
+
+Values valuesOf(const std::string& value, std::uint32_t components = 1, std::uint64_t count = 2) {
+  const ReadField read = textField(value, components, count);
+  EXPECT_EQ(read.refusal, "") << value;
+  return read.values;
+}
+
+TEST(FoamList, valuesAsTextAreRead) {
+  EXPECT_EQ(valuesOf("uniform 1.5;"), (Values{1.5, 1.5}));
+  EXPECT_EQ(valuesOf("uniform (1.5);"), (Values{1.5, 1.5}));
+  EXPECT_EQ(valuesOf("uniform (1 2 -3e2);", 3), (Values{1, 2, -300, 1, 2, -300}));
+  EXPECT_EQ(valuesOf("nonuniform List<scalar> 2(5 7);"), (Values{5, 7}));
+  EXPECT_EQ(valuesOf("nonuniform List<scalar>\n2\n(\n5 // five\n7\n)\n;"), (Values{5, 7}));
+  EXPECT_EQ(valuesOf("nonuniform 2(5 7);"), (Values{5, 7}));
+  EXPECT_EQ(valuesOf("nonuniform List<vector> 2((1 2 3) (4 5 6));", 3), (Values{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(valuesOf("nonuniform List<sphericalTensor> 2((5) (7));"), (Values{5, 7}));
+  EXPECT_EQ(valuesOf("nonuniform List<scalar> 2{5};"), (Values{5, 5}));
+  EXPECT_EQ(valuesOf("nonuniform List<vector> 2{(1 2 3)};", 3), (Values{1, 2, 3, 1, 2, 3}));
+  EXPECT_EQ(valuesOf("nonuniform List<scalar> 0();", 1, 0), Values{});
+  EXPECT_EQ(valuesOf("nonuniform List<scalar> 2(1e-400 1e400);"),
+            (Values{0, std::numeric_limits<double>::infinity()}));
+  EXPECT_TRUE(std::isnan(valuesOf("uniform nan;")[0]));
+}
+
+TEST(FoamList, damagedValuesAreRefusedWithTheirLine) {
+  for (const auto& [value, said] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"nonuniform List<scalar> 1(5);", "line 8: it has 1 values, but the mesh needs 2"},
+           {"nonuniform List<scalar> 3(5 7 9);", "it has 3 values, but the mesh needs 2"},
+           {"nonuniform List<scalar> 3{5};", "it has 3 values, but the mesh needs 2"},
+           {"nonuniform List<scalar> -1(5);", "it has -1 values"},
+           {"nonuniform List<scalar> 2(5);", "')' is not a number"},
+           {"nonuniform List<scalar> 2(5 7 9);", "a list of 2 does not end there"},
+           {"nonuniform List<scalar> 2{5 7};", "a list N{VALUE} does not end"},
+           {"nonuniform List<scalar> 2(5 7x);", "'7x' is not a number"},
+           {"nonuniform List<scalar> 2", "does not fit into the rest of the file"},
+           {"nonuniform List<scalar> 2(5 7) 9;", "the entry internalField does not end there"},
+           {"nonuniform List<vector> 2((1 2) (4 5));", "a tuple of 1 numbers does not end there"},
+           {"uniform (1 2);", "a tuple of 1 numbers does not end there"},
+           {"uniform;", "';' is not a number"},
+           {"5;", "'5' is neither uniform nor nonuniform"}}) {
+    const std::string refusal = textField(value).refusal;
+    EXPECT_NE(refusal.find(said), std::string::npos) << value << "\n" << refusal;
+  }
+  EXPECT_NE(fieldIn(foamFile(kHeader, "other uniform 1;"), 1, 1)
+                .refusal.find("it has no entry internalField"),
+            std::string::npos);
+}
+
+TEST(FoamList, entriesBeforeTheValuesArePassed) {
+  const std::string before =
+      "#include \"other (\"\na { internalField uniform 7; b { c 1; } }\nd (internalField uniform "
+      "8);\ne internalField;\n";
+  EXPECT_EQ(fieldIn(foamFile(kHeader, before + "internalField uniform 2;"), 1, 1).values,
+            Values{2});
+}
+
+TEST(FoamList, aMacroIsNoValue) {
+  for (const char* value :
+       {"uniform $speed;", "$internal;", "uniform ($u 0 0);", "uniform #calc \"1 + 2\";"})
+    EXPECT_EQ(textField(value, 3).refusal, "a macro") << value;
+}
+
+TEST(FoamList, binaryValuesAreReadInTheWidthOfTheHeader) {
+  const auto field = [](const std::string& arch, const std::string& list) {
+    FoamList file = foamFile(testing::foamHeader("volScalarField", "binary", arch),
+                             "internalField nonuniform List<scalar> " + list + ";");
+    EXPECT_EQ(file.realType(), arch.contains("scalar=32") ? std::string("float32") : "float64");
+    return fieldIn(std::move(file), 1, 2).values;
   };
-  write("points", "4\n(\n(0 0 0)\n(1 0 0)\n(0 1 0)\n(0 0 1)\n)\n");
-  write("faces", "4\n(\n3(0 2 1)\n3(0 1 3)\n3(0 3 2)\n3(1 2 3)\n)\n");
-  write("neighbour", "0\n(\n)\n");
-  write("boundary", "1\n(\nwalls\n{\n type wall;\n nFaces 4;\n startFace 0;\n}\n)\n");
-  write("owner", "4{0}\n");
-  const auto cells = checkPolyMeshes(mesh / "../..");
-  ASSERT_TRUE(cells) << cells.error().message;
-  EXPECT_EQ(*cells, 1u);
-  write("owner", "16777216{0}\n");
-  const auto more = checkPolyMeshes(mesh / "../..");
-  ASSERT_FALSE(more);
-  EXPECT_NE(more.error().message.find("at most 4 are possible"), std::string::npos)
-      << more.error().message;
-  const auto late = checkPolyMeshes(mesh / "../..", kNoTimeLeft);
-  ASSERT_FALSE(late);
-  EXPECT_NE(late.error().message.find("`readSeconds`"), std::string::npos) << late.error().message;
+  EXPECT_EQ(field("", "\n2\n(" + bytesOf({5.5, 7.25}) + ")"), (Values{5.5, 7.25}));
+  EXPECT_EQ(field("LSB;label=32;scalar=64", "2(" + bytesOf({5.5, 7.25}) + ")"),
+            (Values{5.5, 7.25}));
+  EXPECT_EQ(field("LSB;label=64;scalar=32", "2(" + bytesOf({5.5F, 7.25F}) + ")"),
+            (Values{5.5, 7.25}));
+  // every truncation is refused
+  const std::string whole = "2(" + bytesOf({5.5, 7.25}) + ");";
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_NE(fieldIn(foamFile(testing::foamHeader("volScalarField", "binary"),
+                               "internalField nonuniform List<scalar> " + whole.substr(0, length)),
+                      1, 2)
+                  .refusal,
+              "")
+        << length;
+}
+
+TEST(FoamList, numbersOfOtherMachinesAreRefused) {
+  const auto open = [](const std::string& format) {
+    return FoamList::open(testing::fileWith(
+        "foreign", testing::foamHeader("volScalarField", format, "MSB;label=32;scalar=64")));
+  };
+  EXPECT_TRUE(open("ascii"));
+  const auto binary = open("binary");
+  ASSERT_FALSE(binary);
+  EXPECT_NE(binary.error().message.find("highest byte first"), std::string::npos);
+}
+
+TEST(FoamList, labelsOf64BitsAreRead) {
+  const std::string header = testing::foamHeader("labelList", "binary", "LSB;label=64;scalar=64");
+  EXPECT_EQ(foamFile(header, "2(" + bytesOf<std::int64_t>({7, -1}) + ")").labels(2),
+            (std::vector<FoamList::Label>{7, -1}));
+  EXPECT_FALSE(
+      foamFile(header, "1(" + bytesOf<std::int64_t>({std::int64_t{1} << 32}) + ")").labels(2));
+  EXPECT_TRUE(foamFile(header, "1(" + bytesOf<std::int64_t>({(std::int64_t{1} << 32) - 1}) + ")")
+                  .labels(2));
+}
+
+TEST(FoamList, theClassOfAFileIsInItsHeader) {
+  const auto classOf = [](const std::string& text) {
+    return FoamList::classOf(testing::fileWith("any", text));
+  };
+  EXPECT_EQ(classOf("/* banner */\n" + testing::foamHeader("volScalarField") + "rest"),
+            "volScalarField");
+  for (const char* other : {"", "x", "/*", "#!/bin/sh\n"}) EXPECT_EQ(classOf(other), "");
+  for (const char* damaged : {"FoamFile", "FoamFile { class", "FoamFile { class volScalarField;"})
+    EXPECT_FALSE(classOf(damaged)) << damaged;
+  // a banner of as many bytes as are read, and one byte less
+  const std::string header = testing::foamHeader("volScalarField");
+  for (const std::size_t more : {0, 1})
+    EXPECT_EQ(
+        classOf(std::string(FoamList::kMostHeaderBytes - header.size() + 1 + more, ' ') + header)
+            .has_value(),
+        more == 0);
 }
 
 }  // namespace

@@ -65,6 +65,19 @@ TEST(InflateFile, everyTruncationIsAnErrorAndDamageIsRefused) {
   EXPECT_EQ(done.error().code, ErrorCode::kBadInput);
 }
 
+TEST(InflateFile, theBeginningIsThatOfTheText) {
+  const fs::path path = gzipOf("one two"), plain = path.parent_path() / "plain";
+  std::ofstream(plain) << "one two";
+  for (const fs::path& file : {path, plain}) {
+    EXPECT_EQ(beginningOf(file, 3), "one");
+    EXPECT_EQ(beginningOf(file, 7), "one two");
+    EXPECT_EQ(beginningOf(file, 8), "one two");
+  }
+  EXPECT_FALSE(beginningOf(path.parent_path() / "none", 3));
+  std::ofstream(path, std::ios::binary | std::ios::in | std::ios::ate).seekp(10) << "\xff\xff\xff";
+  EXPECT_FALSE(beginningOf(path, 3));
+}
+
 TEST(InflateFile, anErrorNamesTheCompressedFile) {
   const fs::path path = gzipOf("text");
   const Status done = inflated(path, [](const fs::path& plain) -> Status {

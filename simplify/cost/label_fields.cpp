@@ -1,0 +1,94 @@
+#include "simplify/cost/label_fields.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "codec/mesh/boundary.h"
+#include "codec/mesh/face_groups.h"
+#include "proto/field_key.h"
+#include "simplify/mesh/tet_mesh.h"
+
+namespace qtet {
+namespace {
+
+// As VTK, ParaView, Exodus, Gmsh, MED, MFEM, OpenFOAM's converters and finite element programs name
+// them, in lower case.
+constexpr std::array<std::string_view, 18> kLabelNames{
+    "materialids",     "materialid", "material",      "mat",       "blockids", "blockid",
+    "elementblockids", "objectid",   "physicalids",   "regionids", "regionid", "region",
+    "gmsh:physical",   "cell_tags",  "cellentityids", "attribute", "zoneid",   "partid"};
+// Which process had a cell is nothing that the mesh should keep.
+constexpr std::array<std::string_view, 8> kProcessNames{
+    "procid", "processid", "vtkprocessid", "processorid",
+    "rank",   "mpirank",   "partition",    "celldecomposition"};
+
+bool isAmong(std::span<const std::string_view> names, std::string_view name) {
+  std::string lower;
+  for (const char c : nameWithoutStep(name).value_or(name))
+    lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::ranges::find(names, lower) != names.end();
+}
+
+/// Calls visit(first, second) with the sides of each face inside, the lower cell first.
+template <class Visit>
+void forEachFaceInside(const LatticeMesh& mesh, const Visit& visit) {
+  FaceGroups(mesh.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
+    if (sides.size() == 2) visit(sides[0], sides[1]);
+  });
+}
+
+}  // namespace
+
+bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
+  const FieldInfo& info = mesh.fields[field];
+  if (!isCellField(info) || isFloatType(info.type) || info.components != 1 || info.step != 1)
+    return false;
+  std::vector<std::int32_t> values = mesh.values[field];
+  std::ranges::sort(values);
+  const auto repeated = std::ranges::unique(values);
+  const std::size_t different = values.size() - repeated.size();
+  return different >= 2 && different <= kMaxLabelValues;
+}
+
+std::vector<std::size_t> labelsOf(const LatticeMesh& mesh, const Labels& known) {
+  std::vector<std::size_t> labels, asked;
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const std::string& name = mesh.fields[f].name;
+    if (!canBeLabel(mesh, f) || isAmong(kProcessNames, name)) continue;
+    const bool isKnown =
+        isAmong(kLabelNames, name) || known.contains(nameWithoutStep(name).value_or(name));
+    (isKnown ? labels : asked).push_back(f);
+  }
+  if (asked.empty()) return labels;
+  std::size_t faces = 0;
+  std::vector<std::size_t> equal(asked.size());
+  forEachFaceInside(mesh, [&](FaceSide first, FaceSide second) {
+    ++faces;
+    for (std::size_t i = 0; i < asked.size(); ++i)
+      equal[i] +=
+          mesh.values[asked[i]][cellOf(first)] == mesh.values[asked[i]][cellOf(second)] ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (static_cast<double>(equal[i]) > kLabelNeighbours * static_cast<double>(faces))
+      labels.push_back(asked[i]);
+  std::ranges::sort(labels);
+  return labels;
+}
+
+std::vector<Triangle> interfacesOf(const LatticeMesh& mesh, std::size_t field) {
+  const std::vector<std::int32_t>& labels = mesh.values[field];
+  std::vector<Triangle> out;
+  forEachFaceInside(mesh, [&](FaceSide first, FaceSide second) {
+    if (labels[cellOf(first)] == labels[cellOf(second)]) return;
+    if (labels[cellOf(first)] > labels[cellOf(second)]) std::swap(first, second);
+    out.push_back(cellFace(mesh.tetrahedra[cellOf(first)], oppositeCornerOf(first)));
+  });
+  return out;
+}
+
+}  // namespace qtet

@@ -1,0 +1,32 @@
+// Labels: cell fields of integers that say what a cell is, such as its material (ALGORITHM.md,
+// "Labels").
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "proto/limits.h"
+#include "proto/manifest.h"
+
+namespace qtet {
+
+/// Values that a label has at most. A field of more numbers the cells, or what is as small.
+inline constexpr std::size_t kMaxLabelValues = kMaxLabelNames;
+/// A field is a label if more than this share of the faces inside lie between equal values. Six
+/// tetrahedra of one hexahedron share half of their faces: so its number is none.
+inline constexpr double kLabelNeighbours = 0.6;
+
+/// Whether the field can be a label: integers of tetrahedra, stored exactly, of one component and
+/// of 2 to kMaxLabelValues values. REQUIRES: field < mesh.fields.size().
+[[nodiscard]] bool canBeLabel(const LatticeMesh& mesh, std::size_t field);
+
+/// The fields that are labels, ascending: those that can be, and are among `known` or have a usual
+/// name of one, or whose neighbours mostly agree. The numbers of processes are none.
+[[nodiscard]] std::vector<std::size_t> labelsOf(const LatticeMesh& mesh, const Labels& known = {});
+
+/// The faces between cells of different labels, outward from the lower one, by their smallest
+/// vertices. REQUIRES: a cell field of one component.
+[[nodiscard]] std::vector<Triangle> interfacesOf(const LatticeMesh& mesh, std::size_t field);
+
+}  // namespace qtet

@@ -1,0 +1,21 @@
+// The files of fields in a folder of a time.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+
+#include "simplify/read/options/read_options.h"
+#include "simplify/split/cell_mesh.h"
+
+namespace qtet {
+
+/// Adds the fields of cells and of points in the folder that `wanted` means, each called as its
+/// file is. Symmetric tensors stand in VTK's order, xx yy zz xy yz xz. Files of no such field and
+/// backups are skipped; a field that a macro gives is left out with a note. Errors: bad-input (a
+/// damaged file; values for another number of cells or points than the mesh has), io, truncated.
+/// `patience` holds for each file.
+[[nodiscard]] Status addFoamFields(const std::filesystem::path& folder, const FieldNames& wanted,
+                                   std::chrono::seconds patience, CellMesh& mesh,
+                                   ReadReport& report);
+
+}  // namespace qtet
