@@ -1,4 +1,6 @@
-// The readers that a browser does without: those of VTK, HDF5, meshio, and OpenFOAM's folders.
+// The readers that a browser does without: those of VTK, HDF5, meshio, EnSight, and OpenFOAM's
+// folders.
+#include "simplify/read/ensight/read_ensight.h"
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/listed_files.h"
@@ -28,6 +30,10 @@ Result<std::vector<TimedCells>> runVtk(const std::filesystem::path& path, MeshFo
 }
 Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, const ReadOptions&,
                                           ReadReport&, const StepReader&) {
+  return refusal(path);
+}
+Result<std::vector<TimedCells>> readEnSight(const std::filesystem::path& path, const ReadOptions&,
+                                            ReadReport&) {
   return refusal(path);
 }
 Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path, const ReadOptions&,

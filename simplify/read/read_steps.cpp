@@ -6,6 +6,7 @@
 #include <span>
 
 #include "proto/number_text.h"
+#include "simplify/read/ensight/read_ensight.h"
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/options/bad_file.h"
@@ -204,6 +205,7 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
   if (format == MeshFormat::kVtu) return readUnstructured(path, options, report);
   if (format == MeshFormat::kLegacyVtk) return readLegacy(path, options, report);
   if (format == MeshFormat::kExodusPieces) return readExodusPieces(path, options, report);
+  if (format == MeshFormat::kEnSight) return readEnSight(path, options, report);
   if (format == MeshFormat::kOpenFoam) return readFoam(path, options, report);
   if (namesPieces(format) || format == MeshFormat::kVtm)
     return readParts(path, format, options, report, depth);

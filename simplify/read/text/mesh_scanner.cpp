@@ -55,6 +55,13 @@ std::string_view MeshScanner::line() {
   return out;
 }
 
+std::string_view MeshScanner::rest() {
+  if (--untilLook_ == 0) look();
+  if (failed()) return {};
+  skipBlanks();
+  return text_.substr(place_);
+}
+
 bool MeshScanner::atEnd() {
   skipBlanks();
   return failed() || place_ >= text_.size();

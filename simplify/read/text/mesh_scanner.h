@@ -38,6 +38,8 @@ class MeshScanner {
   /// The rest of this line, without blanks round it; then the place is at the next line.
   std::string_view line();
   [[nodiscard]] bool atEnd();
+  /// All that follows, from the next word on. The place moves to that word alone.
+  std::string_view rest();
 
   /// The next word as a number. `what` is what it should be: "a coordinate". A real number beyond
   /// what T holds is infinite or 0.

@@ -120,21 +120,14 @@ Result<std::vector<TimedCells>> runReader(const std::filesystem::path& path, Mes
   const auto reader = vtkReaderOf(path, format, options);
   reader->UpdateInformation();
   const std::vector<double> times = timesOf(*reader);
-  return readChosen(
-      times, path, options, report, [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
-        if (times.empty())
-          reader->Update();
-        else
-          reader->UpdateTimeStep(times[step]);
-        Result<CellMesh> cells =
-            cellsOfOutput(reader->GetOutputDataObject(0), options, path, ofStep);
-        const std::string lacking = cells ? missingVariable(*reader) : "";
-        if (lacking.empty()) return cells;
-        return badFile(path, "its variable " + lacking +
-                                 " has no values: its file is cut off, or of another "
-                                 "mesh; export the case again, or take the variable out "
-                                 "of it");
-      });
+  return readChosen(times, path, options, report,
+                    [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
+                      if (times.empty())
+                        reader->Update();
+                      else
+                        reader->UpdateTimeStep(times[step]);
+                      return cellsOfOutput(reader->GetOutputDataObject(0), options, path, ofStep);
+                    });
 }
 
 /// A Fluent mesh alone is no fault; VTK looks for a file of results beside it.

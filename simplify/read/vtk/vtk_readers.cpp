@@ -2,15 +2,9 @@
 
 #include <vtkAVSucdReader.h>
 #include <vtkCGNSReader.h>
-#include <vtkCompositeDataIterator.h>
-#include <vtkCompositeDataSet.h>
-#include <vtkDataObject.h>
-#include <vtkDataSetAttributes.h>
 #include <vtkDataSetReader.h>
-#include <vtkEnSightReader.h>
 #include <vtkExodusIIReader.h>
 #include <vtkFLUENTReader.h>
-#include <vtkGenericEnSightReader.h>
 #include <vtkHDFReader.h>
 #include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkXMLImageDataReader.h>
@@ -66,13 +60,6 @@ vtkSmartPointer<vtkAlgorithm> cgnsReader(const std::filesystem::path& path) {
   return reader;
 }
 
-vtkSmartPointer<vtkAlgorithm> enSightReader(const std::filesystem::path& path) {
-  const auto reader = vtkSmartPointer<vtkGenericEnSightReader>::New();
-  reader->SetCaseFileName(path.c_str());
-  reader->ReadAllVariablesOn();
-  return reader;
-}
-
 vtkSmartPointer<vtkAlgorithm> fluentReader(const std::filesystem::path& path) {
   const auto reader = vtkSmartPointer<vtkFLUENTReader>::New();
   reader->SetFileName(path.c_str());
@@ -102,44 +89,7 @@ vtkSmartPointer<vtkAlgorithm> plot3dReader(const std::filesystem::path& path,
   return reader;
 }
 
-/// Whether some block of what a reader gave has the array.
-bool hasArray(vtkDataObject* output, int association, const char* name) {
-  const auto has = [&](vtkDataObject* object) {
-    return object && object->GetAttributes(association) &&
-           object->GetAttributes(association)->HasArray(name) != 0;
-  };
-  auto* composite = vtkCompositeDataSet::SafeDownCast(output);
-  if (!composite) return has(output);
-  const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
-    if (has(each->GetCurrentDataObject())) return true;
-  return false;
-}
-
 }  // namespace
-
-std::string missingVariable(vtkAlgorithm& reader) {
-  auto* enSight = vtkGenericEnSightReader::SafeDownCast(&reader);
-  if (!enSight) return {};
-  for (int i = 0; i < enSight->GetNumberOfVariables(); ++i) {
-    const char* name = enSight->GetDescription(i);
-    int association = -1;
-    switch (enSight->GetVariableType(i)) {
-      case vtkEnSightReader::SCALAR_PER_NODE:
-      case vtkEnSightReader::VECTOR_PER_NODE:
-      case vtkEnSightReader::TENSOR_SYMM_PER_NODE:
-      case vtkEnSightReader::TENSOR_ASYM_PER_NODE: association = vtkDataObject::POINT; break;
-      case vtkEnSightReader::SCALAR_PER_ELEMENT:
-      case vtkEnSightReader::VECTOR_PER_ELEMENT:
-      case vtkEnSightReader::TENSOR_SYMM_PER_ELEMENT:
-      case vtkEnSightReader::TENSOR_ASYM_PER_ELEMENT: association = vtkDataObject::CELL; break;
-      default: break;  // of measured points, which are no mesh
-    }
-    if (name && association >= 0 && !hasArray(reader.GetOutputDataObject(0), association, name))
-      return name;
-  }
-  return {};
-}
 
 vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options) {
@@ -152,7 +102,6 @@ vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path, Mes
     case MeshFormat::kLegacyVtk: return legacyReader(path);
     case MeshFormat::kExodus: return exodusReader(path);
     case MeshFormat::kCgns: return cgnsReader(path);
-    case MeshFormat::kEnSight: return enSightReader(path);
     case MeshFormat::kFluent: return fluentReader(path);
     case MeshFormat::kVtkHdf: return hdfReader(path);
     case MeshFormat::kPlot3d: return plot3dReader(path, options.plot3dSolution);

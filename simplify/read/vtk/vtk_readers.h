@@ -5,7 +5,6 @@
 #include <vtkSmartPointer.h>
 
 #include <filesystem>
-#include <string>
 
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/read_options.h"
@@ -17,10 +16,5 @@ namespace qtet {
 [[nodiscard]] vtkSmartPointer<vtkAlgorithm> vtkReaderOf(const std::filesystem::path& path,
                                                         MeshFormat format,
                                                         const ReadOptions& options);
-
-/// A variable of points or elements that an EnSight case names and no block has after reading. Its
-/// file is cut off before the first part, of which VTK says nothing. Empty: there is none, or the
-/// reader is another one.
-[[nodiscard]] std::string missingVariable(vtkAlgorithm& reader);
 
 }  // namespace qtet

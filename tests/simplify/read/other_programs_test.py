@@ -739,9 +739,8 @@ def meshes_of_openfoam_are_checked():
 
 def an_interrupt_ends_a_reader_that_hangs():
     """A foreign reader that waits for ever goes with the tool."""
-    case = out / "hangs.case"
-    case.write_text("FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: hangs.geo\n")
-    os.mkfifo(out / "hangs.geo")
+    (out / "hangs.cas").write_text('(0 "by hand")\n')
+    os.mkfifo(out / "hangs.dat")  # VTK looks for results there
     fake = out / "fake"
     fake.mkdir()
     (fake / "python3").write_text(f"#!/bin/sh\necho $$ >{out.resolve()}/fake/id\nexec sleep 60\n")
@@ -749,9 +748,9 @@ def an_interrupt_ends_a_reader_that_hangs():
     (out / "hangs.med").write_text("nothing")
     environment = dict(os.environ, PATH=f"{fake.resolve()}:{os.environ['PATH']}")
     for words in (
-        ("check", "hangs.case"),
-        ("convert", "hangs.case", "-o", "hung.vtu"),
-        ("simplify", "hangs.case", "-o", "hung.qtet"),
+        ("check", "hangs.cas"),
+        ("convert", "hangs.cas", "-o", "hung.vtu"),
+        ("simplify", "hangs.cas", "-o", "hung.qtet"),
         ("check", "hangs.med"),
         ("simplify", "hangs.med", "-o", "hung.qtet"),
     ):

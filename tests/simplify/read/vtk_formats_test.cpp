@@ -431,42 +431,6 @@ TEST(VtkFormats, exodusBlocksHaveTheirFieldsAndNumbers) {
   EXPECT_EQ(read.report.split.cells[kHexahedronCell], 4u);
 }
 
-TEST(VtkFormats, enSightIsRead) { expectABar(given("ens.0.case"), 2, "T_n"); }
-
-TEST(VtkFormats, anEnSightVariableThatIsCutOffIsRefused) {
-  const fs::path folder = testing::freshFolder("cut-ensight");
-  for (const char* name : {"ens.0.case", "ens.0.00000.geo", "ens.0.00000_c.mat", "ens.0.00000_n.T"})
-    fs::copy_file(given(name), folder / name);
-  expectABar(folder / "ens.0.case", 2, "T_n");
-  const std::uintmax_t size = fs::file_size(folder / "ens.0.00000_n.T");
-  for (std::uintmax_t left = 0; left < size; left += left == 80 ? 20 : 40) {
-    fs::copy_file(given("ens.0.00000_n.T"), folder / "ens.0.00000_n.T",
-                  fs::copy_options::overwrite_existing);
-    fs::resize_file(folder / "ens.0.00000_n.T", left);
-    const Result<ReadMesh> read = readMesh(folder / "ens.0.case");
-    ASSERT_FALSE(read) << left;
-    EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
-  }
-}
-
-// VTK looks for what stands behind "number of steps" until it is there.
-TEST(VtkFormats, anEnSightCaseThatVtkNeverComesToTheEndOfIsGivenUp) {
-  const std::string front =
-                        "FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: 1 a.*.geo\n\nVARIABLE\n"
-                        "scalar per node: T a.*.T\n\nTIME\ntime set: 1\nnumber of steps: ",
-                    start = "\nfilename start number: 0\nfilename increment: 1\n";
-  for (const auto& [name, text] :
-       {std::pair{"count.case", front + "99999999999" + start + "time values: 0\n"},
-        std::pair{"line.case", front + "99999999999" + start}}) {
-    ReadOptions options;
-    options.patience = std::chrono::seconds(1);
-    const Result<ReadMesh> read = readMesh(fileWith(name, text), options);
-    ASSERT_FALSE(read) << name;
-    EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
-    EXPECT_NE(read.error().message.find("`readSeconds`"), std::string::npos) << read.error().text();
-  }
-}
-
 TEST(VtkFormats, cgnsZonesAreReadWithTheirSolution) {  // two files that the CGNS library wrote
   const ReadMesh mixed = expectABar(given("unstructured.cgns"), 1);
   EXPECT_EQ(mixed.report.split.cells[kHexahedronCell], 4u);
