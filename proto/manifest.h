@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "proto/error.h"
+#include "proto/label_names.h"
 #include "proto/level_error.h"
 
 namespace qtet {
@@ -58,8 +59,6 @@ struct Opening {
   [[nodiscard]] bool operator==(const Opening&) const = default;
 };
 
-/// Names of a label's values.
-using LabelNames = std::map<std::int32_t, std::string>;
 /// Cell fields of one integer that say what a cell is, such as its material. By a field's name
 /// without @TIME; what values are called, as far as that is known.
 using Labels = std::map<std::string, LabelNames, std::less<>>;

@@ -24,7 +24,7 @@ bool survivesAsFloat(const Lattice& lattice, const LatticePoint& point) {
 }  // namespace
 
 FileField fileField(const FieldInfo& info) {
-  return {info.name, info.type, info.components, {}, info.range};
+  return {info.name, info.type, info.components, {}, info.range, info.labelNames};
 }
 
 std::vector<double> dequantised(const FieldInfo& info, std::span<const std::int32_t> integers) {

@@ -23,6 +23,7 @@ struct FileField {
   FieldNumbers values;  ///< rounded and clamped to the type
   /// For colours: of vectors that of the magnitude; without it that of the values.
   std::optional<std::array<double, 2>> range{};
+  LabelNames labelNames{};  ///< as FieldInfo's
 };
 
 /// The contents of a mesh file. The viewed arrays must outlive the writer.

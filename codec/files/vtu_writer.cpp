@@ -78,6 +78,18 @@ std::string fieldsText(const std::string& tag, const std::vector<FileField>& fie
   return text + "      </" + tag + ">\n";
 }
 
+/// The names of each label's values, an array of the file each: "Material=steel", which holds 1.
+/// (No arrays of texts, because meshio refuses a file that has some.)
+std::string labelsText(const FileMesh& mesh) {
+  std::string text;
+  for (const FileField& field : mesh.cellFields)
+    for (const auto& [value, name] : field.labelNames)
+      text +=
+          "      <DataArray type=\"Int32\" Name=\"" + xmlText(field.name + kLabelNameSign + name) +
+          "\" NumberOfTuples=\"1\" format=\"ascii\">" + std::to_string(value) + "</DataArray>\n";
+  return text.empty() ? text : "    <FieldData>\n" + text + "    </FieldData>\n";
+}
+
 std::string headerText(const FileMesh& mesh, const Sizes& sizes, Arrays& arrays) {
   const bool wideHeader = sizes.largest > std::numeric_limits<std::uint32_t>::max();
   const std::string_view idType = sizes.wideIds ? "Int64" : "Int32";
@@ -85,7 +97,7 @@ std::string headerText(const FileMesh& mesh, const Sizes& sizes, Arrays& arrays)
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
       "byte_order=\"LittleEndian\" header_type=\"";
   text += wideHeader ? "UInt64" : "UInt32";
-  text += "\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" +
+  text += "\">\n  <UnstructuredGrid>\n" + labelsText(mesh) + "    <Piece NumberOfPoints=\"" +
           std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
           std::to_string(mesh.tetrahedra.size()) + "\">\n";
   text += fieldsText("PointData", mesh.pointFields, arrays);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/mesh/time_parents.h"
+#include "proto/label_names.h"
 
 namespace qtet {
 
@@ -69,6 +70,8 @@ struct FieldInfo {
   bool hasMissing = false;
   /// In a history that holds differences in time: what they are differences to.
   TimePrediction prediction{};
+  /// Of a label's values, as far as its file has names of them.
+  LabelNames labelNames{};
 
   /// The value of an integer of the component; NaN for a missing value.
   [[nodiscard]] double value(std::size_t component, std::int32_t integer) const {

@@ -227,6 +227,8 @@ LatticeMesh latticeMesh(const Manifest& manifest, const Refiner& refiner,
   mesh.boundary.assign(refiner.boundary().begin(), refiner.boundary().end());
   for (const std::uint32_t f : fields) {
     mesh.fields.push_back(fieldInfoOf(manifest.fields[f]));
+    if (const LabelNames* called = labelNamesOf(manifest, f))
+      mesh.fields.back().labelNames = *called;
     mesh.values.emplace_back(refiner.fieldValues(f).begin(), refiner.fieldValues(f).end());
   }
   return mesh;

@@ -44,7 +44,8 @@ Status writeLevel(const LogFile& log, std::uint32_t level, std::span<const std::
     const std::uint32_t f = fields[i];
     const ManifestField& known = manifest->fields[f];
     if (!holdsFields(ending, known.association)) continue;
-    const FieldInfo& info = infos.emplace_back(fieldInfoOf(known));
+    FieldInfo& info = infos.emplace_back(fieldInfoOf(known));
+    if (const LabelNames* called = labelNamesOf(*manifest, f)) info.labelNames = *called;
     const bool ofCells = isCellField(info);
     FileField& field =
         (ofCells ? file.mesh.cellFields : file.mesh.pointFields).emplace_back(fileField(info));

@@ -130,7 +130,8 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
                        .step = 1,
                        .minimum = minimumOf(extents),
                        .range = rangeOf(field),
-                       .hasMissing = out.nonFinite > 0};
+                       .hasMissing = out.nonFinite > 0,
+                       .labelNames = field.labelNames};
   if (!out.exact && largest > 0) {
     // A step of no normal number would lose its own digits; such a field is constant for every
     // purpose.

@@ -55,13 +55,12 @@ bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
   return different >= 2 && different <= kMaxLabelValues;
 }
 
-std::vector<std::size_t> labelsOf(const LatticeMesh& mesh, const Labels& known) {
+std::vector<std::size_t> labelsOf(const LatticeMesh& mesh) {
   std::vector<std::size_t> labels, asked;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const std::string& name = mesh.fields[f].name;
     if (!canBeLabel(mesh, f) || isAmong(kProcessNames, name)) continue;
-    const bool isKnown =
-        isAmong(kLabelNames, name) || known.contains(nameWithoutStep(name).value_or(name));
+    const bool isKnown = isAmong(kLabelNames, name) || !mesh.fields[f].labelNames.empty();
     (isKnown ? labels : asked).push_back(f);
   }
   if (asked.empty()) return labels;

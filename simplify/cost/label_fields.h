@@ -7,7 +7,6 @@
 
 #include "codec/mesh/mesh.h"
 #include "proto/limits.h"
-#include "proto/manifest.h"
 
 namespace qtet {
 
@@ -21,9 +20,9 @@ inline constexpr double kLabelNeighbours = 0.6;
 /// of 2 to kMaxLabelValues values. REQUIRES: field < mesh.fields.size().
 [[nodiscard]] bool canBeLabel(const LatticeMesh& mesh, std::size_t field);
 
-/// The fields that are labels, ascending. They can be, and are among `known`, have a usual name of
+/// The fields that are labels, ascending. They can be, and have names of values, a usual name of
 /// one, or neighbours that mostly agree. The numbers of processes are none.
-[[nodiscard]] std::vector<std::size_t> labelsOf(const LatticeMesh& mesh, const Labels& known = {});
+[[nodiscard]] std::vector<std::size_t> labelsOf(const LatticeMesh& mesh);
 
 /// The faces between cells of different labels, outward from the lower one, by their smallest
 /// vertices. REQUIRES: a cell field of one component.

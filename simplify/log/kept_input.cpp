@@ -235,7 +235,8 @@ Result<RestoredInput> restoreInput(const LogFile& log, const LatticeMesh& finest
     }
     out.lattice.values[f] = gathered(finest.values[f], info.components, from);
     out.mesh.fields.push_back({info.name, info.components, info.type,
-                               gathered(values, info.components, from), info.association});
+                               gathered(values, info.components, from), info.association,
+                               info.labelNames});
   }
   if (Status s = restoreOriginalCells(log, out); !s) return std::unexpected(s.error());
   return out;

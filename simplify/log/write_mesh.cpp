@@ -24,8 +24,12 @@ FileMesh fileMesh(const TetMesh& mesh) {
                      });
   for (const MeshField& field : mesh.fields)
     (isCellField(field) ? out.cellFields : out.pointFields)
-        .push_back({field.name, field.type, field.components,
-                    FieldNumbers(field.values.size(), [&field] { return field.values; })});
+        .push_back({field.name,
+                    field.type,
+                    field.components,
+                    FieldNumbers(field.values.size(), [&field] { return field.values; }),
+                    {},
+                    field.labelNames});
   return out;
 }
 

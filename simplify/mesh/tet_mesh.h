@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "codec/mesh/mesh.h"
-#include "proto/manifest.h"
 
 namespace qtet {
 

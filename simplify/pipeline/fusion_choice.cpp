@@ -76,10 +76,10 @@ std::vector<double> weightsOf(const QuantisedMesh& quantised,
 
 /// The labels' numbers: those found, those named, and the regions.
 Result<std::map<std::size_t, std::optional<double>>> namedLabels(
-    const PipelineOptions& options, const LatticeMesh& mesh, const Labels& known,
+    const PipelineOptions& options, const LatticeMesh& mesh,
     const std::optional<std::size_t>& regions) {
   std::map<std::size_t, std::optional<double>> out;
-  for (const std::size_t f : labelsOf(mesh, known)) out.emplace(f, std::nullopt);
+  for (const std::size_t f : labelsOf(mesh)) out.emplace(f, std::nullopt);
   if (regions) out.emplace(*regions, std::nullopt);
   for (const auto& [name, weight] : options.labelWeights) {
     const std::vector<std::uint32_t> meant = meantBy(name, true, mesh.fields);
@@ -125,7 +125,7 @@ Result<std::size_t> regionFieldOf(const std::string& name, const std::vector<Fie
 }  // namespace
 
 Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
-                                       const QuantisedMesh& quantised, const Labels& known,
+                                       const QuantisedMesh& quantised,
                                        std::vector<std::string>& notes) {
   const LatticeMesh& mesh = quantised.mesh;
   const auto named = namedWeights(options, mesh.fields);
@@ -143,7 +143,7 @@ Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
     out.regionField = *field;
   }
   if (options.algorithm == Algorithm::kPaper) return out;
-  const auto labels = namedLabels(options, mesh, known, out.regionField);
+  const auto labels = namedLabels(options, mesh, out.regionField);
   if (!labels) return std::unexpected(labels.error());
   out.cost.labels = labelCosts(mesh.fields, *out.cost.boundaryWeight, *labels);
   return out;

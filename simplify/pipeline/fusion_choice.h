@@ -11,12 +11,10 @@ namespace qtet {
 
 /// `options.fusion` with the fields of this mesh. A point field counts by its weight, 1 where none
 /// is given; one of integers counts only where one is. Constant fields do not count, nor those
-/// after kMaxCostComponents components; `notes` says which. `known` are fields whose file has names
-/// of their values. Errors: not-found (a name is no such
-/// field's), bad-input (a label that cannot be one).
+/// after kMaxCostComponents components; `notes` says which.
+/// Errors: not-found (a name is no such field's), bad-input (a label that cannot be one).
 [[nodiscard]] Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
                                                      const QuantisedMesh& quantised,
-                                                     const Labels& known,
                                                      std::vector<std::string>& notes);
 
 }  // namespace qtet

@@ -75,7 +75,6 @@ struct Run {
   std::optional<Opening> opening{};  ///< the same
   MovedFlips flips{};                ///< of the base mesh
   Units units{};
-  Labels names{};   ///< of values, in the input
   Labels labels{};  ///< for the manifest
   std::vector<std::uint32_t> labelFields{};
 
@@ -103,13 +102,15 @@ Status takeUnits(const std::vector<MeshField>& fields, Run& run) {
   return {};
 }
 
-/// The names of values that the file has.
-Labels namesOf(const std::vector<MeshField>& fields) {
-  Labels out;
-  for (const MeshField& field : fields)
-    if (!field.labelNames.empty())
-      out[std::string(nameWithoutStep(field.name).value_or(field.name))].insert(
-          field.labelNames.begin(), field.labelNames.end());
+/// Names of values that the label has.
+LabelNames namesOf(const LatticeMesh& mesh, std::size_t label) {
+  LabelNames out;
+  const FieldInfo& field = mesh.fields[label];
+  if (field.labelNames.empty()) return out;
+  for (const std::int32_t integer : mesh.values[label]) {
+    const auto named = field.labelNames.find(static_cast<std::int32_t>(field.value(0, integer)));
+    if (named != field.labelNames.end()) out.insert(*named);
+  }
   return out;
 }
 
@@ -129,7 +130,6 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
     if (Status added = addTimeStatistics(mesh.fields); !added)
       return std::unexpected(added.error());
   if (Status s = takeUnits(mesh.fields, run); !s) return std::unexpected(s.error());
-  run.names = namesOf(mesh.fields);
   putInOrder(seriesOrder(mesh.fields), mesh.fields);
   const bool keeps = run.options.keep.any();
   run.report.tetrahedraIn = mesh.tetrahedra.size();
@@ -174,8 +174,7 @@ constexpr double kFusingShare = 0.8;
 /// The history, with predictions of instants from others in the order of seriesOrder.
 Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
-  Result<FusionOptions> options =
-      fusionOptionsFor(run.options, quantised, run.names, run.report.notes);
+  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
   if (!options) return std::unexpected(options.error());
   const bool hasSeries = !seriesOf(std::span<const FieldInfo>(quantised.mesh.fields)).empty();
   options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
@@ -187,8 +186,9 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
     const std::string& name = quantised.mesh.fields[label.field].name;
     const std::string series(nameWithoutStep(name).value_or(name));
     run.labelFields.push_back(static_cast<std::uint32_t>(label.field));
-    run.labels[series] = run.names[series];
-    if (label.weight > 0) run.report.labelWeights.emplace_back(name, label.weight);
+    run.labels[series].merge(namesOf(quantised.mesh, label.field));
+    if (run.report.boundaryWeight && label.weight > 0)
+      run.report.labelWeights.emplace_back(name, label.weight);
   }
   Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
   if (!history) return history;

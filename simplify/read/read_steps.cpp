@@ -19,6 +19,7 @@
 #include "simplify/read/text/text_readers.h"
 #include "simplify/read/vtk/run_vtk.h"
 #include "simplify/read/vtu/read_vtu.h"
+#include "simplify/read/vtu/vtu_label_names.h"
 #include "simplify/read/xdmf/read_xdmf.h"
 
 namespace qtet {
@@ -90,6 +91,8 @@ Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& pa
   ReadReport step;
   Result<CellMesh> cells = readVtu(*file, *document, options.fields, step);
   if (!cells) return std::unexpected(cells.error());
+  if (Status named = readVtuLabelNames(*file, *document, *cells); !named)
+    return std::unexpected(named.error());
   addStep(std::move(step), true, report);
   std::vector<TimedCells> out;
   out.push_back({*time ? shortestText(**time) : "", std::move(*cells)});

@@ -208,7 +208,7 @@ TetMesh ballSample() {
         return p;
       });
   // Core, mantle and crust, shell by shell of cubes.
-  MeshField layer{"Layer", 1, "int32", {}, "cell"};
+  MeshField layer{"Layer", 1, "int32", {}, "cell", {{1, "core"}, {2, "mantle"}, {3, "crust"}}};
   const CubeGrid corners{{kCubes - 1, kCubes - 1, kCubes - 1}};
   corners.forEachPoint([&](const std::array<VertexId, 3>& at) {
     VertexId depth = kCubes;

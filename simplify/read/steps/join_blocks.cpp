@@ -36,6 +36,7 @@ MeshField commonField(const MeshField& field, const std::vector<CellMesh>& block
     isInAll = isInAll && there;
     if (!there) continue;
     if (there->components != out.components) return {};
+    out.labelNames.insert(there->labelNames.begin(), there->labelNames.end());
     out.type = commonType(out.type, there->type);
   }
   return isInAll || isFloatType(out.type) ? out : MeshField{};

@@ -71,8 +71,12 @@ class Gmsh {
                       "the file does not begin with $MeshFormat; save it with Gmsh again");
     if (name == "$MeshFormat")
       readFormat();
+    else if (name == "$PhysicalNames")
+      readNames();
     else if (name == "$Entities" && isNew())
       readEntities();
+    else if (name == "$PartitionedEntities" && isNew())
+      readPartitions();
     else if (name == "$Nodes")
       isNew() ? readNodes() : readNodes2();
     else if (name == "$Elements")
@@ -146,17 +150,48 @@ class Gmsh {
     return in_.fits(count, bytes_ ? inBytes : inText, what);
   }
 
-  void readEntities() {
+  /// Text, also in a file of bytes: "3 7 \"steel\"", a line each. Those of volumes alone count.
+  void readNames() {
+    const auto count = in_.number<std::uint64_t>("the number of physical names");
+    if (!in_.fits(count, 7, "physical names")) return;
+    for (std::uint64_t i = 0; i < count && !in_.failed(); ++i) {
+      const auto dimension = in_.number<int>("a dimension");
+      const auto group = in_.number<std::int32_t>("a physical group");
+      std::string_view name = in_.line();
+      if (name.size() < 2 || name.front() != '"' || name.back() != '"')
+        return in_.fail(ErrorCode::kBadInput,
+                        "a physical name in quotes should be here; export the mesh again");
+      name = name.substr(1, name.size() - 2);
+      if (dimension == 3 && !name.empty()) names_.emplace(group, name);
+    }
+  }
+
+  void readEntities(bool arePartitioned = false) {
     std::array<std::uint64_t, 4> counts{};
     for (std::uint64_t& count : counts) count = size("a number of entities");
     for (std::size_t dimension = 0; dimension < 4; ++dimension) {
       if (!fits(counts[dimension], 10, 28, "entities")) return;
-      for (std::uint64_t i = 0; i < counts[dimension] && !in_.failed(); ++i) readEntity(dimension);
+      for (std::uint64_t i = 0; i < counts[dimension] && !in_.failed(); ++i)
+        readEntity(dimension, arePartitioned);
     }
   }
 
-  void readEntity(std::size_t dimension) {
+  void readPartitions() {
+    size("the number of partitions");
+    const std::uint64_t ghosts = size("a number of ghost entities");
+    if (!fits(ghosts, 4, 8, "ghost entities")) return;
+    for (std::uint64_t i = 0; i < ghosts; ++i) integer("a ghost entity"), integer("its partition");
+    readEntities(true);
+  }
+
+  void readEntity(std::size_t dimension, bool isPartitioned) {
     const std::int64_t tag = integer("an entity's number");
+    if (isPartitioned) {
+      integer("the dimension of an entity's parent"), integer("an entity's parent");
+      const std::uint64_t partitions = size("a number of partitions");
+      if (!fits(partitions, 2, 4, "partitions")) return;
+      for (std::uint64_t i = 0; i < partitions; ++i) integer("a partition");
+    }
     for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) real("an entity's extent");
     const std::uint64_t groups = size("a number of physical groups");
     if (!fits(groups, 2, 4, "physical groups")) return;
@@ -391,7 +426,8 @@ class Gmsh {
     if (Status chosen = chooseSteps(); !chosen) return std::unexpected(chosen.error());
     const char* type = integerTypeOf(groups_);
     if (std::ranges::any_of(groups_, [](double g) { return g != 0; }))
-      out_.fields.push_back({"gmsh:physical", 1, type, std::move(groups_), "cell"});
+      out_.fields.push_back(
+          {"gmsh:physical", 1, type, std::move(groups_), "cell", std::move(names_)});
     return std::move(out_);
   }
 
@@ -405,6 +441,7 @@ class Gmsh {
   Numbers nodes_, elements_;
   std::size_t nodeCount_ = 0;
   std::unordered_map<std::int64_t, std::int64_t, MixedHash> groupOf_;  ///< of a volume
+  LabelNames names_;                                                   ///< of volumes' groups
   std::vector<double> times_;                                          ///< one a field
   std::vector<double> groups_;                                         ///< one a cell
   std::vector<VertexId> ids_, ordered_;

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "codec/files/vtu_writer.h"
 #include "simplify/read/options/xml_place.h"
 
 namespace qtet {
@@ -295,16 +296,26 @@ class DocumentParser {
       piece().coordinates = std::move(arrays_.front());
     else if (section_ == Section::kCells && !arrays_.empty())
       piece().cellArrays = std::move(arrays_);
-    else if (section_ == Section::kFieldData && !isInPiece_ && !arrays_.empty() && !out_.time)
-      out_.time = std::move(arrays_.front());
+    else if (section_ == Section::kFieldData && !isInPiece_)
+      takeFileData();
     arrays_.clear();
     section_ = Section::kNone;
   }
 
+  void takeFileData() {
+    for (VtuArray& array : arrays_) {
+      if (array.name != kTimeName)
+        out_.labelNames.push_back(std::move(array));
+      else if (!out_.time)
+        out_.time = std::move(array);
+    }
+  }
+
   void startArray(std::string_view name, const Attributes& attributes) {
-    // of the whole file's data the time alone counts
+    // the time and the names of labels alone count of the whole file's data
+    const std::string called = attributes.text("Name");
     if (section_ == Section::kFieldData &&
-        (name != "DataArray" || attributes.text("Name") != kTimeName))
+        (name != "DataArray" || (called != kTimeName && !called.contains(kLabelNameSign))))
       return;
     const std::string of = "<" + std::string(name.substr(0, 40)) + "> in <" + sectionName_ + ">";
     if (name != "DataArray" && name != "Array")

@@ -316,6 +316,38 @@ std::string gmshText(const std::string& group) {
          group + " 1 1 2 3 4\n$EndElements\n";
 }
 
+TEST(ReadGmsh, physicalVolumesHaveTheirNames) {
+  const std::string names =
+      "$PhysicalNames\n3\n2 9 \"wall\"\n3 9 \"hot steel\"\n3 4 \"\"\n$EndPhysicalNames\n";
+  for (const bool bytes : {false, true}) {
+    std::string text = gmsh22(bytes);
+    text.insert(text.find("$EndMeshFormat\n") + 15, names);
+    const auto read = readMesh(fileWith("a.msh", text));
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->mesh.fields[2].labelNames, (LabelNames{{9, "hot steel"}}));
+    text.replace(text.find("\"hot"), 1, " ");
+    EXPECT_FALSE(readMesh(fileWith("a.msh", text))) << "no name in quotes";
+    const auto newer = readMesh(fileWith("a.msh", gmsh41(bytes)));
+    ASSERT_TRUE(newer) << newer.error().text();
+    EXPECT_EQ(newer->mesh.fields[2].labelNames, (LabelNames{{9, "solid"}}));
+  }
+}
+
+/// A volume of group 7 that is a partition of volume 1.
+TEST(ReadGmsh, cellsOfPartitionsHaveTheirGroup) {
+  const auto read = readMesh(
+      fileWith("a.msh",
+               "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+               "$Entities\n0 0 0 1\n1 0 0 0 1 1 1 1 7 0\n$EndEntities\n"
+               "$PartitionedEntities\n2 1\n8 2\n0 0 0 1\n2 3 1 2 1 2 0 0 0 1 1 1 1 7 0\n"
+               "$EndPartitionedEntities\n"
+               "$Nodes\n1 4 1 4\n3 2 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
+               "$Elements\n1 1 1 1\n3 2 4 1\n1 1 2 3 4\n$EndElements\n"));
+  ASSERT_TRUE(read) << read.error().text();
+  ASSERT_EQ(read->mesh.fields.size(), 1u);
+  EXPECT_EQ(read->mesh.fields[0].values, std::vector<double>{7});
+}
+
 TEST(ReadGmsh, textAndBytesOfBothVersionsGiveOneMesh) {
   for (const bool bytes : {false, true}) {
     for (const std::string& text : {gmsh41(bytes), gmsh22(bytes)}) {

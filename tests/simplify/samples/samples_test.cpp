@@ -107,7 +107,7 @@ TEST(Samples, areTheSameBitsEverywhere) {
   EXPECT_EQ(sha256Hex(vtuBytes(springSample())),
             "a9f51e116c1ff5b713ad0ae885750ac52250967326cdf9854a7741264345306b");
   EXPECT_EQ(sha256Hex(vtuBytes(ballSample())),
-            "c973fc8d34be64d69a7b41b48cc6353d749a7cbb0c7e6999e8fe17bd8b1dbc02");
+            "3b9b44ecead097e6e33258324a7a194885b1073dd76447cd67b06b189ab9547b");
   EXPECT_EQ(sha256Hex(vtuBytes(elbowSample())),
             "44a12ba93dee376fa670523297f0c01466247d2ab735cd3c706a5fd74e3d8b54");
 }

@@ -27,7 +27,10 @@
 #include <limits>
 #include <random>
 
+#include "codec/files/vtu_writer.h"
+#include "codec/refine/log_file.h"
 #include "simplify/log/write_mesh.h"
+#include "simplify/pipeline/pipeline.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/vtu/grid_parts.h"
 #include "simplify/samples/samples.h"
@@ -43,6 +46,29 @@ using testing::expectSame;
 using testing::fileWith;
 using testing::readByOurs;
 using testing::readByVtk;
+
+TEST(ReadVtu, namesOfValuesComeBackFromFilesAndLogs) {
+  TetMesh mesh = boxSample();
+  MeshField part{"Part<1>", 1,      "int32",
+                 {},        "cell", {{-3, "steel & oil"}, {5, "Öl = 1"}, {9, "no"}}};
+  for (std::size_t c = 0; c < mesh.tetrahedra.size(); ++c)
+    part.values.push_back(c < mesh.tetrahedra.size() / 2 ? -3 : 5);
+  mesh.fields.push_back(part);
+  const auto read = [](const Bytes& file) {
+    Result<ReadMesh> found = readMesh(fileWith("names.vtu", std::string(file.begin(), file.end())));
+    EXPECT_TRUE(found) << found.error().text();
+    return found ? found->mesh.fields.back().labelNames : LabelNames{};
+  };
+  EXPECT_EQ(read(vtuBytes(mesh)), part.labelNames);
+  const Result<PipelineOutput> made = simplifyToLog(std::move(mesh), {});
+  ASSERT_TRUE(made) << made.error().text();
+  LabelNames known = part.labelNames;
+  known.erase(9);  // no cell has it
+  EXPECT_EQ(made->report.manifest.labels, (Labels{{part.name, known}}));
+  const Result<LogFile> log = LogFile::fromBytes(made->log.bytes().value());
+  ASSERT_TRUE(log);
+  EXPECT_EQ(read(vtuBytes(meshAtLevel(*log, 0).value())), known);
+}
 
 template <class Array>
 void addArray(vtkFieldData& to, const char* name, int components, vtkIdType tuples, bool isText) {
