@@ -18,6 +18,11 @@ namespace qtet {
   return out;
 }
 
+[[nodiscard]] inline nlohmann::ordered_json fieldErrorJson(const FieldError& error, bool isLabel) {
+  if (isLabel) return {{"wrong", error.rms}};
+  return {{"rms", error.rms}, {"max", error.max}};
+}
+
 /// `isLabel`: which of the error's fields are labels.
 [[nodiscard]] inline nlohmann::ordered_json toJson(const LevelError& error,
                                                    const std::vector<bool>& isLabel) {
@@ -30,13 +35,8 @@ namespace qtet {
       {"volumeLost", error.volumeLost},
       {"volumeGained", error.volumeGained},
       {"fields", nlohmann::ordered_json::array()}};
-  for (std::size_t f = 0; f < error.fields.size(); ++f) {
-    const auto& [rms, max] = error.fields[f];
-    if (isLabel[f])
-      out["fields"].push_back({{"wrong", rms}});
-    else
-      out["fields"].push_back({{"rms", rms}, {"max", max}});
-  }
+  for (std::size_t f = 0; f < error.fields.size(); ++f)
+    out["fields"].push_back(fieldErrorJson(error.fields[f], isLabel[f]));
   return out;
 }
 

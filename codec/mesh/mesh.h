@@ -70,7 +70,7 @@ struct FieldInfo {
   bool hasMissing = false;
   /// In a history that holds differences in time: what they are differences to.
   TimePrediction prediction{};
-  /// Of a label's values, as far as its file has names of them.
+  /// The names of a label's values, as far as its file has some.
   LabelNames labelNames{};
 
   /// The value of an integer of the component; NaN for a missing value.

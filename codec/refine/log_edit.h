@@ -23,6 +23,8 @@ struct NewField {
   std::vector<FieldError> errors;  ///< one a level; unused where the log has none of the level
   /// Its parents: below the number of the log's fields one of them, else an added one before it.
   TimePrediction prediction{};
+  /// The names of its values where it is a label; `errors` are those of one then.
+  std::optional<LabelNames> labelNames{};
 };
 
 /// A log whose blocks lie in another log and in new fields. Both must outlive it.

@@ -3,9 +3,11 @@
 #include <sstream>
 
 #include "proto/field_key.h"
+#include "proto/level_error_json.h"
 #include "proto/limits.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/commands/command_line.h"
+#include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/edited_log_report.h"
 #include "simplify/commands/progress.h"
@@ -44,7 +46,8 @@ void printAdded(const std::vector<const NewField*>& fields, std::ostream& out) {
     out << info.association << " field " << printable(info.name) << ": " << bytesOf(*field)
         << " bytes, " << info.bits << " bits, step " << info.step;
     if (!field->errors.empty())
-      out << "; base mesh rms " << 100 * field->errors.front().rms << " %";
+      out << "; base mesh "
+          << fieldErrorText(fieldErrorJson(field->errors.front(), field->labelNames.has_value()));
     out << "\n";
   }
 }

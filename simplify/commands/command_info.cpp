@@ -132,9 +132,8 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
          series.name + ": " + std::to_string(series.fields.size()) + " instants, " +
              brief(series.times.front()) + " to " + brief(series.times.back()) +
              (timeUnit(log.manifest).empty() ? "" : " ") + std::string(timeUnit(log.manifest)));
-  for (std::size_t f = 0; f < log.manifest.fields.size(); ++f)
-    if (const LabelNames* names = labelNamesOf(log.manifest, f))
-      line(console, "label", fieldKey(log.manifest, f) + labelText(*names));
+  for (const auto& [name, values] : log.manifest.labels)
+    line(console, "label", name + labelText(values));
   if (info["fields"].empty()) return;
   console.out << "\n";
   std::vector<std::vector<std::string>> rows{

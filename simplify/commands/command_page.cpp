@@ -118,7 +118,7 @@ Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
   const std::vector<bool> isLabel = labelsAmong(log->manifest);
   for (std::size_t f = 0; f < shown; ++f)
     out += ", " + fieldKey(log->manifest, f) + " " +
-           fieldErrorText(toJson(*error, isLabel)["fields"][f]);
+           fieldErrorText(fieldErrorJson(error->fields[f], isLabel[f]));
   if (shown < error->fields.size())
     out += ", and " + std::to_string(error->fields.size() - shown) + " more fields";
   return out;

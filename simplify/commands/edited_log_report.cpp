@@ -8,6 +8,7 @@
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
 #include "proto/field_key.h"
+#include "proto/level_error_json.h"
 #include "simplify/commands/written_log.h"
 
 namespace qtet {
@@ -26,7 +27,7 @@ OrderedJson toJson(const NewField& field) {
                      {"missingValues", info.hasMissing},
                      {"bytes", bytesOf(field)}};
   if (!field.errors.empty())
-    out["error"] = {{"rms", field.errors.front().rms}, {"max", field.errors.front().max}};
+    out["error"] = fieldErrorJson(field.errors.front(), field.labelNames.has_value());
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include "codec/refine/log_file.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
+#include "simplify/cost/label_fields.h"
 #include "simplify/mesh/history_levels.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/series/time_differences.h"
@@ -83,6 +84,7 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
       manifest_(std::move(manifest)),
       history_(std::move(history)),
       fused_(std::make_unique<FusedValues>(*history_)) {
+  for (const auto& [name, values] : manifest_.labels) labels_.insert(name);
   FusionHistory& h = history_->history;
   HistoryLevels levels(h);
   levels.moveTo(levels.finest());
@@ -243,6 +245,18 @@ std::map<const FieldAdder::SeriesState*, std::optional<FieldInfo>> FieldAdder::c
   return out;
 }
 
+/// A label of the log, or one by labelsOf.
+bool FieldAdder::isLabel(const std::vector<Tetrahedron>& tetrahedra, const FieldInfo& info,
+                         const std::vector<std::int32_t>& values) const {
+  if (!isCellField(info) || isFloatType(info.type)) return false;
+  if (labels_.contains(nameWithoutStep(info.name).value_or(info.name))) return true;
+  LatticeMesh alone;
+  alone.tetrahedra = tetrahedra;
+  alone.fields = {info};
+  alone.values = {values};
+  return !labelsOf(alone).empty();
+}
+
 Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
   const FieldScales all = scalesOf(mesh.fields);
   const auto common = commonScales(mesh);
@@ -261,6 +275,7 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
     }
     const std::vector<std::uint32_t>& logs = isCellField(info) ? match_.tetrahedra : match_.points;
     Item& item = out.emplace_back();
+    item.isLabel = isLabel(mesh.tetrahedra, info, quantised->values);
     item.values = inLogOrder(quantised->values, info.components, logs);
     if (!isCellField(info)) item.values = fused_->of(std::move(item.values), info.components);
     if (!quantised->missing.empty())
@@ -281,6 +296,8 @@ Status FieldAdder::measure(std::span<Item> items) {
   measure.countsRounding = true;
   measure.threads = options_.threads;
   measure.progress = options_.progress;
+  for (std::uint32_t f = 0; f < items.size(); ++f)
+    if (items[f].isLabel) measure.labels.push_back(f);
   FusionHistory& h = history_->history;
   // the others may have missing values
   const auto others = static_cast<std::ptrdiff_t>(h.fields.size() - items.size());
@@ -330,6 +347,8 @@ Result<FieldAdder::Item> FieldAdder::itemOf(const Instant& instant) const {
       historyValues(log_, *history_, static_cast<std::uint32_t>(instant.number));
   if (!values) return std::unexpected(values.error());
   Item out{instant.info, std::move(*values), {}, {}, true};
+  out.isLabel = isCellField(instant.info) &&
+                labels_.contains(nameWithoutStep(instant.info.name).value_or(instant.info.name));
   if (!instant.info.hasMissing) return out;
   const std::size_t n = instant.info.components;
   const std::size_t finest =
@@ -401,6 +420,10 @@ void FieldAdder::complete(std::vector<Item>& items, Numbers& numbers) {
     numbers.all.push_back(number);
     if (item.wasThere) added_.again.push_back(added_.fields.size());
     added_.fields.push_back({manifestFieldOf(item.info), {}, std::move(item.errors), {}});
+    if (item.isLabel) {
+      labels_.emplace(nameWithoutStep(item.info.name).value_or(item.info.name));
+      added_.fields.back().labelNames = item.info.labelNames;
+    }
     const auto name = instantName(item.info.name);
     if (!name) continue;
     keepScale(item.info, true);

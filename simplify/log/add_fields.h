@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -76,6 +77,7 @@ class FieldAdder {
     std::vector<std::uint8_t> missing;  // of the last level's elements; empty if none is
     std::vector<FieldError> errors;     // one a level
     bool wasThere = false;              // an instant that is coded again
+    bool isLabel = false;
   };
   /// A scale of a series, of the fewest bits that an instant has.
   struct Scale {
@@ -103,6 +105,8 @@ class FieldAdder {
   FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest manifest,
              std::unique_ptr<LogHistory> history);
   [[nodiscard]] Status matchTo(const TetMesh& mesh);
+  [[nodiscard]] bool isLabel(const std::vector<Tetrahedron>& tetrahedra, const FieldInfo& info,
+                             const std::vector<std::int32_t>& values) const;
   [[nodiscard]] Result<std::vector<Item>> itemsOf(const TetMesh& mesh);
   [[nodiscard]] Status addParents(const std::vector<Item>& items, Numbers& numbers);
   [[nodiscard]] Status measure(std::span<Item> items);
@@ -128,6 +132,7 @@ class FieldAdder {
   const LogFile& log_;
   AddFieldsOptions options_;
   Manifest manifest_;
+  std::set<std::string, std::less<>> labels_;  // of the log and those added, without @TIME
   std::unique_ptr<LogHistory> history_;
   std::unique_ptr<FusedValues> fused_;
   std::vector<Tetrahedron> finest_;  // the last level's cells

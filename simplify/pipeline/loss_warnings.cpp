@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
+#include "proto/field_key.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/mesh/vector3.h"
@@ -77,23 +81,30 @@ std::string reasonOf(const Manifest& manifest, const LossFacts& facts) {
   return "too few cells are left for this shape, " + std::to_string(cells) + ": " + enough;
 }
 
-/// One a label that the base mesh does not keep. It names the coarsest measured level that does, as
-/// all finer ones do.
+/// One a label that the base mesh does not keep, of its worst instant. It names the coarsest
+/// measured level that does keep it, as all finer ones do.
 std::vector<std::string> labelWarnings(const Manifest& manifest) {
+  std::map<std::string_view, std::size_t> worst;
+  const std::optional<LevelError>& base = manifest.levels.front().error;
+  for (std::size_t f = 0; base && f < manifest.fields.size(); ++f) {
+    if (labelNamesOf(manifest, f) == nullptr || base->fields[f].rms <= kLabelErrorWarned) continue;
+    const std::string_view name = manifest.fields[f].name;
+    std::size_t& of = worst.emplace(nameWithoutStep(name).value_or(name), f).first->second;
+    if (base->fields[f].rms > base->fields[of].rms) of = f;
+  }
   std::vector<std::string> out;
-  for (std::size_t f = 0; f < manifest.fields.size(); ++f) {
+  for (const auto& [name, f] : worst) {
     const auto isOff = [&](const ManifestLevel& level) {
       return level.error && level.error->fields[f].rms > kLabelErrorWarned;
     };
-    if (labelNamesOf(manifest, f) == nullptr || !isOff(manifest.levels.front())) continue;
     std::size_t level = manifest.levels.size() - 1;
     for (std::size_t coarser = level; coarser-- > 0 && !isOff(manifest.levels[coarser]);)
       if (manifest.levels[coarser].error) level = coarser;
-    out.push_back(percent(manifest.levels.front().error->fields[f].rms) +
+    out.push_back(percent(base->fields[f].rms) +
                   " of the volume of the base mesh have another label " + fieldKey(manifest, f) +
                   " than the original: give `baseCells` " +
                   std::to_string(manifest.levels[level].tetrahedra) + ", or a larger weight of " +
-                  fieldKey(manifest, f) + " by `labelWeights`");
+                  std::string(name) + " by `labelWeights`");
   }
   return out;
 }

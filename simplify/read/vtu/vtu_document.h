@@ -71,7 +71,7 @@ struct VtuDocument {
   VtuCompressor compressor = VtuCompressor::kNone;
   bool hasTimeSteps = false;     ///< several steps in one file, of which arrays tell theirs
   std::optional<VtuArray> time;  ///< of <FieldData>: the time of this one step
-  /// Of <FieldData>: arrays such as "Material=steel" (vtu_label_names.h).
+  /// Arrays of <FieldData> such as "Material=steel" (vtu_label_names.h).
   std::vector<VtuArray> labelNames;
   bool appendedIsBase64 = true;
   std::optional<std::uint64_t> appendedBegin;  ///< the first byte of appended data

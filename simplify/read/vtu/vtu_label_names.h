@@ -1,5 +1,5 @@
-// The names of a label's values in a .vtu file. Each is an array among the data of the file, such as
-// "Material=steel", that holds one integer. Our writer makes them.
+// The names of a label's values in a .vtu file. Each is an array among the data of the file, such
+// as "Material=steel", that holds one integer. Our writer makes them.
 #pragma once
 
 #include "simplify/read/vtu/vtu_document.h"

@@ -179,6 +179,11 @@ TEST(AddFields, errorsAreMeasuredWhereTheLogKnowsThemAndAbsentElsewhere) {
     const Manifest manifest = manifestOf(after.index()).value();
     const Manifest before = manifestOf(log.index()).value();
     ASSERT_EQ(before.levels.front().error.has_value(), measured);
+    EXPECT_EQ(manifest.labels, (Labels{{"Region", {}}}));
+    const auto region = static_cast<std::size_t>(
+        std::ranges::find(manifest.fields, "Region", &ManifestField::name) -
+        manifest.fields.begin());
+    if (measured) EXPECT_EQ(manifest.levels.front().error->fields[region].max, 1) << "of a label";
     for (const ManifestLevel& level : manifest.levels) {
       ASSERT_EQ(level.error.has_value(), before.levels[level.level].error.has_value());
       if (!level.error) continue;
