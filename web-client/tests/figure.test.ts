@@ -24,6 +24,7 @@ const kLegend: LegendTexts = {
   gradient: '',
   ticks: [],
   marks: [],
+  labels: [],
   notes: [],
   missing: '',
 };

@@ -15,6 +15,9 @@ const kLine = 1.4;
 const kBarWidth = 380;
 const kBarHeight = 12;
 const kAxis = 34;
+/** Of a list of labels: the swatch with the space round it, and a letter of kSmallText. */
+const kSwatch = 40;
+const kLetter = 7;
 /** Texts leave at least this share of the height to the mesh. */
 const kMinFree = 0.4;
 
@@ -51,6 +54,8 @@ export interface LegendTexts {
   gradient: string;
   ticks: {at: number; label: string}[];
   marks: number[];
+  /** Those that are listed instead of a bar; none: the bar is drawn. Without a colour: a remark. */
+  labels: {text: string; color: string}[];
   notes: string[];
   /** The colour of what has no value; empty: everything has one. */
   missing: string;
@@ -90,11 +95,17 @@ export function legendOf(root: ParentNode): LegendTexts | null {
       label: its.textContent,
     })),
     marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
+    labels: part('labels').hidden ? [] : [...part('labels').children].map(labelOf),
     notes: notes.filter(Boolean),
     missing: notes.at(-1)
       ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor
       : '',
   };
+}
+
+function labelOf(row: Element): {text: string; color: string} {
+  const swatch = row.querySelector('i');
+  return {text: row.textContent, color: swatch?.style.background ?? ''};
 }
 
 /** [share, colour] of a CSS gradient's stops. Without shares they are evenly spaced. */
@@ -119,8 +130,18 @@ export function refusalOf({width, height}: Pick<Figure, 'width' | 'height'>): st
 export const unitOf = ({width, height}: Pick<Figure, 'width' | 'height'>): number =>
   Math.sqrt((width * height) / kUnitPixels);
 
-const legendHeight = ({notes}: LegendTexts): number =>
-  kText * kLine + 8 + kBarHeight + 6 + kSmallText * kLine * (1 + notes.length);
+/** As many as the longest text leaves room for in a bar's width. */
+function columnsOf({labels}: LegendTexts): number {
+  const longest = Math.max(...labels.map(({text}) => text.length));
+  return Math.max(1, Math.floor(kBarWidth / (kSwatch + kLetter * longest)));
+}
+
+function legendHeight(legend: LegendTexts): number {
+  const {labels, notes} = legend;
+  const rows = labels.length > 0 ? Math.ceil(labels.length / columnsOf(legend)) : 1;
+  const bar = labels.length > 0 ? 0 : kBarHeight + 6;
+  return kText * kLine + 8 + bar + kSmallText * kLine * (rows + notes.length);
+}
 
 /** The frame of the figure's mesh. `canvas` is the page's, in CSS pixels. */
 export function frameOf(
@@ -225,31 +246,68 @@ function drawLegend(
   const name = unit ? `${legend.name} (${unit})` : legend.name;
   pen.write(name, kText, left, y, {bold: true, maxWidth: free});
   y += kText * (kLine - 1) + 8;
-  const gradient = context.createLinearGradient(left, 0, left + bar, 0);
+  if (legend.labels.length > 0) y = drawLabels(pen, legend, {left, top: y, width: bar});
+  else y = drawBar(pen, legend, {left, top: y, width: bar});
+  legend.notes.forEach((note, i) => {
+    y += kSmallText * kLine;
+    const isMissing = legend.missing !== '' && i === legend.notes.length - 1;
+    if (isMissing) drawSwatch(context, legend.missing, left, y);
+    const indent = isMissing ? 26 : 0;
+    pen.write(note, kSmallText, left + indent, y, {soft: true, maxWidth: bar - indent});
+  });
+}
+
+interface Place {
+  left: number;
+  top: number;
+  width: number;
+}
+
+/** Beside a text whose foot is at y. */
+function drawSwatch(
+  context: OffscreenCanvasRenderingContext2D,
+  color: string,
+  x: number,
+  y: number,
+): void {
+  context.fillStyle = color;
+  context.fillRect(x, y - 9, 18, 10);
+}
+
+/** Returns the foot of the last row. */
+function drawLabels(pen: Pen, legend: LegendTexts, {left, top, width}: Place): number {
+  const columns = columnsOf(legend);
+  const each = width / columns;
+  const footOf = (i: number): number =>
+    top + kSmallText + Math.floor(i / columns) * kSmallText * kLine;
+  legend.labels.forEach(({text, color}, i) => {
+    const x = left + (i % columns) * each;
+    const y = footOf(i);
+    if (color) drawSwatch(pen.context, color, x, y);
+    const indent = color ? 26 : 0;
+    pen.write(text, kSmallText, x + indent, y, {soft: true, maxWidth: each - indent - 6});
+  });
+  return footOf(legend.labels.length - 1);
+}
+
+/** Returns the foot of its numbers. */
+function drawBar(pen: Pen, legend: LegendTexts, {left, top, width}: Place): number {
+  const {context} = pen;
+  const gradient = context.createLinearGradient(left, 0, left + width, 0);
   for (const stop of stopsOf(legend.gradient)) gradient.addColorStop(...stop);
   context.fillStyle = gradient;
   context.beginPath();
-  context.roundRect(left, y, bar, kBarHeight, kBarHeight / 2);
+  context.roundRect(left, top, width, kBarHeight, kBarHeight / 2);
   context.fill();
-  for (const at of legend.marks) drawMark(context, left + at * bar, y);
-  y += kBarHeight;
+  for (const at of legend.marks) drawMark(context, left + at * width, top);
+  const y = top + kBarHeight;
   for (const {at, label} of legend.ticks) {
-    const x = left + at * bar;
+    const x = left + at * width;
     context.fillStyle = pen.looks.softInk;
     context.fillRect(x - 0.5, y, 1, 4);
     pen.write(label, kSmallText, x, y + 6 + kSmallText, {align: 'center', soft: true});
   }
-  y += 6 + kSmallText;
-  legend.notes.forEach((note, i) => {
-    y += kSmallText * kLine;
-    const isMissing = legend.missing !== '' && i === legend.notes.length - 1;
-    if (isMissing) {
-      context.fillStyle = legend.missing;
-      context.fillRect(left, y - 9, 18, 10);
-    }
-    const indent = isMissing ? 26 : 0;
-    pen.write(note, kSmallText, left + indent, y, {soft: true, maxWidth: bar - indent});
-  });
+  return y + 6 + kSmallText;
 }
 
 /** The value of an isosurface or the end of a threshold. */
