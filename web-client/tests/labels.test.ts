@@ -25,19 +25,22 @@ const columns = (): Uint32Array => Uint32Array.from([5, 4, 3]);
 describe('the labels of a manifest', () => {
   const kInt32 = 4,
     kLabelsFollow = 32;
-  const kFieldBytes = 2 + 2 + 4 * 8,
-    kFirstTypeAt = 64 + 5 + 9 + 32 + 2;
+  const kFieldsAt = 64 + 5 + 9 + 4 * 8,
+    kBehindName = 2 + 4 * 8;
 
-  /** Fields p (points), a and b@0 (cells), with so many labels in `bytes`. */
-  function headWith(bytes: number[], {minor = 5, type = kInt32} = {}): Uint8Array {
-    const head = fakeHead({fields: ['p'], cellFields: ['a', 'b@0'], chunks: 1});
+  /** Fields p (points) and `cells`, and so many labels as `bytes` has. */
+  function headWith(
+    bytes: number[],
+    {minor = 5, type = kInt32, cells = ['a', 'b@0']} = {},
+  ): Uint8Array {
+    const head = fakeHead({fields: ['p'], cellFields: cells, chunks: 1});
     const tableAt = 64 + new DataView(head.buffer).getUint32(24, true);
-    for (const [at, more] of [
-      [kFirstTypeAt, 0],
-      [kFirstTypeAt + kFieldBytes, 0],
-      [kFirstTypeAt + 2 * kFieldBytes, 2],
-    ] as const)
-      head[at + more] = type;
+    let at = kFieldsAt;
+    for (const its of ['p', ...cells]) {
+      at += text(its).length;
+      head[at] = type;
+      at += kBehindName;
+    }
     head[tableAt - 1] = kLabelsFollow;
     const whole = Uint8Array.from([
       ...head.subarray(0, tableAt),
@@ -114,6 +117,14 @@ describe('the labels of a manifest', () => {
     ['cut off', [1, ...text('a'), 9], 'ends too early'],
   ])('%s areRefused', (_, bytes, message) => {
     expect(() => read(bytes)).toThrow(message);
+  });
+
+  test('areInTheOrderOfTheirBytes', () => {
+    const cells = ['\uff01', '\u{1f600}']; // UTF-16 has them in the other order
+    const labels = cells.flatMap((cell) => [...text(cell), 0]);
+    expect([...read([2, ...labels], {cells}).labels!.keys()]).toEqual(cells);
+    const turned = [...cells].reverse().flatMap((cell) => [...text(cell), 0]);
+    expect(() => read([2, ...turned], {cells})).toThrow('in no order');
   });
 
   test('areRefusedInOlderVersionsAndOfFloats', () => {

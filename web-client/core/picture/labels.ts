@@ -1,6 +1,6 @@
 // Fields of labels: whole numbers that say what a cell is, such as materials or parts. They get
-// colours of their own. The log says which fields are labels. Of an older log, few whole numbers
-// count as such.
+// colours of their own. The log says which fields are labels. Without a word of it, few whole
+// numbers count as such.
 
 import type {FieldInfo} from '../protocol/fields';
 import {kLabelColors} from './color_maps';
@@ -18,8 +18,8 @@ export interface ShownLabels {
 }
 
 /**
- * The first label and how many there are; null if the field holds no labels. Those of which the log
- * says so have the colours of their numbers from 0 on.
+ * The first label and how many there are; null if the field holds no labels. A label of the log has
+ * the colours of its numbers, from 0 on.
  */
 export function labelsOf({components, isWhole, labels, range}: FieldInfo): [number, number] | null {
   if (labels) return [0, kLabelColors];

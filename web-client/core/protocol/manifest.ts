@@ -318,11 +318,11 @@ function readLabelNames(reader: ManifestReader): Map<number, string> {
   return names;
 }
 
-/** By the bytes of UTF-8, which are in the order of the characters' numbers. */
+/** In the order of the bytes of UTF-8, which is not that of UTF-16. */
 function isBehind(text: string, last: string): boolean {
-  const [its, before] = [[...text], [...last]];
-  const at = its.findIndex((character, i) => character !== before[i]);
-  return at >= 0 && (at >= before.length || its[at]!.codePointAt(0)! > before[at]!.codePointAt(0)!);
+  const [its, before] = [text, last].map((word) => new TextEncoder().encode(word));
+  const at = its!.findIndex((byte, i) => byte !== before![i]);
+  return at >= 0 && its![at]! > (before![at] ?? -1);
 }
 
 /** In shares of the lattice's span in the file. */

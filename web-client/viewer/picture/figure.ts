@@ -3,6 +3,7 @@
 
 import type {Axes} from '../../webgl/lens';
 import type {Frame, Tile} from '../../webgl/view';
+import {drawSwatch, gridOf, kIndent, type Grid, type LabelText} from './label_list';
 import {facePlaces, kHalf} from '../panels/orientation_cube';
 
 /** A text of 14 of these pixels is legible on a slide and, with two columns, on paper. */
@@ -15,9 +16,6 @@ const kLine = 1.4;
 const kBarWidth = 380;
 const kBarHeight = 12;
 const kAxis = 34;
-/** Of a list of labels: the swatch with the space round it, and a letter of kSmallText. */
-const kSwatch = 40;
-const kLetter = 7;
 /** Texts leave at least this share of the height to the mesh. */
 const kMinFree = 0.4;
 
@@ -54,8 +52,8 @@ export interface LegendTexts {
   gradient: string;
   ticks: {at: number; label: string}[];
   marks: number[];
-  /** Those that are listed instead of a bar; none: the bar is drawn. Without a colour: a remark. */
-  labels: {text: string; color: string}[];
+  /** They are listed instead of a bar; none: the bar is drawn. */
+  labels: LabelText[];
   notes: string[];
   /** The colour of what has no value; empty: everything has one. */
   missing: string;
@@ -81,6 +79,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   const at = (its: HTMLElement): number => parseFloat(its.style.left) / 100;
   const time = legend.querySelector<HTMLElement>('.time')!;
   const notes = [
+    part('labels').hidden ? '' : (part('labels').querySelector('.more')?.textContent ?? ''),
     time.hidden ? '' : (time.querySelector('output')?.textContent ?? ''),
     text('note'),
     text('warp'),
@@ -95,7 +94,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
       label: its.textContent,
     })),
     marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
-    labels: part('labels').hidden ? [] : [...part('labels').children].map(labelOf),
+    labels: part('labels').hidden ? [] : [...part('labels').children].flatMap(labelOf),
     notes: notes.filter(Boolean),
     missing: notes.at(-1)
       ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor
@@ -103,9 +102,10 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   };
 }
 
-function labelOf(row: Element): {text: string; color: string} {
+/** None of the row that says how many more there are. */
+function labelOf(row: Element): LabelText[] {
   const swatch = row.querySelector('i');
-  return {text: row.textContent, color: swatch?.style.background ?? ''};
+  return swatch ? [{text: row.textContent, color: swatch.style.background}] : [];
 }
 
 /** [share, colour] of a CSS gradient's stops. Without shares they are evenly spaced. */
@@ -130,17 +130,14 @@ export function refusalOf({width, height}: Pick<Figure, 'width' | 'height'>): st
 export const unitOf = ({width, height}: Pick<Figure, 'width' | 'height'>): number =>
   Math.sqrt((width * height) / kUnitPixels);
 
-/** As many as the longest text leaves room for in a bar's width. */
-function columnsOf({labels}: LegendTexts): number {
-  const longest = Math.max(...labels.map(({text}) => text.length));
-  return Math.max(1, Math.floor(kBarWidth / (kSwatch + kLetter * longest)));
-}
+/** Between the axes and as much on the other side. */
+const freeWidth = (figure: Pick<Figure, 'width' | 'height'>): number =>
+  figure.width / unitOf(figure) - 2 * (kGap + 2 * kAxis + kText);
 
-function legendHeight(legend: LegendTexts): number {
-  const {labels, notes} = legend;
-  const rows = labels.length > 0 ? Math.ceil(labels.length / columnsOf(legend)) : 1;
-  const bar = labels.length > 0 ? 0 : kBarHeight + 6;
-  return kText * kLine + 8 + bar + kSmallText * kLine * (rows + notes.length);
+function legendHeight({labels, notes}: LegendTexts, most: number): number {
+  const isList = labels.length > 0;
+  const rows = notes.length + (isList ? gridOf(labels, most).rows : 1);
+  return kText * kLine + 8 + (isList ? 0 : kBarHeight + 6) + kSmallText * kLine * rows;
 }
 
 /** The frame of the figure's mesh. `canvas` is the page's, in CSS pixels. */
@@ -151,7 +148,7 @@ export function frameOf(
 ): Frame {
   const {width, height, title, hasLegend} = figure;
   const above = title ? kTitle * kLine : 0;
-  const below = hasLegend && legend ? legendHeight(legend) : 0;
+  const below = hasLegend && legend ? legendHeight(legend, freeWidth(figure)) : 0;
   const most = Math.max(above, below);
   const margin = most > 0 ? ((most + kGap) * unitOf(figure)) / height : 0;
   return {
@@ -170,7 +167,7 @@ export function draw(
 ): OffscreenCanvas {
   const canvas = new OffscreenCanvas(figure.width, figure.height);
   const context = canvas.getContext('2d')!;
-  const {title, unit, hasLegend, hasAxes} = figure;
+  const {title, hasLegend, hasAxes} = figure;
   fillGround(context, figure, looks);
   for (const {x, y, bitmap} of tiles) context.drawImage(bitmap, x, y);
   const its = figure.ground === 'seen' ? looks : {...looks, ink: kInk, softInk: kSoftInk};
@@ -180,7 +177,7 @@ export function draw(
   const height = figure.height / scale;
   const pen = new Pen(context, its);
   if (title) pen.write(title, kTitle, width / 2, kGap + kTitle, {align: 'center', bold: true});
-  if (hasLegend && legend) drawLegend(pen, legend, unit, width, height);
+  if (hasLegend && legend) drawLegend(pen, legend, figure, height);
   if (hasAxes) drawAxes(pen, kGap + kAxis + kText / 2, height - kGap - kAxis - kText / 2);
   return canvas;
 }
@@ -229,30 +226,27 @@ function fillGround(
 }
 
 /** In the middle below the mesh, beside the axes. */
-function drawLegend(
-  pen: Pen,
-  legend: LegendTexts,
-  unit: string,
-  width: number,
-  height: number,
-): void {
+function drawLegend(pen: Pen, legend: LegendTexts, figure: Figure, height: number): void {
   const {context} = pen;
-  const bar = Math.min(kBarWidth, width - 2 * (kGap + 2 * kAxis + kText));
-  const left = (width - bar) / 2;
-  let y = height - kGap - legendHeight(legend) + kText;
+  const {unit} = figure;
+  const most = freeWidth(figure);
+  const grid = legend.labels.length > 0 ? gridOf(legend.labels, most) : null;
+  const bar = Math.min(most, grid ? grid.columns * grid.each : kBarWidth);
+  const left = most / 2 + kGap + 2 * kAxis + kText - bar / 2;
+  let y = height - kGap - legendHeight(legend, most) + kText;
   const factor = {align: 'right', soft: true} as const;
   pen.write(legend.factor, kText, left + bar, y, factor);
   const free = bar - (legend.factor ? context.measureText(legend.factor).width + kText : 0);
   const name = unit ? `${legend.name} (${unit})` : legend.name;
   pen.write(name, kText, left, y, {bold: true, maxWidth: free});
   y += kText * (kLine - 1) + 8;
-  if (legend.labels.length > 0) y = drawLabels(pen, legend, {left, top: y, width: bar});
-  else y = drawBar(pen, legend, {left, top: y, width: bar});
+  const place = {left, top: y, width: bar};
+  y = grid ? drawLabels(pen, legend, grid, place) : drawBar(pen, legend, place);
   legend.notes.forEach((note, i) => {
     y += kSmallText * kLine;
     const isMissing = legend.missing !== '' && i === legend.notes.length - 1;
     if (isMissing) drawSwatch(context, legend.missing, left, y);
-    const indent = isMissing ? 26 : 0;
+    const indent = isMissing ? kIndent : 0;
     pen.write(note, kSmallText, left + indent, y, {soft: true, maxWidth: bar - indent});
   });
 }
@@ -263,31 +257,17 @@ interface Place {
   width: number;
 }
 
-/** Beside a text whose foot is at y. */
-function drawSwatch(
-  context: OffscreenCanvasRenderingContext2D,
-  color: string,
-  x: number,
-  y: number,
-): void {
-  context.fillStyle = color;
-  context.fillRect(x, y - 9, 18, 10);
-}
-
 /** Returns the foot of the last row. */
-function drawLabels(pen: Pen, legend: LegendTexts, {left, top, width}: Place): number {
-  const columns = columnsOf(legend);
-  const each = width / columns;
-  const footOf = (i: number): number =>
-    top + kSmallText + Math.floor(i / columns) * kSmallText * kLine;
-  legend.labels.forEach(({text, color}, i) => {
+function drawLabels(pen: Pen, {labels}: LegendTexts, grid: Grid, {left, top}: Place): number {
+  const {columns, rows, each} = grid;
+  const footOf = (row: number): number => top + kSmallText + row * kSmallText * kLine;
+  labels.forEach(({text, color}, i) => {
     const x = left + (i % columns) * each;
-    const y = footOf(i);
-    if (color) drawSwatch(pen.context, color, x, y);
-    const indent = color ? 26 : 0;
-    pen.write(text, kSmallText, x + indent, y, {soft: true, maxWidth: each - indent - 6});
+    const y = footOf(Math.floor(i / columns));
+    drawSwatch(pen.context, color, x, y);
+    pen.write(text, kSmallText, x + kIndent, y, {soft: true, maxWidth: each - kIndent});
   });
-  return footOf(legend.labels.length - 1);
+  return footOf(rows - 1);
 }
 
 /** Returns the foot of its numbers. */
