@@ -14,6 +14,11 @@ constexpr Colour kPlain = {0.72, 0.74, 0.78};
 /// The shares of the values below and above the middle ones. If these take less than kMinMiddle of
 /// the range, the colours span them alone.
 constexpr double kTail = 0.02, kMinMiddle = 0.4;
+/// So many whole numbers count as labels without a word of the log.
+constexpr double kMaxLabels = 20;
+/// So many labels have a colour of their own: those of kLabels, then darker ones.
+constexpr int kLabelColours = 37;
+constexpr double kDarker = 0.65;
 /// Two of each of ten hues.
 constexpr std::array<std::uint32_t, 20> kLabels = {
     0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728, 0x9467bd, 0x8c564b, 0xe377c2,
@@ -23,17 +28,30 @@ constexpr std::array<std::uint32_t, 20> kLabels = {
 bool holdsLabels(const FieldInfo& field) {
   const bool isWhole = field.type.starts_with("int") || field.type.starts_with("uint");
   const double count = field.range[1] - field.range[0] + 1;
-  return isWhole && field.components == 1 && count >= 2 && count <= kLabels.size() &&
+  return isWhole && field.components == 1 && count >= 2 && count <= kMaxLabels &&
          field.range[0] == std::floor(field.range[0]);
+}
+
+Colour labelColour(std::int64_t label) {
+  const std::int64_t rest = label % kLabelColours;
+  const auto at = static_cast<std::size_t>(rest < 0 ? rest + kLabelColours : rest);
+  const bool isDark = at >= kLabels.size();
+  const std::uint32_t rgb = kLabels[at % kLabels.size()];
+  Colour out{};
+  for (std::size_t c = 0; c < 3; ++c)
+    out[c] = (rgb >> (16 - 8 * c) & 255) / 255.0 * (isDark ? kDarker : 1);
+  return out;
 }
 
 }  // namespace
 
-FieldLook::FieldLook(const LatticeMesh& mesh, std::size_t field) {
+FieldLook::FieldLook(const LatticeMesh& mesh, std::size_t field, bool isLabel) {
   if (field >= mesh.fields.size()) return;
   field_ = &mesh.fields[field];
   values_ = &mesh.values[field];
-  isLabels_ = holdsLabels(*field_);
+  isLabels_ = isLabel || holdsLabels(*field_);
+  // A label of the log has the same colour in every log.
+  if (!isLabel) firstLabel_ = field_->range[0];
   if (!isLabels_) range_ = automaticRange(mesh);
 }
 
@@ -75,11 +93,8 @@ std::array<double, 2> FieldLook::automaticRange(const LatticeMesh& mesh) const {
 Colour FieldLook::colour(double share) const {
   if (field_ == nullptr || std::isnan(share)) return kPlain;
   if (!isLabels_) return viridis((share - range_[0]) / (range_[1] - range_[0]));
-  const double label = share * (field_->range[1] - field_->range[0]) + 0.5;
-  const auto at = static_cast<std::size_t>(std::clamp(label, 0.0, kLabels.size() - 1.0));
-  Colour out{};
-  for (std::size_t c = 0; c < 3; ++c) out[c] = (kLabels[at] >> (16 - 8 * c) & 255) / 255.0;
-  return out;
+  const double label = field_->range[0] + share * (field_->range[1] - field_->range[0]);
+  return labelColour(std::llround(label - firstLabel_));
 }
 
 }  // namespace qtet

@@ -13,8 +13,8 @@ namespace qtet {
 class FieldLook {
  public:
   /// Looks at the field `field` of `mesh`, which must outlive it; everything is plain if there is
-  /// no such field.
-  FieldLook(const LatticeMesh& mesh, std::size_t field);
+  /// no such field. `isLabel`: the log says that it is a label.
+  FieldLook(const LatticeMesh& mesh, std::size_t field, bool isLabel = false);
 
   /// The values belong to cells, else to vertices.
   [[nodiscard]] bool ofCells() const { return field_ != nullptr && isCellField(*field_); }
@@ -30,6 +30,8 @@ class FieldLook {
   const FieldInfo* field_ = nullptr;
   const std::vector<std::int32_t>* values_ = nullptr;
   bool isLabels_ = false;
+  /// The label of the first colour.
+  double firstLabel_ = 0;
   /// The shares that the colours span.
   std::array<double, 2> range_ = {0, 1};
 };

@@ -99,10 +99,18 @@ Polygon sectionOf(const std::array<Point, 4>& corners, const Plane& plane) {
   return out;
 }
 
+bool showsLabel(const Manifest& manifest) {
+  const std::vector<std::uint32_t> fields = posterFields(manifest);
+  return !fields.empty() && labelNamesOf(manifest, fields.front()) != nullptr;
+}
+
 class PosterArtist {
  public:
   PosterArtist(const LatticeMesh& mesh, const Manifest& manifest, const std::optional<Plane>& plane)
-      : mesh_(mesh), camera_(mesh, manifest.focus), look_(mesh, 0), plane_(plane) {
+      : mesh_(mesh),
+        camera_(mesh, manifest.focus),
+        look_(mesh, 0, showsLabel(manifest)),
+        plane_(plane) {
     if (look_.ofCells()) boundaryCells_ = cellsOfBoundary();
   }
 

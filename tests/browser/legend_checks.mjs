@@ -314,7 +314,46 @@ async function coloursBothSidesOfZero(context) {
   await viewer.screenshot('legend-signed');
 }
 
+/** A label has a list of its values instead of a bar, and its error is a share of the volume. */
+async function listsLabels(context) {
+  const {server, browser} = context;
+  const n = 4;
+  const count = 6 * n * (2 * n) * (3 * n);
+  // Two parts in each of six slabs: multiples of 100, as parts often have them.
+  const partOf = (cell) => {
+    const x = Math.floor(cell / 6) % n;
+    const z = Math.floor(cell / (6 * n * 2 * n));
+    return 100 * (2 * Math.floor(z / 2) + (x < n / 2 ? 1 : 2));
+  };
+  const values = Array.from({length: count}, (_, cell) => partOf(cell)).join(' ');
+  const part = `<DataArray type="Int32" Name="Part" format="ascii">${values}</DataArray>`;
+  const mesh = linearBox(n).replace('<Points>', `<CellData>${part}</CellData><Points>`);
+  await serveMesh(context, 'parts', mesh);
+  const viewer = await browser.open(`${server.url}?mesh=parts&field=Part`, kSmallDesktop);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  const list = page.locator('qtet-viewer .legend').getByRole('list');
+  const rows = list.getByRole('listitem');
+  assert.deepEqual(
+    await rows.allTextContents(),
+    Array.from({length: 12}, (_, i) => String(100 * (i + 1))),
+  );
+  assert.ok(await page.locator('qtet-viewer .legend-bar').isHidden());
+  const colors = await list
+    .locator('i')
+    .evaluateAll((its) => its.map((swatch) => swatch.style.background));
+  assert.equal(new Set(colors).size, 12, `${colors}`);
+  assert.match(await viewer.text('.error-left'), /^[\d.]+\u202f% of the volume$/);
+  await viewer.screenshot('legend-labels');
+  await page.evaluate(() => window.qtetViewer.setAttribute('field', 'x'));
+  await list.waitFor({state: 'hidden'});
+  assert.doesNotMatch(await viewer.text('.error-left'), /volume/);
+  assert.deepEqual(viewer.problems, []);
+}
+
 export const legendChecks = {
+  listsLabels,
   coloursBothSidesOfZero,
   movesAndCentresByKeys,
   givesItsNumbersAway,

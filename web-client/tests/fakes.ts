@@ -103,7 +103,10 @@ export const kFakeBlockBytes = 10;
 
 const doubles = (...values: number[]): Uint8Array =>
   new Uint8Array(new Float64Array(values).buffer);
-const text = (value: string): number[] => [value.length, ...new TextEncoder().encode(value)];
+const text = (value: string): number[] => {
+  const bytes = new TextEncoder().encode(value);
+  return [bytes.length, ...bytes];
+};
 
 export function fakeHead({fields, cellFields = []}: FakeLog): Uint8Array {
   const names = [...fields, ...cellFields];

@@ -24,6 +24,7 @@ const kLegend: LegendTexts = {
   gradient: '',
   ticks: [],
   marks: [],
+  labels: [],
   notes: [],
   missing: '',
 };
@@ -69,6 +70,14 @@ describe('the frame of a figure', () => {
     const noted = frameOf(kFigure, {...kLegend, notes: ['No value']}, kCanvas).margin;
     expect(noted).toBeGreaterThan(whole);
     expect(noted).toBeLessThan(0.2);
+    const labels = Array.from({length: 12}, (_, i) => ({
+      text: `a winding made of copper ${i}`,
+      color: 'red',
+    }));
+    const listed = frameOf(kFigure, {...kLegend, labels}, kCanvas).margin;
+    expect(listed).toBeGreaterThan(noted);
+    const short = labels.map((its) => ({...its, text: '1'}));
+    expect(frameOf(kFigure, {...kLegend, labels: short}, kCanvas).margin).toBeLessThan(listed);
   });
   test('growsWithThePictureSoThatItLooksTheSame', () => {
     const twice = {...kFigure, width: 6000, height: 4000};

@@ -2,7 +2,6 @@
 
 import {describe, expect, test} from 'vitest';
 import {baseFigures} from '../core/picture/base_figures';
-import {colorTable} from '../core/picture/color_maps';
 import type {MeshArrays} from '../core/picture/display';
 import {FieldScale} from '../core/picture/field_scale';
 import {kMaxLabels, labelsOf} from '../core/picture/labels';
@@ -73,14 +72,6 @@ describe('labels', () => {
       {components: 3, range: [1, 4]},
     ] as Partial<FieldInfo>[])
       expect(labelsOf({...field, ...other})).toBeNull();
-  });
-  test('haveEachAColourOfItsOwn', () => {
-    const table = colorTable('labels');
-    const colors = Array.from({length: kMaxLabels}, (_, label) => {
-      const entry = 4 * Math.round(((label + 0.5) / kMaxLabels) * 255);
-      return table.subarray(entry, entry + 3).join();
-    });
-    expect(new Set(colors).size).toBe(kMaxLabels);
   });
 });
 

@@ -240,7 +240,7 @@ describe('an automatic range', () => {
     expect(auto([10, 20], {logarithmic: true}).high).toBe(100);
   });
   test('ofLabelsHasEachInTheMiddleOfItsColour', () => {
-    expect(labelRange([3, 4])).toMatchObject({low: 2.5, high: 22.5, labels: 4});
+    expect(labelRange([3, 4])).toMatchObject({low: 2.5, high: 39.5, labels: 4});
     expect(labelTicks(3, 4, 20).ticks.map(({at, label}) => [at, label])).toEqual([
       [0.125, '3'],
       [0.375, '4'],

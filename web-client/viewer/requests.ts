@@ -42,9 +42,11 @@ export function displayOf(
   read: (name: ViewAttribute) => string | null,
 ): Display {
   const {fields} = mesh.manifest!;
+  const color = shownScalar(read('field'), fields, mesh.firstField);
   const display: Display = {
     ...kPlainDisplay,
-    color: shownScalar(read('field'), fields, mesh.firstField),
+    color,
+    ...(settings.map === 'labels' && color && fields[color.field]!.labels && {labelColors: true}),
     body: settings.surface && settings.volume === null,
     mode: settings.planes.length > 0 ? settings.mode : 'cut',
     planes: planesOf(settings, mesh),

@@ -32,6 +32,7 @@ export const kTemplate = `
   <div class="time" hidden></div>
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
+  <ul class="legend-labels" role="list" hidden></ul>
   <div class="legend-note" hidden></div>
   <div class="legend-warp" hidden></div>
   <div class="legend-missing" hidden><i></i>No value</div>

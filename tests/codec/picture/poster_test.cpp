@@ -195,6 +195,25 @@ TEST(Poster, cellsHaveTheirOwnColoursAndLabelsTheirs) {
   EXPECT_LT(pixel[2], 90);
 }
 
+TEST(Poster, aLabelOfTheLogHasAsManyNumbersAsItLikes) {
+  LatticeMesh mesh = testing::gridMesh(2, 1);
+  FieldInfo field;
+  field.name = "part";
+  field.association = "cell";
+  field.type = "int32";
+  field.minimum = {-5000};
+  field.range = {-5000, 5000};
+  mesh.fields = {field};
+  mesh.values = {std::vector<std::int32_t>(mesh.tetrahedra.size(), 5000 + 1 - 37 * 100)};
+  Manifest manifest = manifestOf(mesh);
+  manifest.fields[0].association = "cell";
+  manifest.fields[0].type = "int32";
+  manifest.labels = {{"part", {}}};
+  const auto pixel = posterOf(mesh, manifest).middle();
+  EXPECT_GT(pixel[0], 150) << "orange, as label 1";
+  EXPECT_LT(pixel[2], 90);
+}
+
 TEST(Poster, aFocusFillsThePictureAndFadesOut) {
   const LatticeMesh mesh = cube([](const LatticePoint&) { return 50; });
   Manifest manifest = manifestOf(mesh);

@@ -1,7 +1,7 @@
 // Isosurfaces: where a field of points has one of some values.
 
 import {along, valueAt, type Ray, type Stretch} from '../picture/cell_ray';
-import type {Display, MeshArrays} from '../picture/display';
+import {colorScale, type Display, type MeshArrays} from '../picture/display';
 import {isosurface} from '../picture/slice';
 import {joinSoups, type TriangleSoup} from '../picture/triangle_soup';
 import {fieldLayer} from './field_layer';
@@ -36,7 +36,7 @@ export const isosurfaces = {
   make(mesh: MeshArrays, display: Display, kept: Uint8Array | null): TriangleSoup | null {
     const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
     if (!levels || levels.ofCells) return null;
-    const scale = display.color && mesh.scale(display.color);
+    const scale = colorScale(mesh, display);
     return joinSoups(
       display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)),
     );

@@ -6,7 +6,7 @@
 
 export type ColorMapName = 'viridis' | 'cividis' | 'cool-warm' | 'turbo' | 'grey' | 'labels';
 
-/** Those that are continuous. `labels` has kMaxLabels colours for as many whole numbers. */
+/** Those that are continuous. `labels` has kLabelColors colours for as many whole numbers. */
 export const kColorMapNames: readonly ColorMapName[] = [
   'viridis',
   'cividis',
@@ -78,24 +78,41 @@ const kLabels = (
 )
   .split(' ')
   .map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)));
+/**
+ * The colours of the map `labels`: kLabels, and darker ones. Further labels begin again. It is a
+ * prime: multiples of 10 or 100, as numbers of parts often are, meet no colour again soon.
+ */
+export const kLabelColors = 37;
+const kDarker = 0.65;
 const kNoStep = 'h'.charCodeAt(0);
 /** So neither end is the colour of a background. */
 const kGreyFrom = 26;
 const kGreyTo = 236;
 
+/** The colours of the map `labels`, in order; `reversed` turns those of kLabels round. */
+export function labelColors(reversed = false): readonly (readonly number[])[] {
+  const plain = reversed ? [...kLabels].reverse() : kLabels;
+  const dark = plain.map((color) => color.map((channel) => Math.round(kDarker * channel)));
+  return [...plain, ...dark].slice(0, kLabelColors);
+}
+
 /** The table as 256 opaque RGBA entries in sRGB; `reversed` turns it round. */
 export function colorTable(name: ColorMapName, reversed = false): Uint8Array {
   const table = new Uint8Array(4 * kColorMapEntries).fill(255);
-  const entry = entriesOf(name);
+  const entry = name === 'labels' ? labelEntries(reversed) : entriesOf(name);
+  const turns = reversed && name !== 'labels';
   for (let i = 0; i < kColorMapEntries; ++i) {
-    table.set(entry(reversed ? kColorMapEntries - 1 - i : i), 4 * i);
+    table.set(entry(turns ? kColorMapEntries - 1 - i : i), 4 * i);
   }
   return table;
 }
 
-function entriesOf(name: ColorMapName): (i: number) => number[] {
-  if (name === 'labels')
-    return (i) => kLabels[Math.floor((i * kLabels.length) / kColorMapEntries)]!;
+function labelEntries(reversed: boolean): (i: number) => readonly number[] {
+  const colors = labelColors(reversed);
+  return (i) => colors[Math.floor((i * kLabelColors) / kColorMapEntries)]!;
+}
+
+function entriesOf(name: Exclude<ColorMapName, 'labels'>): (i: number) => number[] {
   if (name === 'grey') {
     return (i) =>
       Array<number>(3).fill(
@@ -124,9 +141,9 @@ function entriesOf(name: ColorMapName): (i: number) => number[] {
 
 /** A CSS gradient of the first `count` labels' colours, without transitions. */
 export function labelGradient(count: number, reversed = false): string {
+  const colors = labelColors(reversed);
   const stops = Array.from({length: count}, (_, i) => {
-    const color = kLabels[reversed ? kLabels.length - 1 - i : i]!.join(' ');
-    return `rgb(${color}) ${(100 * i) / count}% ${(100 * (i + 1)) / count}%`;
+    return `rgb(${colors[i]!.join(' ')}) ${(100 * i) / count}% ${(100 * (i + 1)) / count}%`;
   });
   return `linear-gradient(90deg, ${stops.join(', ')})`;
 }

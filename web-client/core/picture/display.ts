@@ -18,6 +18,8 @@ export const kMaxPlanes = 3;
 
 export interface Display {
   color: Scalar | null;
+  /** The values are those of LabelScale: `color` is a label in the map `labels`. */
+  labelColors?: boolean;
   /** False: only cuts and isosurfaces are drawn. */
   body: boolean;
   mode: ClipMode;
@@ -56,7 +58,15 @@ export interface MeshArrays {
   points: Int32Array;
   tetrahedra: Uint32Array;
   boundary: Uint32Array;
-  scale(scalar: Scalar): FieldScale | null;
+  scale(scalar: Scalar, labelColors?: boolean): FieldScale | null;
+}
+
+/** The values that colour; null while there are none. */
+export function colorScale(
+  mesh: Pick<MeshArrays, 'scale'>,
+  {color, labelColors}: Display,
+): FieldScale | null {
+  return color && mesh.scale(color, labelColors);
 }
 
 /**
@@ -73,7 +83,7 @@ export function surfaceOf(
   kept: Uint8Array | null,
   creasesOf: CreasesOf | null = null,
 ): TriangleSoup {
-  const scale = display.color && mesh.scale(display.color);
+  const scale = colorScale(mesh, display);
   const {points, boundary} = mesh;
   const cells: Cells = {...mesh, kept};
   if (kept || scale?.ofCells)
@@ -90,7 +100,7 @@ export function cutsOf(
   display: Display,
   kept: Uint8Array | null,
 ): TriangleSoup[] {
-  const scale = display.color && mesh.scale(display.color);
+  const scale = colorScale(mesh, display);
   const planes = display.mode === 'cells' ? [] : display.planes;
   return planes.map((plane) => slice({...mesh, kept}, scale, plane));
 }

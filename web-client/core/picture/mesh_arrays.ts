@@ -4,6 +4,7 @@ import type {Assembler} from '../decode/assembler';
 import type {Manifest} from '../protocol/manifest';
 import type {MeshArrays} from './display';
 import {FieldScale} from './field_scale';
+import {LabelScale} from './labels';
 import {warpedPoints, type Warp} from './warp';
 
 /** The last moved vertices of a mesh, and what they were made of. */
@@ -26,10 +27,11 @@ export function meshArrays(assembler: Assembler, warp: Warp | null = null): Mesh
     points: (warp && movedPoints(assembler, manifest, warp)) ?? codec.points(),
     tetrahedra: codec.tetrahedra(),
     boundary: codec.boundary(),
-    scale: ({field, component}) => {
+    scale: ({field, component}, labelColors) => {
       const info = manifest.fields[field];
       const values = info && codec.field(field, info.components);
-      return info && values ? new FieldScale(values, info, component) : null;
+      if (!info || !values) return null;
+      return labelColors ? new LabelScale(values, info) : new FieldScale(values, info, component);
     },
   };
 }

@@ -43,6 +43,11 @@ export interface FieldInfo {
   range: [number, number];
   /** The manifest's; absent where it has none. */
   unit?: string;
+  /**
+   * It says what a cell is, such as its material (codec/MANIFEST.md, "Labels"): what its values are
+   * called, as far as that is known. Absent: it is no label.
+   */
+  labels?: ReadonlyMap<number, string>;
   /** Only a series' instants have it. */
   instant?: Instant;
 }

@@ -49,6 +49,8 @@ export interface Manifest {
   opening?: Opening;
   /** By a field's name without @TIME; that of times by ''. Absent without any. */
   units?: ReadonlyMap<string, string>;
+  /** The names of a label's values, by a field's name without @TIME. Absent without any label. */
+  labels?: ReadonlyMap<string, ReadonlyMap<number, string>>;
   fields: FieldInfo[];
   levels: LevelInfo[];
   /** How many fields are to come (addLater). */
@@ -70,6 +72,7 @@ const kMinorAt = 10;
 const kMinorOfFirstView = 2;
 const kMinorOfSomeErrors = 3;
 const kMinorOfUnits = 4;
+const kMinorOfLabels = 5;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
@@ -95,7 +98,9 @@ const kFocusFollows = 2;
 const kOpeningFollows = 4;
 const kSomeErrorsFollow = 8;
 const kUnitsFollow = 16;
+const kLabelsFollow = 32;
 const kMaxUnitBytes = 64;
+const kMaxLabelNames = 4096;
 const kNoCut = 3;
 const kShareBytes = 2;
 const kCountColumns = 3;
@@ -165,15 +170,17 @@ export function readManifest(
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
   const units = flags & kUnitsFollow ? readUnits(reader) : undefined;
+  const labels = flags & kLabelsFollow ? readLabels(reader, fields) : undefined;
   const levels = readLevels(reader.rest(), errors, fields.length, levelColumns);
   const manifest = {
     source,
     lattice,
     ...(units && {units}),
+    ...(labels && {labels}),
     ...(focus && {focus}),
     ...(opening && {opening}),
   };
-  settle(fields, units, later, least);
+  settle(fields, manifest, later, least);
   return {...manifest, fields, levels, later};
 }
 
@@ -196,7 +203,7 @@ export function addLater(
   if (!levels[0]!.error && reader.rest().length > 0) throw damaged('has bytes behind its end');
   if (more.some(({error}, level) => !error !== !levels[level]!.error))
     throw damaged('has errors of other levels');
-  settle(fields, manifest.units, 0, least);
+  settle(fields, manifest, 0, least);
   // from here on nothing throws
   manifest.fields = fields;
   manifest.later = 0;
@@ -204,14 +211,29 @@ export function addLater(
 }
 
 /** Once the fields are known, `later` more of them to come. */
-function settle(fields: FieldInfo[], units: Manifest['units'], later: number, least = 2): void {
+function settle(
+  fields: FieldInfo[],
+  {units, labels}: Pick<Manifest, 'units' | 'labels'>,
+  later: number,
+  least = 2,
+): void {
   if (new Set(fields.map(({association, name}) => `${association}:${name}`)).size < fields.length)
     throw damaged('has a field twice');
   for (const info of fields) {
-    const unit = units?.get(instantName(info.name)?.series ?? info.name);
+    const name = nameWithoutTime(info);
+    const unit = units?.get(name);
     if (unit !== undefined) info.unit = unit;
+    const names = mayBeLabel(info) ? labels?.get(name) : undefined;
+    if (names) info.labels = names;
   }
   markSeries(fields, later > 0 ? 1 : least);
+}
+
+const nameWithoutTime = ({name}: FieldInfo): string => instantName(name)?.series ?? name;
+
+/** A cell field of one component and of integers that are stored as they are. */
+function mayBeLabel({association, components, isWhole, step}: FieldInfo): boolean {
+  return association === 'cell' && components === 1 && isWhole === true && step === 1;
 }
 
 function readFields(reader: ManifestReader, shapes: readonly Shape[]): FieldInfo[] {
@@ -230,12 +252,13 @@ function readLevels(
 
 function knownErrorsOf(flags: number): KnownErrors {
   const both = kAllErrorsFollow | kSomeErrorsFollow;
-  if (flags >= 2 * kUnitsFollow || (flags & both) === both)
+  if (flags >= 2 * kLabelsFollow || (flags & both) === both)
     throw damaged('has flags that this viewer does not know');
   return flags & kSomeErrorsFollow ? 'some' : flags & kAllErrorsFollow ? 'all' : 'none';
 }
 
 function minorOf(flags: number): number {
+  if (flags & kLabelsFollow) return kMinorOfLabels;
   if (flags & kUnitsFollow) return kMinorOfUnits;
   if (flags & kSomeErrorsFollow) return kMinorOfSomeErrors;
   return flags > kAllErrorsFollow ? kMinorOfFirstView : 0;
@@ -263,6 +286,43 @@ function readUnits(reader: ManifestReader): Map<string, string> {
     units.set(name, unit);
   }
   return units;
+}
+
+function readLabels(
+  reader: ManifestReader,
+  fields: readonly FieldInfo[],
+): Map<string, Map<number, string>> {
+  const labels = new Map<string, Map<number, string>>();
+  let last = '';
+  for (let left = reader.varint(); left > 0; --left) {
+    const name = reader.text();
+    const isIt = (info: FieldInfo): boolean => mayBeLabel(info) && nameWithoutTime(info) === name;
+    if (!isBehind(name, last) || !fields.some(isIt))
+      throw damaged('has labels that are in no order, or one that is no cell field of one integer');
+    last = name;
+    labels.set(name, readLabelNames(reader));
+  }
+  return labels;
+}
+
+function readLabelNames(reader: ManifestReader): Map<number, string> {
+  const names = new Map<number, string>();
+  let last = -Infinity;
+  for (let left = reader.varint(); left > 0; --left) {
+    const [value, name] = [reader.integer(), reader.text()];
+    if (value <= last || name === '' || names.size === kMaxLabelNames)
+      throw damaged('has names of a label that are in no order, empty or too many');
+    last = value;
+    names.set(value, name);
+  }
+  return names;
+}
+
+/** In the order of the bytes of UTF-8, which is not that of UTF-16. */
+function isBehind(text: string, last: string): boolean {
+  const [its, before] = [text, last].map((word) => new TextEncoder().encode(word));
+  const at = its!.findIndex((byte, i) => byte !== before![i]);
+  return at >= 0 && its![at]! > (before![at] ?? -1);
 }
 
 /** In shares of the lattice's span in the file. */
@@ -368,6 +428,10 @@ class ManifestReader {
         throw damaged('has a length that is not written in its shortest form');
       return value;
     }
+  }
+
+  integer(): number {
+    return this.view.getInt32(this.take(4), true);
   }
 
   bytes(count: number): Uint8Array {

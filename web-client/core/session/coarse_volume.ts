@@ -3,7 +3,7 @@
 
 import type {Assembler} from '../decode/assembler';
 import {fieldsOf, hidingKey, keptCells} from '../layers/shown';
-import type {Display} from '../picture/display';
+import {colorScale, type Display} from '../picture/display';
 import {meshArrays} from '../picture/mesh_arrays';
 import {kCoarseCells, volumeCells, type CoarseCells, type VolumeCells} from '../picture/volume';
 import type {Frame} from '../protocol/messages';
@@ -67,7 +67,7 @@ export class CoarseVolume {
     };
     while (assembler.step(fields, hasRoom())) continue;
     const mesh = meshArrays(assembler, display.warp);
-    const scale = display.color && mesh?.scale(display.color);
+    const scale = mesh && colorScale(mesh, display);
     if (!mesh || !scale) throw new Error('there are no values yet');
     return volumeCells(mesh, scale, keptCells(mesh, display));
   }

@@ -3,6 +3,7 @@
 import type {Assembler} from '../decode/assembler';
 import {fieldsOf, keptCells, layerSoups} from '../layers/shown';
 import {
+  colorScale,
   cutsOf,
   cuttingPlanes,
   kPlainDisplay,
@@ -10,7 +11,8 @@ import {
   type Display,
   type MeshArrays,
 } from '../picture/display';
-import {scalarRange, type FieldScale, type Scalar} from '../picture/field_scale';
+import {scalarRange, type Scalar} from '../picture/field_scale';
+import {kLabelScaleRange, shownLabels, type ShownLabels} from '../picture/labels';
 import {meshArrays} from '../picture/mesh_arrays';
 import {amountsOf, middleOf} from '../picture/spread';
 import {noSoup, pointBounds, type CreasesOf} from '../picture/triangle_soup';
@@ -47,6 +49,8 @@ export class Publisher {
   private bounds: number[] = [];
   /** The same without a warp. */
   private restBounds: number[] = [];
+  /** Those of the colour; null: it is no label. */
+  private labels: ShownLabels | null = null;
   /** middleOf by colour, from the mesh with which it was first drawn. */
   private readonly middles = new Map<string, [number, number]>();
   /** amountsOf by colour, from the mesh whose volume was first drawn. */
@@ -242,15 +246,11 @@ export class Publisher {
 
   private volumeOf(
     mesh: MeshArrays,
-    {color, volume}: Display,
+    display: Display,
     kept: Uint8Array | null,
   ): VolumeCells | null {
-    const scale = volume && color && mesh.scale(color);
+    const scale = display.volume && colorScale(mesh, display);
     return scale ? volumeCells(mesh, scale, kept) : null;
-  }
-
-  private middleOf(color: Scalar, scale: FieldScale, {tetrahedra}: MeshArrays): [number, number] {
-    return keptOf(this.middles, color, () => middleOf(scale, tetrahedra));
   }
 
   /** The warp's field has values, so that it moves the mesh. */
@@ -258,7 +258,10 @@ export class Publisher {
     return warp !== null && this.assembler.codec.fieldChunksApplied(warp.field) > 0;
   }
 
-  private measure({points, boundary}: MeshArrays, warp: Warp | null): void {
+  private measure({points, boundary, ...mesh}: MeshArrays, {color, warp}: Display): void {
+    const info = color && this.assembler.manifest!.fields[color.field];
+    const scale = info?.labels && color && mesh.scale(color);
+    this.labels = scale ? shownLabels(scale, mesh.tetrahedra, info) : null;
     this.bounds = pointBounds(points, boundary);
     this.restBounds = this.isWarped(warp)
       ? pointBounds(this.assembler.codec.points(), boundary)
@@ -275,27 +278,36 @@ export class Publisher {
   }
 
   private frame(mesh: MeshArrays, display: Display): Omit<Snapshot, 'cuts' | 'planes'> {
-    const {color, volume, warp} = display;
-    const scale = color && mesh.scale(color);
+    const {color, labelColors, volume, warp} = display;
+    const scale = colorScale(mesh, display);
     const info = color && this.assembler.manifest!.fields[color.field];
     const isComponent = info && info.components > 1 && color.component >= 0;
     const ofSeries = isComponent ? seriesExtent(info, color.component) : null;
-    if (this.meshChanged || this.bounds.length === 0) this.measure(mesh, warp);
+    if (this.meshChanged || this.bounds.length === 0) this.measure(mesh, display);
     return {
       bounds: this.bounds,
       ...(this.isWarped(warp) && {
         warp: {...warp, restBounds: this.restBounds, ...this.restEdges(mesh, display)},
       }),
       color: scale ? color : null,
+      ...(scale && this.labels && {labels: this.labels}),
       statistics: this.assembler.statistics(fieldsOf(this.display)),
       costMs: 0,
       // The range of a component is known from its values only; a series has one for all of it.
       extent: ofSeries ?? (scale && isComponent ? scale.extent(mesh.tetrahedra) : [0, 1]),
-      middle: ofSeries ?? (scale && !info?.instant ? this.middleOf(color, scale, mesh) : [0, 1]),
+      middle:
+        ofSeries ??
+        (scale && !info?.instant
+          ? keptOf(this.middles, display, () => middleOf(scale, mesh.tetrahedra))
+          : [0, 1]),
       ...(volume && scale
-        ? {amounts: keptOf(this.amounts, color, () => amountsOf(scale, mesh))}
+        ? {amounts: keptOf(this.amounts, display, () => amountsOf(scale, mesh))}
         : {}),
-      scaleRange: scale && info ? scalarRange(info, color.component) : [0, 1],
+      scaleRange: labelColors
+        ? kLabelScaleRange
+        : color && scale && info
+          ? scalarRange(info, color.component)
+          : [0, 1],
     };
   }
 }
@@ -316,8 +328,8 @@ function textOf(display: Display): string {
 }
 
 /** The value of a colour: as it was when it was first asked for. */
-function keptOf<T>(values: Map<string, T>, {field, component}: Scalar, first: () => T): T {
-  const key = `${field} ${component}`;
+function keptOf<T>(values: Map<string, T>, {color, labelColors}: Display, first: () => T): T {
+  const key = JSON.stringify([color, labelColors]);
   const value = values.get(key) ?? first();
   values.set(key, value);
   return value;

@@ -9,6 +9,7 @@ import type {Ray} from '../picture/cell_ray';
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {Axis, Histogram} from '../picture/histogram';
+import type {ShownLabels} from '../picture/labels';
 import type {TriangleSoup} from '../picture/triangle_soup';
 import type {CoarseCells, VolumeCells} from '../picture/volume';
 import type {Warp} from '../picture/warp';
@@ -89,6 +90,8 @@ export interface Snapshot extends LayerSoups {
   warp?: Warp & AtRest;
   /** The quantity that the soups' values show; null if there are none yet. */
   color: Scalar | null;
+  /** Those of a label in `color`; absent: it is none. */
+  labels?: ShownLabels;
   /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */
   scaleRange: [number, number];
   extent: [number, number];

@@ -82,6 +82,13 @@ export function resolutionOf({association, components, isWhole, range, step}: Fi
   return Math.max(step, kShownShare * span, Number.MIN_VALUE);
 }
 
+/** A value of a field, of a label with its name: "steel (3)". */
+export function formatIn(info: FieldInfo, value: number): string {
+  const number = formatTo(value, resolutionOf(info));
+  const name = info.labels?.get(Math.round(value));
+  return name === undefined ? number : `${name} (${number})`;
+}
+
 /** A number of unknown extent, to five digits. */
 export function formatValue(value: number): string {
   const magnitude = Math.abs(value);

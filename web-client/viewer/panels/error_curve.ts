@@ -6,6 +6,7 @@ import {errorOfLevel} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
 import {find, setAttribute, setText} from '../page/find';
 import {formatBytes, formatError} from '../page/format';
+import {labelName} from './panel';
 
 /** The curve spans errors from the first one down to at most this fraction of it. */
 const kMinSpan = 10;
@@ -23,7 +24,7 @@ export class ErrorCurve {
   draw(
     plan: readonly LevelBytes[],
     {bytes, level: now}: Statistics,
-    levels: Manifest['levels'],
+    {levels, fields: infos}: Pick<Manifest, 'levels' | 'fields'>,
     fields: readonly number[],
   ): void {
     const {figure} = this;
@@ -62,6 +63,8 @@ export class ErrorCurve {
       line.at(-1)!,
     ];
     const texts = ends.map(([at, error]) => `${formatError(error)} at ${formatBytes(at)}`);
-    setText(find(figure, 'figcaption'), `Error against bytes: ${texts.join(', ')}`);
+    const label = labelName(fields, infos);
+    const what = label === null ? 'Error' : `Volume with another ${label}`;
+    setText(find(figure, 'figcaption'), `${what} against bytes: ${texts.join(', ')}`);
   }
 }

@@ -5,7 +5,7 @@ import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {FieldInfo} from '../../core/protocol/fields';
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
-import {formatTo, resolutionOf} from '../page/format';
+import {formatIn} from '../page/format';
 import {scalarName} from './panel';
 
 /** So long the pointer has to rest. */
@@ -37,7 +37,7 @@ export function hoverText(
       : found[component]!;
   const info = fields[scalar.field]!;
   const unit = info.unit === undefined ? '' : `\u00a0${info.unit}`;
-  const text = Number.isNaN(value) ? 'no value' : formatTo(value, resolutionOf(info)) + unit;
+  const text = Number.isNaN(value) ? 'no value' : formatIn(info, value) + unit;
   return `${scalarName(scalar, fields)} ${text}`;
 }
 

@@ -7,7 +7,7 @@ import type {Client} from '../../core/session/client';
 import type {Pick} from '../../core/session/inspector';
 import {cornersOf} from '../../webgl/outline';
 import type {View} from '../../webgl/view';
-import {formatCount, formatTo, formatValue, resolutionOf} from '../page/format';
+import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
@@ -193,7 +193,7 @@ export class Inspect {
     for (const {field, values} of pick.fields) {
       const info = fields[field]!;
       if (info.instant && !info.instant.isShown) continue; // there may be a thousand
-      const format = (value: number): string => formatTo(value, resolutionOf(info));
+      const format = (value: number): string => formatIn(info, value);
       rows.push([info.name, values.map(format).join(', ')]);
       if (values.length > 1) rows.push([`${info.name}, magnitude`, format(Math.hypot(...values))]);
     }
@@ -224,6 +224,7 @@ export class Inspect {
   private async showLine(from: Pick, to: Pick): Promise<void> {
     const probe = await this.host.client?.probe(from.lattice, to.lattice);
     if (!probe) return;
+    const {color, fieldTitle, manifest} = this.host;
     const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
     const hasPlot = probe.values.length > 1;
     const rows: [string, string][] = [
@@ -233,7 +234,9 @@ export class Inspect {
     const opens = !this.card.isOpen;
     this.card.show('Line', rows, hasPlot);
     if (opens) this.placeCard();
-    if (hasPlot) await this.card.drawPlot(probe, this.host.fieldTitle);
+    const info = color && manifest?.fields[color.field];
+    const format = info?.labels && ((value: number): string => formatIn(info, value));
+    if (hasPlot) await this.card.drawPlot(probe, fieldTitle, format);
   }
 
   private async saveTable(): Promise<void> {

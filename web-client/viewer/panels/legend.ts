@@ -1,18 +1,28 @@
-// The colour bar with its numbers, and marks where layers draw or hide.
+// The colour bar with its numbers, and marks where layers draw or hide. A label has a list of its
+// values instead.
 
-import {colorGradient, labelGradient} from '../../core/picture/color_maps';
+import {
+  colorGradient,
+  colorTable,
+  kColorMapEntries,
+  labelColors,
+  labelGradient,
+} from '../../core/picture/color_maps';
 import type {Scalar} from '../../core/picture/field_scale';
+import {labelColorOf, type ShownLabels} from '../../core/picture/labels';
 import {linearPart, placeOn} from '../../core/picture/log_scale';
 import {labelTicks, logTicks, niceTicks, type Ticks} from '../../core/picture/ticks';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {setAttribute, setText} from '../page/find';
-import {formatFactor, formatValue} from '../page/format';
+import {formatCount, formatFactor, formatIn, formatValue} from '../page/format';
 import type {Settings, ShownRange} from '../settings/settings';
 import {scalarTitle} from './panel';
 
 const kMaxTicks = 6;
 /** Whole numbers are short. */
 const kMaxLabelTicks = 20;
+/** Labels with more letters stand in one column. */
+const kLongLetters = 18;
 
 export class Legend {
   private readonly figure: HTMLElement;
@@ -27,10 +37,10 @@ export class Legend {
   }
 
   show(
-    scalar: Scalar,
+    {color: scalar, labels}: {color: Scalar; labels?: ShownLabels},
     fields: readonly FieldInfo[],
     range: ShownRange,
-    {map, reversed}: Settings,
+    settings: Settings,
     marked: readonly number[],
   ): void {
     this.figure.hidden = false;
@@ -38,7 +48,8 @@ export class Legend {
     const name = this.part('.legend-name');
     setText(name, title);
     setAttribute(name, 'title', title);
-    const requested = JSON.stringify([range, map, reversed, marked]);
+    const {map, reversed} = settings;
+    const requested = JSON.stringify([title, range, map, reversed, marked, labels]);
     if (requested === this.shown) return; // every picture asks, but few change it
     this.shown = requested;
     const {ticks, factor} = ticksOf(range);
@@ -47,6 +58,11 @@ export class Legend {
     const note = noteOf(range);
     this.part('.legend-note').hidden = note === '';
     this.part('.legend-note').textContent = note;
+    const info = fields[scalar.field]!;
+    for (const its of ['bar', 'ticks']) this.part(`.legend-${its}`).hidden = labels !== undefined;
+    this.part('.legend-labels').hidden = labels === undefined;
+    this.figure.classList.remove('long');
+    if (labels) return this.list(labels, info, colorsOf(range, settings));
     this.part('.legend-bar').style.background = range.labels
       ? labelGradient(range.labels, reversed)
       : colorGradient(map, reversed, 33);
@@ -59,6 +75,30 @@ export class Legend {
     this.part('.legend-ticks').replaceChildren(
       ...ticks.map(({at, label}) => placed('span', at, label)),
     );
+  }
+
+  private list(
+    {values, count}: ShownLabels,
+    info: FieldInfo,
+    colorOf: (label: number) => string,
+  ): void {
+    const rows = values.map((label) => {
+      const row = document.createElement('li');
+      const swatch = document.createElement('i');
+      swatch.style.background = colorOf(label);
+      const name = document.createElement('span');
+      name.textContent = row.title = formatIn(info, label);
+      row.append(swatch, name);
+      return row;
+    });
+    const more = document.createElement('li');
+    more.className = 'more';
+    more.textContent = `and ${formatCount(count - values.length)} more`;
+    const longest = Math.max(...rows.map((row) => row.textContent.length));
+    const list = this.part('.legend-labels');
+    list.style.setProperty('--longest', String(longest));
+    list.replaceChildren(...rows, ...(count > values.length ? [more] : []));
+    this.figure.classList.toggle('long', longest > kLongLetters);
   }
 
   /** The factor by which the vectors move the mesh; 0: it rests. */
@@ -79,6 +119,20 @@ function placed(tag: 'i' | 'span', at: number, text = ''): HTMLElement {
   element.style.left = `${100 * at}%`;
   element.textContent = text;
   return element;
+}
+
+/** The colour of a label, as CSS. */
+function colorsOf(range: ShownRange, {map, reversed}: Settings): (label: number) => string {
+  if (range.labels) {
+    const colors = labelColors(reversed);
+    return (label) => `rgb(${colors[labelColorOf(label)]!.join(' ')})`;
+  }
+  const table = colorTable(map, reversed);
+  return (label) => {
+    const share = range.low < range.high ? Math.min(1, Math.max(0, placeOn(range, label))) : 0;
+    const at = 4 * Math.round((kColorMapEntries - 1) * (share || 0));
+    return `rgb(${table.slice(at, at + 3).join(' ')})`;
+  };
 }
 
 function ticksOf({labels, logarithmic, low, high}: ShownRange): Ticks {

@@ -7,14 +7,15 @@ import {scalarTitle} from './panel';
 /** More are noise of the arithmetic: a float has nine, and a large coordinate some more. */
 const kDigits = 12;
 
-/** Each row is a place: distance, position, and each component of the fields that are here. */
+/**
+ * Each row is a place: distance, position, and each component of the fields that are here. Behind a
+ * label with names stands the value's name.
+ */
 export function tableOf(places: readonly LineValues[], infos: readonly FieldInfo[]): Blob {
   const here = places.find(({fields}) => fields.length > 0)?.fields ?? [];
-  const titles = here.flatMap(({field, values}) =>
-    values.map((_, component) => scalarTitle({field, component}, infos)),
-  );
+  const titles = here.flatMap(({field, values}) => titlesOf(field, values, infos));
   const rows = places.map(({at, position, fields}) => {
-    const values = fields.flatMap((its) => its.values);
+    const values = fields.flatMap((its) => withNames(its.values, infos[its.field]!));
     return [at, ...position, ...titles.map((_, i) => values[i] ?? NaN)];
   });
   return csvOf([['distance', 'x', 'y', 'z', ...titles], ...rows]);
@@ -34,15 +35,31 @@ export function timeTableOf(
   infos: readonly FieldInfo[],
   timeUnit?: string,
 ): Blob {
-  const titles = infos[field]!.minimum.map((_, component) =>
-    scalarTitle({field, component}, infos),
-  );
-  const rows = times.map((time, i) => [
-    time,
-    ...titles.map((_, component) => values[i]![component] ?? NaN),
-  ]);
+  const info = infos[field]!;
+  const titles = titlesOf(field, info.minimum, infos);
+  const rows = times.map((time, i) => {
+    const its = withNames(values[i]!, info);
+    return [time, ...titles.map((_, component) => its[component] ?? NaN)];
+  });
   return csvOf([[timeUnit ? `time [${timeUnit}]` : 'time', ...titles], ...rows]);
 }
+
+function titlesOf(
+  field: number,
+  components: readonly number[],
+  infos: readonly FieldInfo[],
+): string[] {
+  const titles = components.map((_, component) => scalarTitle({field, component}, infos));
+  return hasNames(infos[field]!) ? [...titles, `${titles[0]!}, name`] : titles;
+}
+
+function withNames(values: readonly number[], info: FieldInfo): (string | number)[] {
+  return hasNames(info) && values.length > 0
+    ? [...values, info.labels?.get(values[0]!) ?? NaN]
+    : [...values];
+}
+
+const hasNames = ({labels}: FieldInfo): boolean => labels !== undefined && labels.size > 0;
 
 function csvOf(table: (string | number)[][]): Blob {
   return new Blob([table.map((row) => row.map(cell).join(',')).join('\r\n')], {type: 'text/csv'});

@@ -5,6 +5,7 @@ import {positionOf, type Vector} from '../../core/protocol/geometry';
 import type {Manifest} from '../../core/protocol/manifest';
 import {instantsOf} from '../../core/protocol/series';
 import type {SeriesServer} from '../../core/transport/series_server';
+import {formatIn} from '../page/format';
 import type {TimeTable} from './line_table';
 import type {TimeCurve, TimePlot} from './probe_plot';
 import {BlockValues, ServerValues, type BlocksHost, type TimeValues} from './time_values';
@@ -156,6 +157,7 @@ export class OverTime {
 
   private curve({times, values, status}: TimeValues, {field, component}: Scalar): TimeCurve {
     const {mesh, fieldTitle} = this.host;
+    const info = mesh.manifest!.fields[field]!;
     const valueOf = (its: number[]): number => {
       if (its.length === 0) return NaN;
       if (its.length === 1) return its[0]!;
@@ -165,7 +167,8 @@ export class OverTime {
       at: times,
       values: values.map(valueOf),
       title: fieldTitle,
-      time: mesh.manifest!.fields[field]!.instant!.time,
+      format: info.labels && ((value) => formatIn(info, value)),
+      time: info.instant!.time,
       status: `${status}${mesh.isOneOfSegments ? kOfSegment : ''}`,
     };
   }

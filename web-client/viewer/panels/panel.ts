@@ -40,6 +40,13 @@ export function scalarName({field, component}: Scalar, fields: readonly FieldInf
   return `${name}, ${info.components <= 3 ? kAxes[component] : `component ${component + 1}`}`;
 }
 
+/** The name of the one shown field if it is a label: its error is a share of the volume. */
+export function labelName(shown: readonly number[], fields: readonly FieldInfo[]): string | null {
+  const [field, ...more] = shown;
+  if (field === undefined || more.length > 0 || !fields[field]?.labels) return null;
+  return scalarName({field, component: kMagnitude}, fields);
+}
+
 /**
  * Offers every field, of a series the instant that is shown, and the components of vectors. Fields
  * of points and of cells are in groups if there are both.

@@ -17,6 +17,8 @@ interface Curve {
   at: readonly number[];
   values: readonly number[];
   title: string;
+  /** A value's text; absent: its number. */
+  format?: ((value: number) => string) | undefined;
 }
 
 export interface TimeCurve extends Curve {
@@ -40,8 +42,9 @@ export function drawProbe(
   place: HTMLElement,
   probe: Probe,
   title: string,
+  format?: (value: number) => string,
 ): {destroy(): void} {
-  const curve = {...probe, title};
+  const curve = {...probe, title, format};
   const plot = draw(root, place, curve, {
     points: {show: false},
     say: (i) => (i == null ? title : readout(curve, i)),
@@ -137,11 +140,10 @@ const dataOf = ({at, values}: Curve): uPlot.AlignedData => [
 const readoutOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.readout')!;
 const statusOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.status')!;
 
-function readout({at, values, title}: Curve, i: number): string {
+function readout({at, values, title, format}: Curve, i: number): string {
   const known = values.filter((value) => !Number.isNaN(value));
-  return (
-    `${title} ${formatTo(values[i]!, resolutionIn(known))} at ` + formatTo(at[i]!, resolutionIn(at))
-  );
+  const value = format?.(values[i]!) ?? formatTo(values[i]!, resolutionIn(known));
+  return `${title} ${value} at ${formatTo(at[i]!, resolutionIn(at))}`;
 }
 
 const resolutionIn = (values: readonly number[]): number =>

@@ -7,9 +7,10 @@ import {errorOfLevel, type Limit} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {StreamState} from '../../core/session/worker_messages';
 import {untilBeat} from '../page/beat';
-import {find, onClick, setText} from '../page/find';
+import {find, onClick, setAttribute, setText} from '../page/find';
 import {formatBytes, formatCount, formatDuration, formatError, percentOf} from '../page/format';
 import type {ErrorCurve} from './error_curve';
+import {labelName} from './panel';
 
 const kStateTexts: Record<StreamState, string> = {
   connecting: 'Connecting',
@@ -139,7 +140,7 @@ export class ProgressPanel {
     showOfTotal(this.part('.cells'), formatCount(tetrahedra), formatCount(total.tetrahedra));
     const error = this.errorLeft();
     this.part('.error-row').hidden = error === null;
-    if (error !== null) setText(this.part('.error-left'), formatError(error));
+    if (error !== null) this.showError(formatError(error));
     const seconds = this.secondsLeft();
     this.part('.eta-row').hidden = seconds === null;
     if (seconds !== null) setText(this.part('.eta'), formatDuration(seconds));
@@ -149,9 +150,20 @@ export class ProgressPanel {
     this.announced = Math.max(this.announced, step);
   }
 
+  private showError(error: string): void {
+    const label = labelName(this.fields, this.manifest!.fields);
+    const left = this.part('.error-left');
+    setText(left, label === null ? error : `${error} of the volume`);
+    setAttribute(
+      left,
+      'title',
+      label === null ? '' : `${error} of the volume has another ${label}`,
+    );
+  }
+
   private drawCurve(): void {
     const {curve, fields, manifest, plan, statistics} = this;
-    if (statistics && manifest) curve?.draw(plan, statistics, manifest.levels, fields);
+    if (statistics && manifest) curve?.draw(plan, statistics, manifest, fields);
   }
 
   private secondsLeft(): number | null {

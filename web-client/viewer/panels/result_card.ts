@@ -100,9 +100,9 @@ export class ResultCard {
   }
 
   /** Draws the field along a line. uPlot is loaded with the first plot. */
-  async drawPlot(probe: Probe, title: string): Promise<void> {
+  async drawPlot(probe: Probe, title: string, format?: (value: number) => string): Promise<void> {
     const {drawProbe} = await import('./probe_plot');
-    if (!this.ended) this.plotBy((root, place) => drawProbe(root, place, probe, title));
+    if (!this.ended) this.plotBy((root, place) => drawProbe(root, place, probe, title, format));
   }
 
   /** Makes room for what `draw` draws. */

@@ -33,7 +33,9 @@ export class Shell {
   showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
     if (range && snapshot?.color && manifest) {
       const marked = markedValues(snapshot.color, (name) => this.page.read(name), manifest.fields);
-      this.legend.show(snapshot.color, manifest.fields, range, settings, marked);
+      const {color, labels} = snapshot;
+      const shown = labels ? {color, labels} : {color};
+      this.legend.show(shown, manifest.fields, range, settings, marked);
       this.legend.showWarp(snapshot.warp?.scale ?? 0);
     } else {
       this.legend.hide();

@@ -142,7 +142,12 @@ export class ServerValues implements TimeValues {
   get status(): string {
     const {here, isExact} = this;
     if (!here) return 'The server is asked for the values.';
-    const quality = isExact ? 'exact' : `rms error at most ${formatError(kSeriesError)}`;
+    const error = `at most ${formatError(kSeriesError)}`;
+    const quality = isExact
+      ? 'exact'
+      : this.question.field.labels
+        ? `wrong in ${error} of the volume`
+        : `rms error ${error}`;
     const level = `level ${here.level} of ${this.question.lastLevel}`;
     const more = {
       unasked: '',

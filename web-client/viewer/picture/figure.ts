@@ -3,6 +3,7 @@
 
 import type {Axes} from '../../webgl/lens';
 import type {Frame, Tile} from '../../webgl/view';
+import {drawSwatch, gridOf, kIndent, type Grid, type LabelText} from './label_list';
 import {facePlaces, kHalf} from '../panels/orientation_cube';
 
 /** A text of 14 of these pixels is legible on a slide and, with two columns, on paper. */
@@ -51,6 +52,8 @@ export interface LegendTexts {
   gradient: string;
   ticks: {at: number; label: string}[];
   marks: number[];
+  /** They are listed instead of a bar; none: the bar is drawn. */
+  labels: LabelText[];
   notes: string[];
   /** The colour of what has no value; empty: everything has one. */
   missing: string;
@@ -76,6 +79,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   const at = (its: HTMLElement): number => parseFloat(its.style.left) / 100;
   const time = legend.querySelector<HTMLElement>('.time')!;
   const notes = [
+    part('labels').hidden ? '' : (part('labels').querySelector('.more')?.textContent ?? ''),
     time.hidden ? '' : (time.querySelector('output')?.textContent ?? ''),
     text('note'),
     text('warp'),
@@ -90,11 +94,18 @@ export function legendOf(root: ParentNode): LegendTexts | null {
       label: its.textContent,
     })),
     marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
+    labels: part('labels').hidden ? [] : [...part('labels').children].flatMap(labelOf),
     notes: notes.filter(Boolean),
     missing: notes.at(-1)
       ? getComputedStyle(part('missing').querySelector('i')!).backgroundColor
       : '',
   };
+}
+
+/** None of the row that says how many more there are. */
+function labelOf(row: Element): LabelText[] {
+  const swatch = row.querySelector('i');
+  return swatch ? [{text: row.textContent, color: swatch.style.background}] : [];
 }
 
 /** [share, colour] of a CSS gradient's stops. Without shares they are evenly spaced. */
@@ -119,8 +130,15 @@ export function refusalOf({width, height}: Pick<Figure, 'width' | 'height'>): st
 export const unitOf = ({width, height}: Pick<Figure, 'width' | 'height'>): number =>
   Math.sqrt((width * height) / kUnitPixels);
 
-const legendHeight = ({notes}: LegendTexts): number =>
-  kText * kLine + 8 + kBarHeight + 6 + kSmallText * kLine * (1 + notes.length);
+/** Between the axes and as much on the other side. */
+const freeWidth = (figure: Pick<Figure, 'width' | 'height'>): number =>
+  figure.width / unitOf(figure) - 2 * (kGap + 2 * kAxis + kText);
+
+function legendHeight({labels, notes}: LegendTexts, most: number): number {
+  const isList = labels.length > 0;
+  const rows = notes.length + (isList ? gridOf(labels, most).rows : 1);
+  return kText * kLine + 8 + (isList ? 0 : kBarHeight + 6) + kSmallText * kLine * rows;
+}
 
 /** The frame of the figure's mesh. `canvas` is the page's, in CSS pixels. */
 export function frameOf(
@@ -130,7 +148,7 @@ export function frameOf(
 ): Frame {
   const {width, height, title, hasLegend} = figure;
   const above = title ? kTitle * kLine : 0;
-  const below = hasLegend && legend ? legendHeight(legend) : 0;
+  const below = hasLegend && legend ? legendHeight(legend, freeWidth(figure)) : 0;
   const most = Math.max(above, below);
   const margin = most > 0 ? ((most + kGap) * unitOf(figure)) / height : 0;
   return {
@@ -149,7 +167,7 @@ export function draw(
 ): OffscreenCanvas {
   const canvas = new OffscreenCanvas(figure.width, figure.height);
   const context = canvas.getContext('2d')!;
-  const {title, unit, hasLegend, hasAxes} = figure;
+  const {title, hasLegend, hasAxes} = figure;
   fillGround(context, figure, looks);
   for (const {x, y, bitmap} of tiles) context.drawImage(bitmap, x, y);
   const its = figure.ground === 'seen' ? looks : {...looks, ink: kInk, softInk: kSoftInk};
@@ -159,7 +177,7 @@ export function draw(
   const height = figure.height / scale;
   const pen = new Pen(context, its);
   if (title) pen.write(title, kTitle, width / 2, kGap + kTitle, {align: 'center', bold: true});
-  if (hasLegend && legend) drawLegend(pen, legend, unit, width, height);
+  if (hasLegend && legend) drawLegend(pen, legend, figure, height);
   if (hasAxes) drawAxes(pen, kGap + kAxis + kText / 2, height - kGap - kAxis - kText / 2);
   return canvas;
 }
@@ -208,48 +226,68 @@ function fillGround(
 }
 
 /** In the middle below the mesh, beside the axes. */
-function drawLegend(
-  pen: Pen,
-  legend: LegendTexts,
-  unit: string,
-  width: number,
-  height: number,
-): void {
+function drawLegend(pen: Pen, legend: LegendTexts, figure: Figure, height: number): void {
   const {context} = pen;
-  const bar = Math.min(kBarWidth, width - 2 * (kGap + 2 * kAxis + kText));
-  const left = (width - bar) / 2;
-  let y = height - kGap - legendHeight(legend) + kText;
+  const {unit} = figure;
+  const most = freeWidth(figure);
+  const grid = legend.labels.length > 0 ? gridOf(legend.labels, most) : null;
+  const bar = Math.min(most, grid ? grid.columns * grid.each : kBarWidth);
+  const left = most / 2 + kGap + 2 * kAxis + kText - bar / 2;
+  let y = height - kGap - legendHeight(legend, most) + kText;
   const factor = {align: 'right', soft: true} as const;
   pen.write(legend.factor, kText, left + bar, y, factor);
   const free = bar - (legend.factor ? context.measureText(legend.factor).width + kText : 0);
   const name = unit ? `${legend.name} (${unit})` : legend.name;
   pen.write(name, kText, left, y, {bold: true, maxWidth: free});
   y += kText * (kLine - 1) + 8;
-  const gradient = context.createLinearGradient(left, 0, left + bar, 0);
+  const place = {left, top: y, width: bar};
+  y = grid ? drawLabels(pen, legend, grid, place) : drawBar(pen, legend, place);
+  legend.notes.forEach((note, i) => {
+    y += kSmallText * kLine;
+    const isMissing = legend.missing !== '' && i === legend.notes.length - 1;
+    if (isMissing) drawSwatch(context, legend.missing, left, y);
+    const indent = isMissing ? kIndent : 0;
+    pen.write(note, kSmallText, left + indent, y, {soft: true, maxWidth: bar - indent});
+  });
+}
+
+interface Place {
+  left: number;
+  top: number;
+  width: number;
+}
+
+/** Returns the foot of the last row. */
+function drawLabels(pen: Pen, {labels}: LegendTexts, grid: Grid, {left, top}: Place): number {
+  const {columns, rows, each} = grid;
+  const footOf = (row: number): number => top + kSmallText + row * kSmallText * kLine;
+  labels.forEach(({text, color}, i) => {
+    const x = left + (i % columns) * each;
+    const y = footOf(Math.floor(i / columns));
+    drawSwatch(pen.context, color, x, y);
+    pen.write(text, kSmallText, x + kIndent, y, {soft: true, maxWidth: each - kIndent});
+  });
+  return footOf(rows - 1);
+}
+
+/** Returns the foot of its numbers. */
+function drawBar(pen: Pen, legend: LegendTexts, {left, top, width}: Place): number {
+  const {context} = pen;
+  const gradient = context.createLinearGradient(left, 0, left + width, 0);
   for (const stop of stopsOf(legend.gradient)) gradient.addColorStop(...stop);
   context.fillStyle = gradient;
   context.beginPath();
-  context.roundRect(left, y, bar, kBarHeight, kBarHeight / 2);
+  context.roundRect(left, top, width, kBarHeight, kBarHeight / 2);
   context.fill();
-  for (const at of legend.marks) drawMark(context, left + at * bar, y);
-  y += kBarHeight;
+  for (const at of legend.marks) drawMark(context, left + at * width, top);
+  const y = top + kBarHeight;
   for (const {at, label} of legend.ticks) {
-    const x = left + at * bar;
+    const x = left + at * width;
     context.fillStyle = pen.looks.softInk;
     context.fillRect(x - 0.5, y, 1, 4);
     pen.write(label, kSmallText, x, y + 6 + kSmallText, {align: 'center', soft: true});
   }
-  y += 6 + kSmallText;
-  legend.notes.forEach((note, i) => {
-    y += kSmallText * kLine;
-    const isMissing = legend.missing !== '' && i === legend.notes.length - 1;
-    if (isMissing) {
-      context.fillStyle = legend.missing;
-      context.fillRect(left, y - 9, 18, 10);
-    }
-    const indent = isMissing ? 26 : 0;
-    pen.write(note, kSmallText, left + indent, y, {soft: true, maxWidth: bar - indent});
-  });
+  return y + 6 + kSmallText;
 }
 
 /** The value of an isosurface or the end of a threshold. */

@@ -5,11 +5,10 @@ import {parseClip, type ClipSetting} from '../../core/layers/clip';
 import {parseNumbers, parseScalar} from '../../core/layers/field_values';
 import {kLayers, type LayerAttribute} from '../../core/layers/layers';
 import {readVolume} from '../../core/layers/volume';
-import {isColorMapName, type ColorMapName} from '../../core/picture/color_maps';
+import {isColorMapName, kLabelColors, type ColorMapName} from '../../core/picture/color_maps';
 import {kClipModes, type ClipMode} from '../../core/picture/display';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import {tailsHide} from '../../core/picture/spread';
-import {kMaxLabels} from '../../core/picture/labels';
 import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {shownInstant} from '../../core/protocol/series';
@@ -136,10 +135,10 @@ export function shownScalar(
 
 // ---- the range that the colours span
 
-/** The map `labels` spans kMaxLabels numbers, with each in the middle of its colour. */
+/** The map `labels` spans kLabelColors numbers, with each in the middle of its colour. */
 export function labelRange([first, count]: [number, number]): Omit<ShownRange, 'hasMissing'> {
   const low = first - 0.5;
-  return {low, high: low + kMaxLabels, logarithmic: false, hides: 'none', labels: count};
+  return {low, high: low + kLabelColors, logarithmic: false, hides: 'none', labels: count};
 }
 
 export interface ShownRange {
