@@ -18,6 +18,13 @@ namespace qtet {
   return out;
 }
 
+/// By field, once for all instants of a series: {"Material": {"1": "steel", "2": "oil"}}
+[[nodiscard]] inline nlohmann::ordered_json toJson(const Labels& labels) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  for (const auto& [field, names] : labels) out[field] = toJson(names);
+  return out;
+}
+
 [[nodiscard]] inline nlohmann::ordered_json fieldErrorJson(const FieldError& error, bool isLabel) {
   if (isLabel) return {{"wrong", error.rms}};
   return {{"rms", error.rms}, {"max", error.max}};

@@ -106,9 +106,8 @@ std::string manifestToJson(const Manifest& manifest) {
     if (manifest.fields[f].hasMissing) out["fields"][f]["gaps"] = true;
     if (const auto unit = unitOf(manifest, manifest.fields[f].name); !unit.empty())
       out["fields"][f]["unit"] = unit;
-    if (const LabelNames* names = labelNamesOf(manifest, f))
-      out["fields"][f]["labels"] = toJson(*names);
   }
+  if (!manifest.labels.empty()) out["labels"] = toJson(manifest.labels);
   const std::vector<bool> isLabel = labelsAmong(manifest);
   out["levels"] = Json::array();
   for (const ManifestLevel& l : manifest.levels) {

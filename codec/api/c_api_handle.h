@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <new>
 #include <optional>
 #include <string>
@@ -39,11 +40,11 @@ struct qtet_log : qtet::Failure {
       "out-of-memory: there is not enough memory; refine to a coarser level";
 
   std::optional<qtet::LogFile> file;
-  qtet::Manifest manifest;               // of `file`
-  std::vector<qtet::Series> series;      // of `manifest`
-  std::vector<std::string> units;        // of its fields, and then of times
-  std::vector<std::string> labels;       // of its fields: names as JSON, "" without
-  std::optional<qtet::Refiner> refiner;  // of `file`, with a complete level
+  qtet::Manifest manifest;                                 // of `file`
+  std::vector<qtet::Series> series;                        // of `manifest`
+  std::vector<std::string> units;                          // of its fields, and then of times
+  std::map<std::string, std::string, std::less<>> labels;  // by name without @TIME, as JSON
+  std::optional<qtet::Refiner> refiner;                    // of `file`, with a complete level
 
   // Checks of a call's arguments. Each returns QTET_OK or refuses.
   qtet_status needField(std::uint32_t field);

@@ -9,6 +9,7 @@
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
 #include "codec/refine/refiner.h"
+#include "proto/field_key.h"
 #include "proto/level_error_json.h"
 #include "proto/limits.h"
 
@@ -38,10 +39,8 @@ qtet_status take(qtet_log* log, Result<LogFile> file, const std::string& path) {
   for (const ManifestField& field : log->manifest.fields)
     log->units.emplace_back(qtet::unitOf(log->manifest, field.name));
   log->units.emplace_back(qtet::timeUnit(log->manifest));
-  for (std::size_t f = 0; f < log->manifest.fields.size(); ++f) {
-    const qtet::LabelNames* names = qtet::labelNamesOf(log->manifest, f);
-    log->labels.push_back(names == nullptr ? "" : qtet::toJson(*names).dump());
-  }
+  for (const auto& [name, values] : log->manifest.labels)
+    log->labels[name] = qtet::toJson(values).dump();
   log->file = std::move(*file);
   return QTET_OK;
 }
@@ -129,7 +128,9 @@ qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
   info.name = f.name.c_str();
   info.type = f.type.c_str();
   info.unit = log.units[field].c_str();
-  info.labels = log.labels[field].c_str();
+  info.labels = "";
+  if (qtet::labelNamesOf(log.manifest, field) != nullptr)
+    info.labels = log.labels.find(qtet::nameWithoutStep(f.name).value_or(f.name))->second.c_str();
   return info;
 }
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -164,18 +165,16 @@ LabelNames readLabelNames(ByteReader& r) {
   return out;
 }
 
-Labels readLabels(ByteReader& r, std::span<const ManifestField> fields) {
+/// Later fields may be labels, too, so that a name may be of no field yet.
+Labels readLabels(ByteReader& r) {
   Labels out;
   const std::uint32_t count = r.readVarint();
   for (std::uint32_t i = 0; i < count && !r.failed(); ++i) {
     std::string name = readText(r);
-    const auto isIt = [&](const ManifestField& field) {
-      return mayBeLabel(field) && nameWithoutStep(field.name).value_or(field.name) == name;
-    };
-    if ((!out.empty() && name <= out.rbegin()->first) || std::ranges::none_of(fields, isIt))
+    if ((!out.empty() && name <= out.rbegin()->first) || name.empty())
       r.fail(ErrorCode::kBadValue,
-             "the manifest's labels are not in the order of their names, or one is no cell field "
-             "of one integer; build the log again");
+             "the manifest's labels are not in the order of their names, or one has none; build "
+             "the log again");
     out.emplace_hint(out.end(), std::move(name), readLabelNames(r));
   }
   return out;
@@ -220,7 +219,7 @@ KnownErrors readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
   if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
   if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, out.fields.size());
   if ((flags & kUnitsFollow) != 0) out.units = readUnits(r);
-  if ((flags & kLabelsFollow) != 0) out.labels = readLabels(r, out.fields);
+  if ((flags & kLabelsFollow) != 0) out.labels = readLabels(r);
   if ((flags & kSomeErrorsFollow) != 0) return KnownErrors::kSome;
   return (flags & kAllErrorsFollow) != 0 ? KnownErrors::kAll : KnownErrors::kNone;
 }
@@ -474,11 +473,12 @@ Status setManifest(LogIndex& index, Manifest manifest) {
            });
   });
   std::erase_if(manifest.labels, [&](const auto& entry) {
-    const auto front = std::span(manifest.fields).first(manifest.fields.size() - index.laterFields);
-    return std::ranges::none_of(front, [&](const ManifestField& field) {
+    return std::ranges::none_of(manifest.fields, [&](const ManifestField& field) {
       return mayBeLabel(field) && nameWithoutStep(field.name).value_or(field.name) == entry.first;
     });
   });
+  for (auto& [name, values] : manifest.labels)
+    while (values.size() > kMaxLabelNames) values.erase(std::prev(values.end()));
   Result<Bytes> front = manifestBlock(manifest, index.laterFields);
   if (!front) return std::unexpected(front.error());
   index.manifest = std::move(*front);

@@ -133,7 +133,7 @@ int runAddField(const Words& words, Console& console) {
        "those of the new fields are measured.\n"
        "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
        "(keys), from, added [{name, association,\ncomponents, type, bits, step, minimum, range, "
-       "missingValues, bytes, error {rms, max} of the base mesh}], notes.",
+       "missingValues, bytes, error {rms, max} or {wrong} of the base mesh}], notes.",
        "  qtet add-field fin.qtet --from later.vtu --fields Pressure\n  qtet add-field fin.qtet "
        "--from fin.vtu --replace --field-bits 16 -o fine.qtet\n"},
       options, {"LOG"});

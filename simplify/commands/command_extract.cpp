@@ -411,7 +411,7 @@ int runExtract(const Words& words, Console& console) {
       "the finest level with at most this fraction of all tetrahedra, 0 to 1")(
       "error", po::value<std::string>(),
       "NAME=E: the coarsest level at which this field's rms error is at most E, a fraction of its "
-      "range; cell:NAME where a point field has the same name")(
+      "range, or of a label's volume; cell:NAME where a point field has the same name")(
       "boundary-error", po::value<double>(),
       "the coarsest level whose boundary is nowhere further than this from the original's, as a "
       "fraction of the diagonal")("fields", po::value<std::string>()->default_value("all"),

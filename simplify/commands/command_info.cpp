@@ -35,8 +35,6 @@ OrderedJson infoJson(const OpenedLog& log) {
                       {"missingValues", field.hasMissing},
                       {"bytes", bytes}});
     if (const auto unit = unitOf(manifest, field.name); !unit.empty()) fields.back()["unit"] = unit;
-    if (const LabelNames* names = labelNamesOf(manifest, f))
-      fields.back()["labels"] = toJson(*names);
   }
   OrderedJson out = {{"digest", log.file.digest()},
                      {"generator", manifest.generator},
@@ -50,9 +48,11 @@ OrderedJson infoJson(const OpenedLog& log) {
                        {"origin", manifest.latticeOrigin}}},
                      {"timeUnit", timeUnit(manifest)},
                      {"fields", fields},
+                     {"labels", toJson(manifest.labels)},
                      {"kept", closingJson(log.file.closingBlocks(), manifest)},
                      {"levels", levelsJson(log.manifest, log.file.index())}};
   if (timeUnit(manifest).empty()) out.erase("timeUnit");
+  if (manifest.labels.empty()) out.erase("labels");
   return out;
 }
 

@@ -46,7 +46,7 @@ void addMeasureOptions(boost::program_options::options_description& options) {
       "fraction of the diagonal")(
       "max-field-error", po::value<std::vector<std::string>>(),
       "NAME=E: stop before the field's rms error over the volume passes E, a fraction of its "
-      "range; may be given for several fields");
+      "range, or of a label's volume that is wrong; may be given for several fields");
 }
 
 std::optional<MeasureOptions> measureOptionsOf(const ParsedWords& parsed) {

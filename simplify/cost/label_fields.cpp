@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,12 +44,34 @@ void forEachFaceInside(const LatticeMesh& mesh, const Visit& visit) {
   });
 }
 
+bool isOneInteger(const FieldInfo& info) {
+  return isCellField(info) && !isFloatType(info.type) && info.components == 1 && info.step == 1;
+}
+
+/// All instants of a series are labels if one is, or none if some is no integer.
+std::vector<std::size_t> wholeSeries(const LatticeMesh& mesh, std::vector<std::size_t> labels) {
+  std::map<std::string_view, bool> series;  // whether all can be
+  for (const std::size_t f : labels)
+    if (const auto name = nameWithoutStep(mesh.fields[f].name)) series.emplace(*name, true);
+  std::set<std::size_t> out(labels.begin(), labels.end());
+  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
+    const auto at = series.find(nameWithoutStep(mesh.fields[f].name).value_or(""));
+    if (at == series.end() || !isCellField(mesh.fields[f])) continue;
+    at->second &= isOneInteger(mesh.fields[f]);
+    out.insert(f);
+  }
+  std::erase_if(out, [&](std::size_t f) {
+    const auto name = nameWithoutStep(mesh.fields[f].name);
+    return name && !series.at(*name);
+  });
+  return {out.begin(), out.end()};
+}
+
 }  // namespace
 
 bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
   const FieldInfo& info = mesh.fields[field];
-  if (!isCellField(info) || isFloatType(info.type) || info.components != 1 || info.step != 1)
-    return false;
+  if (!isOneInteger(info)) return false;
   std::vector<std::int32_t> values = mesh.values[field];
   std::ranges::sort(values);
   const auto repeated = std::ranges::unique(values);
@@ -63,7 +87,7 @@ std::vector<std::size_t> labelsOf(const LatticeMesh& mesh) {
     const bool isKnown = isAmong(kLabelNames, name) || !mesh.fields[f].labelNames.empty();
     (isKnown ? labels : asked).push_back(f);
   }
-  if (asked.empty()) return labels;
+  if (asked.empty()) return wholeSeries(mesh, std::move(labels));
   std::size_t faces = 0;
   std::vector<std::size_t> equal(asked.size());
   forEachFaceInside(mesh, [&](FaceSide first, FaceSide second) {
@@ -75,8 +99,17 @@ std::vector<std::size_t> labelsOf(const LatticeMesh& mesh) {
   for (std::size_t i = 0; i < asked.size(); ++i)
     if (static_cast<double>(equal[i]) > kLabelNeighbours * static_cast<double>(faces))
       labels.push_back(asked[i]);
-  std::ranges::sort(labels);
-  return labels;
+  return wholeSeries(mesh, std::move(labels));
+}
+
+LabelNames namesOfValues(const FieldInfo& info, const std::vector<std::int32_t>& integers) {
+  LabelNames out;
+  if (info.labelNames.empty()) return out;
+  std::set<double> values;
+  for (const std::int32_t integer : integers) values.insert(info.value(0, integer));
+  for (const auto& named : info.labelNames)
+    if (values.contains(named.first)) out.insert(named);
+  return out;
 }
 
 std::vector<Triangle> interfacesOf(const LatticeMesh& mesh, std::size_t field) {

@@ -248,7 +248,7 @@ std::map<const FieldAdder::SeriesState*, std::optional<FieldInfo>> FieldAdder::c
 /// A label of the log, or one by labelsOf.
 bool FieldAdder::isLabel(const std::vector<Tetrahedron>& tetrahedra, const FieldInfo& info,
                          const std::vector<std::int32_t>& values) const {
-  if (!isCellField(info) || isFloatType(info.type)) return false;
+  if (!mayBeLabel(manifestFieldOf(info))) return false;
   if (labels_.contains(nameWithoutStep(info.name).value_or(info.name))) return true;
   LatticeMesh alone;
   alone.tetrahedra = tetrahedra;
@@ -276,6 +276,7 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
     const std::vector<std::uint32_t>& logs = isCellField(info) ? match_.tetrahedra : match_.points;
     Item& item = out.emplace_back();
     item.isLabel = isLabel(mesh.tetrahedra, info, quantised->values);
+    quantised->info.labelNames = namesOfValues(info, quantised->values);
     item.values = inLogOrder(quantised->values, info.components, logs);
     if (!isCellField(info)) item.values = fused_->of(std::move(item.values), info.components);
     if (!quantised->missing.empty())
@@ -347,7 +348,7 @@ Result<FieldAdder::Item> FieldAdder::itemOf(const Instant& instant) const {
       historyValues(log_, *history_, static_cast<std::uint32_t>(instant.number));
   if (!values) return std::unexpected(values.error());
   Item out{instant.info, std::move(*values), {}, {}, true};
-  out.isLabel = isCellField(instant.info) &&
+  out.isLabel = mayBeLabel(manifestFieldOf(instant.info)) &&
                 labels_.contains(nameWithoutStep(instant.info.name).value_or(instant.info.name));
   if (!instant.info.hasMissing) return out;
   const std::size_t n = instant.info.components;

@@ -86,13 +86,19 @@ Result<std::map<std::size_t, std::optional<double>>> namedLabels(
     if (meant.empty())
       return fail(ErrorCode::kNotFound,
                   "`labelWeights`: the mesh carries no cell field '" + name + "'");
+    bool isFirst = true;  // of a series: its others follow
     for (const std::uint32_t f : meant) {
-      if (weight > 0 && !canBeLabel(mesh, f))
+      if (weight == 0) {
+        if (f != regions) out.erase(f);
+        continue;
+      }
+      if (!canBeLabel(mesh, f))
         return fail(ErrorCode::kBadInput,
                     "`labelWeights`: '" + name +
                         "' is no label: that takes a cell field of one component of 2 to " +
                         std::to_string(kMaxLabelValues) + " integers");
-      if (weight > 0 || out.contains(f)) out[f] = weight;
+      out[f] = isFirst ? std::optional(weight) : std::nullopt;
+      isFirst = false;
     }
   }
   return out;
@@ -142,10 +148,11 @@ Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
     if (!field) return std::unexpected(field.error());
     out.regionField = *field;
   }
-  if (options.algorithm == Algorithm::kPaper) return out;
   const auto labels = namedLabels(options, mesh, out.regionField);
   if (!labels) return std::unexpected(labels.error());
   out.cost.labels = labelCosts(mesh.fields, *out.cost.boundaryWeight, *labels);
+  if (options.algorithm == Algorithm::kPaper)
+    for (LabelCost& label : out.cost.labels) label.weight = 0;
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "codec/log/log_manifest.h"
 #include "proto/version.h"
 #include "simplify/cost/cost_parts.h"
+#include "simplify/cost/label_fields.h"
 #include "simplify/measure/focus.h"
 #include "simplify/measure/opening.h"
 #include "simplify/mesh/missing_values.h"
@@ -102,18 +103,6 @@ Status takeUnits(const std::vector<MeshField>& fields, Run& run) {
   return {};
 }
 
-/// Names of values that the label has.
-LabelNames namesOf(const LatticeMesh& mesh, std::size_t label) {
-  LabelNames out;
-  const FieldInfo& field = mesh.fields[label];
-  if (field.labelNames.empty()) return out;
-  for (const std::int32_t integer : mesh.values[label]) {
-    const auto named = field.labelNames.find(static_cast<std::int32_t>(field.value(0, integer)));
-    if (named != field.labelNames.end()) out.insert(*named);
-  }
-  return out;
-}
-
 /// The instants of that time come before the others of their series.
 void openAt(double time, TetMesh& mesh, QuantisedMesh& quantised) {
   const std::vector<std::size_t> order = seriesOrder(mesh.fields, time);
@@ -186,7 +175,8 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
     const std::string& name = quantised.mesh.fields[label.field].name;
     const std::string series(nameWithoutStep(name).value_or(name));
     run.labelFields.push_back(static_cast<std::uint32_t>(label.field));
-    run.labels[series].merge(namesOf(quantised.mesh, label.field));
+    run.labels[series].merge(
+        namesOfValues(quantised.mesh.fields[label.field], quantised.mesh.values[label.field]));
     if (run.report.boundaryWeight && label.weight > 0)
       run.report.labelWeights.emplace_back(name, label.weight);
   }

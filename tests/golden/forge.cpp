@@ -180,8 +180,6 @@ const LabelNames kSomeNames{{-7, "air"}, {1, "steel"}, {4, "oil"}};
 void writeBadLabels(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.manifest-labels-of-an-older-version.qtet",
         withLabel(good, "Region", kSomeNames, LogIndex::kMinorOfUnits));
-  write(folder / "bad-value.manifest-label-of-two-components.qtet",
-        withLabel(good, "Height", kSomeNames));
   write(folder / "bad-value.manifest-label-without-a-name.qtet",
         withLabel(good, "Region", {{1, ""}}));
   LabelNames many;

@@ -106,9 +106,7 @@ describe('the labels of a manifest', () => {
   });
 
   test.each<[string, number[], string]>([
-    ['of no field', [1, ...text('c'), 0], 'no cell field of one integer'],
-    ['of a point field', [1, ...text('p'), 0], 'no cell field of one integer'],
-    ['of an instant', [1, ...text('b@0'), 0], 'no cell field of one integer'],
+    ['of a field without a name', [1, ...text(''), 0], 'in no order'],
     ['there twice', [2, ...text('a'), 0, ...text('a'), 0], 'in no order'],
     ['in no order', [2, ...text('b'), 0, ...text('a'), 0], 'in no order'],
     ['without a name', [1, ...text('a'), 1, ...name(1, '')], 'empty'],
@@ -127,9 +125,11 @@ describe('the labels of a manifest', () => {
     expect(() => read([2, ...turned], {cells})).toThrow('in no order');
   });
 
-  test('areRefusedInOlderVersionsAndOfFloats', () => {
+  test('areRefusedInOlderVersionsAndMeanNothingOfOtherFields', () => {
     expect(() => read([1, ...text('a'), 0], {minor: 4})).toThrow('does not know');
-    expect(() => read([1, ...text('a'), 0], {type: 0})).toThrow('no cell field');
+    for (const other of ['c', 'p', 'b@0'])
+      expect(read([1, ...text(other), 0]).fields.some(({labels}) => labels)).toBe(false);
+    expect(read([1, ...text('a'), 0], {type: 0}).fields[1]!.labels).toBe(undefined);
   });
 });
 

@@ -5,7 +5,7 @@ import ctypes
 import ctypes.util
 import os
 import pathlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 _u32, _u64, _f64, _text = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_char_p
@@ -103,7 +103,8 @@ class FieldInfo:
     name: str
     type: str
     unit: str  # "" where it is unknown
-    labels: dict[int, str] | None  # names of values, as far as known; None: the field is no label
+    # names of values, as far as known; None: the field is no label
+    labels: dict[int, str] | None = field(hash=False)
 
 
 @dataclass(frozen=True)

@@ -258,8 +258,9 @@ class Log:
         return self._level(self.c.qtet_log_level_of_tetrahedra, _u64(int(most)))
 
     def level_of_error(self, field: str, bound: float) -> int:
-        """The coarsest level at which a field's rms error is at most `bound` of its range; of a
-        series: at every instant. Field "boundary": the distance, of the diagonal."""
+        """The coarsest level at which a field's rms error is at most `bound` of its range (a
+        label's share of the volume); of a series: at every instant. Field "boundary": the distance,
+        of the diagonal."""
         if field == "boundary":
             return self._level(self.c.qtet_log_level_of_boundary_error, _f64(bound))
         instants = [n for s in self._called(field) for n in s.fields]

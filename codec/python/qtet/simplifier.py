@@ -393,7 +393,8 @@ def simplify(
     original_ids          keep the cell field OriginalCellId (int32) for the last level alone
     threads               the log does not depend on it
     max_boundary_error    coarsest level: the boundary's distance, over the diagonal
-    max_field_errors      {name: rms error over the field's range}
+    max_field_errors      {name: rms error over the field's range; of a label a share of
+                          the volume}
     field_weights         {name: what a point field counts, 1 otherwise}
     label_weights         {name: what the interfaces of a cell field of integers count, such as
                           materials; 0 leaves them out}

@@ -32,10 +32,10 @@ Result<std::string> rangeOf(const VtuFile& file, std::uint64_t begin, std::uint6
   return out;
 }
 
-Result<VtuFile> openedFile(const std::filesystem::path& path) {
+Result<VtuFile> openedFile(const std::filesystem::path& path, std::chrono::seconds patience) {
   if (Status checked = checkMeshFile(path, MeshFormat::kOther); !checked)
     return std::unexpected(checked.error());
-  return VtuFile::open(path);
+  return VtuFile::open(path, patience);
 }
 
 /// A record that is longer than 2^31 bytes has several parts; the lengths of all but the last are
@@ -73,7 +73,7 @@ Status withoutRecordMarks(std::string& bytes, const std::filesystem::path& file,
 }  // namespace
 
 Result<EnSightEncoding> encodingOf(const std::filesystem::path& file, bool isGold) {
-  const Result<VtuFile> opened = openedFile(file);
+  const Result<VtuFile> opened = openedFile(file, kReadPatience);
   if (!opened) return std::unexpected(opened.error());
   const auto front =
       rangeOf(*opened, 0, std::min<std::uint64_t>(opened->size(), kMarkBytes + kLineBytes));
@@ -92,7 +92,7 @@ Result<EnSightEncoding> encodingOf(const std::filesystem::path& file, bool isGol
 Result<const std::vector<EnSightFiles::Range>*> EnSightFiles::stepsOf(
     const std::filesystem::path& path, const EnSightEncoding& encoding) {
   if (const auto known = steps_.find(path); known != steps_.end()) return &known->second;
-  const Result<VtuFile> file = openedFile(path);
+  const Result<VtuFile> file = openedFile(path, patience_);
   if (!file) return std::unexpected(file.error());
   std::vector<Range> out;
   const auto front = rangeOf(*file, 0, std::min(file->size(), kFrontOfSteps));
@@ -100,16 +100,23 @@ Result<const std::vector<EnSightFiles::Range>*> EnSightFiles::stepsOf(
   bool isWithin = false;
   const bool isFortran = encoding.kind == EnSightEncoding::kFortran;
   const std::uint64_t mark = isFortran ? kMarkBytes : 0;
+  std::string some;  // of the file from byte `from` on
+  std::uint64_t from = 0;
   for (std::uint64_t at = front->contains(kBegin) ? 0 : file->size(); at < file->size();) {
-    const auto some = rangeOf(*file, at, std::min(file->size(), at + kSearched));
-    if (!some) return std::unexpected(some.error());
     const std::string_view sought = isWithin ? kEnd : kBegin;
-    const std::size_t found = some->find(sought);
-    if (found == std::string::npos) {
-      if (at + some->size() == file->size()) break;
-      at += some->size() - sought.size();  // it may go beyond the end of what was searched
+    const std::size_t known = at < from + some.size() ? at - from : some.size();
+    const std::size_t place = some.find(sought, known);
+    if (place == std::string::npos) {
+      if (from + some.size() == file->size() && !some.empty()) break;
+      // it may go beyond the end of what was searched
+      if (!some.empty() && at < from + some.size())
+        at = std::max(at, from + some.size() - std::min(some.size(), sought.size()));
+      auto next = rangeOf(*file, at, std::min(file->size(), at + kSearched));
+      if (!next) return std::unexpected(next.error());
+      some = std::move(*next), from = at;
       continue;
     }
+    const std::size_t found = place - (at - from);
     if (isWithin) {
       out.back().end = std::max(out.back().begin, at + found - mark);
       at += found + sought.size();
@@ -127,7 +134,7 @@ Result<const std::vector<EnSightFiles::Range>*> EnSightFiles::stepsOf(
 Result<std::string> EnSightFiles::read(const EnSightPlace& place, const EnSightEncoding& encoding) {
   const auto steps = stepsOf(place.file, encoding);
   if (!steps) return std::unexpected(steps.error());
-  const Result<VtuFile> file = openedFile(place.file);
+  const Result<VtuFile> file = openedFile(place.file, patience_);
   if (!file) return std::unexpected(file.error());
   Range range{0, file->size()};
   if (!(*steps)->empty()) {

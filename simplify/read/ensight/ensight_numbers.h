@@ -39,6 +39,9 @@ struct EnSightBounds {
 /// STEP. It looks for them once.
 class EnSightFiles {
  public:
+  /// `patience` holds for each file.
+  explicit EnSightFiles(std::chrono::seconds patience) : patience_(patience) {}
+
   /// The bytes of the file or of its step, without Fortran's lengths of records. Errors: io,
   /// not-found, truncated (empty; a record that goes beyond the end), bad-input (no such step).
   [[nodiscard]] Result<std::string> read(const EnSightPlace& place,
@@ -51,6 +54,7 @@ class EnSightFiles {
   Result<const std::vector<Range>*> stepsOf(const std::filesystem::path& file,
                                             const EnSightEncoding& encoding);
 
+  std::chrono::seconds patience_;
   std::map<std::filesystem::path, std::vector<Range>> steps_;
 };
 

@@ -23,8 +23,7 @@ class CaseReader {
       return time ? case_.stepAt(item, *time) : 0;
     };
     const std::uint64_t step = stepOf(case_.model);
-    EnSightBounds bounds{options_.patience, maxInflatedBytes()};
-    Result<EnSightGeometry> geometry = geometryOf(step, bounds, report);
+    Result<EnSightGeometry> geometry = geometryOf(step, bounds_, report);
     if (!geometry) return std::unexpected(geometry.error());
     CellMesh unread;
     FieldChoice choice(options_.fields, report);
@@ -33,7 +32,8 @@ class CaseReader {
       const auto name = choice.nameOf({variable.name, number++, variable.components},
                                       variable.isOfElements ? "cell" : "point", unread);
       if (!name) continue;
-      if (Status done = addField(variable, *name, stepOf(variable.item), *geometry, bounds, report);
+      if (Status done =
+              addField(variable, *name, stepOf(variable.item), *geometry, bounds_, report);
           !done)
         return std::unexpected(done.error());
     }
@@ -103,7 +103,8 @@ class CaseReader {
 
   const EnSightCase& case_;
   const ReadOptions& options_;
-  EnSightFiles files_;
+  EnSightFiles files_{options_.patience};
+  EnSightBounds bounds_{options_.patience, maxInflatedBytes()};  // of all steps together
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "simplify/read/foam/foam_list.h"
+#include "simplify/read/options/bad_file.h"
 #include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
@@ -83,12 +84,17 @@ void reorderSymmetric(std::vector<double>& values) {
 }  // namespace
 
 Status addFoamFields(const fs::path& folder, const FieldNames& wanted,
-                     std::chrono::seconds patience, CellMesh& mesh, ReadReport& report) {
+                     std::chrono::seconds patience, std::uint64_t& room, CellMesh& mesh,
+                     ReadReport& report) {
   FieldChoice choice(wanted, report);
   int number = 0;
   for (const auto& [called, path] : filesIn(folder)) {
     const Result<std::string> className = FoamList::classOf(path);
-    if (!className) return std::unexpected(className.error());
+    if (!className && path.extension() != ".gz") return std::unexpected(className.error());
+    if (!className) {  // any program compresses files
+      report.notes.push_back(className.error().message + "; it was left out");
+      continue;
+    }
     const std::optional<FieldKind> kind = kindOf(*className);
     if (!kind) continue;
     const auto name =
@@ -97,8 +103,13 @@ Status addFoamFields(const fs::path& folder, const FieldNames& wanted,
     Result<FoamList> file = FoamList::open(folder / called, patience);
     if (!file) return std::unexpected(file.error());
     MeshField field{*name, kind->components, file->realType(), {}, kind->association};
-    auto values = file->field(kind->key, kind->components,
-                              isCellField(field) ? mesh.cells() : mesh.points.size());
+    const std::uint64_t count = isCellField(field) ? mesh.cells() : mesh.points.size();
+    if (count > room / (kind->components * sizeof(double)))
+      return badFile(path,
+                     "the case's fields take more memory than the machine has to spare; choose "
+                     "some with `fields`, and times with `time`");
+    room -= count * kind->components * sizeof(double);
+    auto values = file->field(kind->key, kind->components, count);
     if (!values) return std::unexpected(values.error());
     if (!*values) {
       report.notes.push_back(path.string() + " gives its " + kind->key +

@@ -125,7 +125,7 @@ Status FoamList::readHeader() {
     const std::string value = text_.substr(at_, end - at_);
     at_ = end + 1;
     if (key == "format") isBinary_ = value.starts_with("binary");
-    if (key == "class") class_ = value;
+    if (key == "class") class_ = value.substr(0, value.find_first_of(" \t\r\n"));
     if (key != "arch") continue;
     if (value.contains("label=64")) labelBytes_ = 8;
     if (value.contains("scalar=32")) realBytes_ = 4;

@@ -103,9 +103,10 @@ Result<std::optional<std::vector<double>>> FoamList::field(std::string_view key,
   const std::size_t begin = at_;
   const std::string kind(word());
   std::vector<double> out;
-  if (kind != "nonuniform" &&
-      std::string_view(text_).substr(begin, text_.find(';', begin) - begin).find_first_of("$#") !=
-          std::string_view::npos)
+  const std::size_t end =
+      kind == "nonuniform" ? text_.find_first_not_of(" \t\r\n", at_) + 1 : text_.find(';', begin);
+  if (std::string_view(text_).substr(begin, end - begin).find_first_of("$#") !=
+      std::string_view::npos)
     return std::nullopt;
   if (kind == "uniform") {
     std::vector<double> one(components);

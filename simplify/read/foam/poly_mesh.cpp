@@ -117,6 +117,8 @@ class MeshFolder {
         corners_.push_back(narrowedId(v));
       }
       if (owner_[ends_.size()] < 0) return owner.bad(face + " has no cell");
+      if (isInner(ends_.size()) && neighbour_[ends_.size()] == owner_[ends_.size()])
+        return owner.bad(face + " lies between a cell and itself");
       ends_.push_back(corners_.size());
       return {};
     });

@@ -13,6 +13,7 @@
 #include "simplify/read/foam/poly_mesh.h"
 #include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/piece_files.h"
+#include "simplify/read/process/inflate_file.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/step_reports.h"
 
@@ -85,7 +86,8 @@ class Region {
                   fields.string() + " has no mesh, nor has an earlier time; copy the case whole");
     if (Status done = readMesh(cells, points, options); !done) return std::unexpected(done.error());
     CellMesh out = mesh_;
-    if (Status done = addFoamFields(fields, options.fields, options.patience, out, report); !done)
+    if (Status done = addFoamFields(fields, options.fields, options.patience, room_, out, report);
+        !done)
       return std::unexpected(done.error());
     return out;
   }
@@ -114,6 +116,7 @@ class Region {
   std::vector<std::pair<fs::path, fs::path>> places_;  ///< by step: the folders of cells and points
   std::pair<fs::path, fs::path> read_;                 ///< those of mesh_
   CellMesh mesh_;
+  std::uint64_t room_ = maxInflatedBytes();  ///< for the values of all steps
 };
 
 /// The names of the regions that have a mesh at some time, the case itself first.

@@ -154,6 +154,11 @@ void nameFields(std::vector<MeshField>& fields, std::vector<std::string>& notes)
   std::map<Called, int> next;  // of a stem the first number that may be free
   for (std::size_t f = 0; f < fields.size(); ++f) {
     MeshField& field = fields[f];
+    if (std::erase_if(field.labelNames,
+                      [](const auto& entry) { return !isStorableName(entry.second); }) > 0)
+      notes.push_back("names of values of " + field.name +
+                      " that are empty, no UTF-8 or longer than " + std::to_string(kMaxNameBytes) +
+                      " bytes are left out");
     const bool storable = isStorableName(field.name);
     if (storable && taken.emplace(field.association, field.name).second) continue;
     constexpr std::size_t kLongestEnding = 8;

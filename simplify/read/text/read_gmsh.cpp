@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "proto/limits.h"
 #include "proto/number_text.h"
@@ -156,13 +157,12 @@ class Gmsh {
     if (!in_.fits(count, 7, "physical names")) return;
     for (std::uint64_t i = 0; i < count && !in_.failed(); ++i) {
       const auto dimension = in_.number<int>("a dimension");
-      const auto group = in_.number<std::int32_t>("a physical group");
+      const auto group = in_.number<std::int64_t>("a physical group");
       std::string_view name = in_.line();
-      if (name.size() < 2 || name.front() != '"' || name.back() != '"')
-        return in_.fail(ErrorCode::kBadInput,
-                        "a physical name in quotes should be here; export the mesh again");
+      if (name.size() < 3 || name.front() != '"' || name.back() != '"') continue;
       name = name.substr(1, name.size() - 2);
-      if (dimension == 3 && !name.empty()) names_.emplace(group, name);
+      if (dimension == 3 && std::in_range<std::int32_t>(group))
+        names_.emplace(static_cast<std::int32_t>(group), name);
     }
   }
 

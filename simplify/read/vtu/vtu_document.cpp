@@ -313,9 +313,12 @@ class DocumentParser {
 
   void startArray(std::string_view name, const Attributes& attributes) {
     // the time and the names of labels alone count of the whole file's data
-    const std::string called = attributes.text("Name");
+    const std::string called = attributes.text("Name"), kind = attributes.text("type");
+    const bool isLabelName = called.contains(kLabelNameSign) &&
+                             attributes.text("NumberOfTuples") == "1" &&
+                             (kind.starts_with("Int") || kind.starts_with("UInt"));
     if (section_ == Section::kFieldData &&
-        (name != "DataArray" || (called != kTimeName && !called.contains(kLabelNameSign))))
+        (name != "DataArray" || (called != kTimeName && !isLabelName)))
       return;
     const std::string of = "<" + std::string(name.substr(0, 40)) + "> in <" + sectionName_ + ">";
     if (name != "DataArray" && name != "Array")

@@ -101,12 +101,14 @@ def logs_are_the_tools():
     for words, options in (
         ("", {}),
         (
-            "--target-ratio 0.2 --field-weight Heat=3 --preserve-regions Region --threads 2 "
+            "--target-ratio 0.2 --field-weight Heat=3 --label-weight Region=5 "
+            "--preserve-regions Region --threads 2 "
             "--boundary-weight 9 --shape-weight 0.2 --envelope-tolerance 0.01 --field-bits 10 "
             "--position-bits 18 --placement optimal",
             {
                 "target_ratio": 0.2,
                 "field_weights": {"Heat": 3},
+                "label_weights": {"Region": 5},
                 "regions": "Region",
                 "threads": 2,
                 "boundary_weight": 9,
@@ -385,7 +387,7 @@ def numbers_out_of_range_are_refused():
     for name in (
         *("target_ratio", "base_error", "base_cells", "boundary_weight", "shape_weight", "threads"),
         *("envelope_tolerance", "max_boundary_error", "position_bits", "field_bits"),
-        *("max_field_errors", "field_weights"),
+        *("max_field_errors", "field_weights", "label_weights"),
     ):
         for value in (numpy.nan, -3, -1e-9):
             option = {name: {"Heat": value} if name.endswith(("errors", "weights")) else value}

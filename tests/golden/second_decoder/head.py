@@ -100,7 +100,6 @@ class Log:
         reader.text()
         reader.text()
         self.step, *self.origin = reader.unpack("4d")
-        self.may_be_labels = set()
         self.infos = [self.read_info(reader, shape) for shape in self.shapes]
         flags = self.flags = reader.u8()
         refuse_unless(flags < 64 and flags & 9 != 9, "flags of the manifest")
@@ -132,7 +131,7 @@ class Log:
 
     def read_label(self, reader):
         field, count = reader.text(), reader.varint()
-        refuse_unless(field in self.may_be_labels and count <= 4096, "a label")
+        refuse_unless(field and count <= 4096, "a label")
         names = {}
         for _ in range(count):
             (value,) = reader.unpack("I" if self.misreading == "labels are unsigned" else "i")
@@ -143,10 +142,8 @@ class Log:
 
     def read_info(self, reader, shape):
         components = shape[0]
-        name = reader.text()
+        reader.text()
         kind, bits, step = reader.unpack("BBd")
-        if shape[1] & 1 and components == 1 and kind & 127 >= 2 and step == 1:
-            self.may_be_labels |= {name, name.rpartition("@")[0]}
         minimum = reader.unpack(f"{components}d")
         reader.unpack("2d")
         return kind & 127, bits, step, minimum

@@ -133,7 +133,8 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
     const char* words;
     void (*change)(qtet_simplify_options&);
   };
-  static const qtet_named_number kWeights[] = {{"Swirl", 3}}, kBounds[] = {{"Scalar", 0.05}};
+  static const qtet_named_number kWeights[] = {{"Swirl", 3}}, kLabels[] = {{"Label", 40}},
+                                 kBounds[] = {{"Scalar", 0.05}};
   for (const Case& c : {
            Case{"", [](qtet_simplify_options&) {}},
            Case{"--lossless --keep-order --geometry-codec adaptive --placement vertex --threads 2",
@@ -167,6 +168,8 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
                   o.targetRatio = 0.9;
                   o.measure = QTET_MEASURE_ALL;
                 }},
+           Case{"--label-weight Label=40",
+                [](qtet_simplify_options& o) { o.labelWeights = kLabels, o.labelWeightCount = 1; }},
            Case{"--field-weight Swirl=3 --max-boundary-error 0.05 --max-field-error Scalar=0.05",
                 [](qtet_simplify_options& o) {
                   o.fieldWeights = kWeights, o.fieldWeightCount = 1;
@@ -430,6 +433,9 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
           [](Arrays&, O& o) { o.fieldWeights = &kNoNumber, o.fieldWeightCount = 1; });
   refused(QTET_NOT_FOUND, "'?'",
           [](Arrays&, O& o) { o.fieldWeights = &kNoField, o.fieldWeightCount = 1; });
+  refused(QTET_BAD_VALUE, "labelWeights is null", [](Arrays&, O& o) { o.labelWeightCount = 1; });
+  refused(QTET_NOT_FOUND, "'?'",
+          [](Arrays&, O& o) { o.labelWeights = &kNoField, o.labelWeightCount = 1; });
   refused(QTET_NOT_FOUND, "'?'", [](Arrays&, O& o) { o.regions = "?"; });
 }
 

@@ -43,6 +43,24 @@ TEST(LabelFields, aUsualNameMakesALabelAndThatOfProcessesNone) {
   EXPECT_EQ(labelsOf(meshWith("procId", [](std::size_t c) { return c / kSlice; })), Fields{});
 }
 
+TEST(LabelFields, aSeriesIsALabelAsAWholeOrNotAtAll) {
+  LatticeMesh mesh = meshWith("f@0", [](std::size_t c) { return c / kSlice; });
+  mesh.fields.push_back(mesh.fields[0]);
+  mesh.fields[1].name = "f@1";
+  mesh.values.emplace_back(mesh.values[0].size(), 7);  // constant
+  EXPECT_EQ(labelsOf(mesh), (Fields{0, 1}));
+  mesh.fields[1].type = "float32";
+  EXPECT_EQ(labelsOf(mesh), Fields{});
+}
+
+TEST(LabelFields, namesOfValuesThatAreNotThereAreLeftOut) {
+  FieldInfo info{"f", 1, "int64", "cell", 4, 1, {5e9}, {0, 1}};
+  info.labelNames = {{1, "a"}, {705032704, "5e9 modulo 2^32"}};
+  EXPECT_EQ(namesOfValues(info, {0, 1}), LabelNames{});
+  info.minimum = {0};
+  EXPECT_EQ(namesOfValues(info, {0, 1}), (LabelNames{{1, "a"}}));
+}
+
 TEST(LabelFields, onlyExactIntegersOfFewValuesCanBeOne) {
   const auto values = [](std::size_t most) { return [most](std::size_t c) { return c % most; }; };
   EXPECT_TRUE(canBeLabel(meshWith("f", values(2)), 0));

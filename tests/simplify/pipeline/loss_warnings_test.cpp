@@ -124,6 +124,9 @@ TEST(LossWarnings, aLabelThatIsWrongInMuchOfTheVolumeIsNamed) {
   ASSERT_FALSE(warnings.empty());
   expectWarning({warnings.back()}, {" % of the volume of the base mesh have another label Grain",
                                     "give `baseCells` ", "`labelWeights`"});
+  options.labelWeights = {{"Grain", 0}};
+  for (const std::string& warning : warningsOf(mesh, options))
+    EXPECT_FALSE(warning.contains("Grain")) << "it is no label";
   options.labelWeights = {{"grain", 1}};
   const Result<PipelineOutput> unknown = simplifyToLog(TetMesh(mesh), options);
   ASSERT_FALSE(unknown);

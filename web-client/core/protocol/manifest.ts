@@ -170,7 +170,7 @@ export function readManifest(
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
   const units = flags & kUnitsFollow ? readUnits(reader) : undefined;
-  const labels = flags & kLabelsFollow ? readLabels(reader, fields) : undefined;
+  const labels = flags & kLabelsFollow ? readLabels(reader) : undefined;
   const levels = readLevels(reader.rest(), errors, fields.length, levelColumns);
   const manifest = {
     source,
@@ -288,17 +288,13 @@ function readUnits(reader: ManifestReader): Map<string, string> {
   return units;
 }
 
-function readLabels(
-  reader: ManifestReader,
-  fields: readonly FieldInfo[],
-): Map<string, Map<number, string>> {
+/** Later fields may be labels, too, so that a name may be of no field yet. */
+function readLabels(reader: ManifestReader): Map<string, Map<number, string>> {
   const labels = new Map<string, Map<number, string>>();
   let last = '';
   for (let left = reader.varint(); left > 0; --left) {
     const name = reader.text();
-    const isIt = (info: FieldInfo): boolean => mayBeLabel(info) && nameWithoutTime(info) === name;
-    if (!isBehind(name, last) || !fields.some(isIt))
-      throw damaged('has labels that are in no order, or one that is no cell field of one integer');
+    if (!isBehind(name, last)) throw damaged('has labels that are in no order');
     last = name;
     labels.set(name, readLabelNames(reader));
   }

@@ -21,10 +21,11 @@ CellMesh twoCellsThreePoints() {
   return out;
 }
 
-Result<CellMesh> withFields(const fs::path& folder, const FieldNames& wanted = std::nullopt) {
+Result<CellMesh> withFields(const fs::path& folder, const FieldNames& wanted = std::nullopt,
+                            std::uint64_t room = 1 << 20) {
   CellMesh mesh = twoCellsThreePoints();
   ReadReport report;
-  if (Status done = addFoamFields(folder, wanted, kReadPatience, mesh, report); !done)
+  if (Status done = addFoamFields(folder, wanted, kReadPatience, room, mesh, report); !done)
     return std::unexpected(done.error());
   mesh.otherFields.insert(mesh.otherFields.end(), report.notes.begin(), report.notes.end());
   return mesh;
@@ -35,6 +36,18 @@ Names namesIn(const CellMesh& mesh) {
   for (const MeshField& field : mesh.fields)
     out.push_back(field.association + ":" + field.name + ":" + std::to_string(field.components));
   return out;
+}
+
+TEST(FieldFiles, valuesHaveARoomThatFewBytesCannotPass) {
+  const fs::path folder = testing::freshFolder("wide-field");
+  writeFoamField(folder / "T", "volScalarField ", "uniform 1");
+  writeFoamField(folder / "U", "volVectorField", "uniform (1 2 3)");
+  constexpr std::uint64_t kBytes = 2 * (1 + 3) * sizeof(double);
+  for (const std::uint64_t room : {kBytes - 1, kBytes, kBytes + 1}) {
+    const Result<CellMesh> mesh = withFields(folder, std::nullopt, room);
+    ASSERT_EQ(mesh.has_value(), room >= kBytes) << room;
+    if (mesh) EXPECT_EQ(namesIn(*mesh), (Names{"cell:T:1", "cell:U:3"}));
+  }
 }
 
 TEST(FieldFiles, fieldsOfCellsAndPointsAreReadAndOtherFilesSkipped) {
@@ -52,6 +65,7 @@ TEST(FieldFiles, fieldsOfCellsAndPointsAreReadAndOtherFilesSkipped) {
   writeFoamField(folder / "area", "areaScalarField", "uniform 1");
   writeFoamField(folder / "odd", "volLabelField", "uniform 1");
   std::ofstream(folder / "note.txt") << "no field";
+  std::ofstream(folder / "note.gz") << "\x1f\x8b no gzip";
   fs::create_directory(folder / "uniform");
   const Result<CellMesh> mesh = withFields(folder);
   ASSERT_TRUE(mesh) << mesh.error().message;

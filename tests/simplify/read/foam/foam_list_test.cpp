@@ -155,7 +155,8 @@ TEST(FoamList, entriesBeforeTheValuesArePassed) {
 
 TEST(FoamList, aMacroIsNoValue) {
   for (const char* value :
-       {"uniform $speed;", "$internal;", "uniform ($u 0 0);", "uniform #calc \"1 + 2\";"})
+       {"uniform $speed;", "$internal;", "uniform ($u 0 0);", "uniform #calc \"1 + 2\";",
+        "nonuniform #codeStream { code #{ #}; };", "nonuniform $other;"})
     EXPECT_EQ(textField(value, 3).refusal, "a macro") << value;
 }
 
