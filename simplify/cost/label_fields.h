@@ -21,8 +21,8 @@ inline constexpr double kLabelNeighbours = 0.6;
 [[nodiscard]] bool canBeLabel(const LatticeMesh& mesh, std::size_t field);
 
 /// The fields that are labels, ascending. They can be, and have names of values, a usual name of
-/// one, or neighbours that mostly agree. The numbers of processes are none. Of a
-/// series all instants are labels, or none.
+/// one, or neighbours that mostly agree. The numbers of processes are none. All instants of a
+/// series are labels, or none.
 [[nodiscard]] std::vector<std::size_t> labelsOf(const LatticeMesh& mesh);
 
 /// The names of values that are among the integers.
