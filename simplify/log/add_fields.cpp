@@ -103,7 +103,7 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
     if (!name) continue;
     const bool stays = std::ranges::find(added_.kept, f) != added_.kept.end();
     if (stays || options_.scalesOfOthers) keepScale(info, stays);
-    if (stays) keepInstant(info, name->time, f);
+    if (stays && !options_.scalesOfOthers) keepInstant(info, name->time, f);
   }
 }
 

@@ -34,8 +34,8 @@ struct AddFieldsOptions {
   /// The log's fields that stay, as withFields takes them; all without it. Nothing is predicted
   /// from another one.
   std::optional<std::vector<std::uint32_t>> kept{};
-  /// Instants take the steps of those of their series that do not stay, and have room below and
-  /// above their range.
+  /// Instants take the steps of those of their series that the log has, and have room below and
+  /// above their range. Instants that stay stand alone: no other is predicted from them.
   bool scalesOfOthers = false;
   std::function<void(double)> progress{};  ///< fraction done, of make() and of each add()
 };

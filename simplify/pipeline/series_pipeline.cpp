@@ -4,6 +4,7 @@
 #include <chrono>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "codec/log/log_manifest.h"
@@ -18,11 +19,22 @@
 namespace qtet {
 namespace {
 
-/// The log's fields that are no instants.
-std::vector<std::uint32_t> fieldsWithoutTime(const Manifest& manifest) {
+/// The time that the log opens at, if that is not its series' first.
+std::optional<double> laterOpening(const Manifest& manifest) {
+  for (const Series& series : seriesOf(std::span(manifest.fields))) {
+    const std::size_t shown = *std::ranges::min_element(series.fields);
+    if (shown != series.fields.front()) return instantName(manifest.fields[shown].name)->time;
+  }
+  return std::nullopt;
+}
+
+/// The log's fields that are no instants, or such of the time.
+std::vector<std::uint32_t> fieldsThatStay(const Manifest& manifest, std::optional<double> time) {
   std::vector<std::uint32_t> out;
-  for (std::uint32_t f = 0; f < manifest.fields.size(); ++f)
-    if (!instantName(manifest.fields[f].name)) out.push_back(f);
+  for (std::uint32_t f = 0; f < manifest.fields.size(); ++f) {
+    const auto instant = instantName(manifest.fields[f].name);
+    if (!instant || instant->time == time) out.push_back(f);
+  }
   return out;
 }
 
@@ -74,8 +86,9 @@ Status addStatistics(std::size_t steps, const InstantsReader& read, const std::s
   return {};
 }
 
+/// Adds all instants but those of the time `known`.
 Status addAll(std::size_t steps, const InstantsReader& read, const PipelineOptions& options,
-              FieldAdder& adder) {
+              std::optional<double> known, FieldAdder& adder) {
   // the first window has both of its ends; the others begin with the end of the one before
   for (std::size_t begin = 0, end = kWindow + 1; begin < steps; begin = end, end += kWindow) {
     if (options.stop.stop_requested()) return cancelled();
@@ -83,7 +96,10 @@ Status addAll(std::size_t steps, const InstantsReader& read, const PipelineOptio
       options.progress(Stage::kEncode, static_cast<double>(begin) / static_cast<double>(steps));
     Result<TetMesh> mesh = readSteps(read, begin, std::min(end, steps));
     if (!mesh) return std::unexpected(mesh.error());
-    std::erase_if(mesh->fields, [](const MeshField& field) { return !instantName(field.name); });
+    std::erase_if(mesh->fields, [&](const MeshField& field) {
+      const auto instant = instantName(field.name);
+      return !instant || instant->time == known;
+    });
     if (const auto cleaned = cleanMesh(*mesh, options.stop); !cleaned)
       return std::unexpected(cleaned.error());
     if (Status s = adder.add(*mesh); !s) return s;
@@ -132,7 +148,6 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
                 "`lossless` keeps the values of all instants in memory, which are too many; leave "
                 "it out, or choose fewer with `time`");
   PipelineOptions ofSample = options;
-  ofSample.opensAtFirst = true;  // FieldAdder adds instants in the order of time
   if (std::exchange(ofSample.timeStatistics, false))
     if (Status added = addStatistics(steps, read, options.stop, sample.fields); !added)
       return std::unexpected(added.error());
@@ -145,10 +160,12 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
   const Result<LogFile> log = LogFile::fromBytes(std::move(*bytes));
   if (!log) return std::unexpected(log.error());
   AddFieldsOptions adding = addingOptions(options);
-  adding.kept = fieldsWithoutTime(out->report.manifest);
+  const std::optional<double> opening = laterOpening(out->report.manifest);
+  adding.kept = fieldsThatStay(out->report.manifest, opening);
   Result<FieldAdder> adder = FieldAdder::make(*log, adding);
   if (!adder) return std::unexpected(adder.error());
-  if (Status s = addAll(steps, read, options, *adder); !s) return std::unexpected(s.error());
+  if (Status s = addAll(steps, read, options, opening, *adder); !s)
+    return std::unexpected(s.error());
   const AddedFields added = adder->take();
   const Result<EditedLog> edited = withFields(*log, added.kept, added.fields);
   if (!edited) return std::unexpected(edited.error());

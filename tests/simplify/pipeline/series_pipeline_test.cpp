@@ -99,17 +99,23 @@ TEST_F(SeriesPipeline, everyInstantComesBackAtTheLastLevel) {
   }
 }
 
-TEST_F(SeriesPipeline, aRunThatBeginsAtRestOpensThereInWindowsAloneAndNotAtOnce) {
+TEST_F(SeriesPipeline, aRunThatBeginsAtRestOpensWhereThereIsMostToSee) {
   rest_ = 3;
-  EXPECT_EQ(make().value().report.manifest.fields[0].name, "T@0");
   Steps all(kSteps);
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const PipelineReport atOnce = simplifyToLog(read(all).value(), {}).value().report;
-  const double time = instantName(atOnce.manifest.fields[0].name)->time;
-  EXPECT_GT(time, 0.25);
-  EXPECT_EQ(instantName(atOnce.manifest.fields[1].name)->time, time);
-  EXPECT_EQ(atOnce.index.laterFields, 2 * (kSteps - 1));
-  EXPECT_TRUE(atOnce.index.fields[0].prediction.isNone());
+  const PipelineReport atOnce = simplifyToLog(read(all).value(), {}).value().report,
+                       inWindows = make().value().report;
+  for (const PipelineReport* report : {&atOnce, &inWindows}) {
+    const double time = instantName(report->manifest.fields[0].name)->time;
+    EXPECT_GT(time, 0.25);
+    EXPECT_EQ(instantName(report->manifest.fields[1].name)->time, time);
+    EXPECT_EQ(report->manifest.fields.size(), 2 * kSteps);
+    EXPECT_EQ(report->index.laterFields, 2 * (kSteps - 1));
+    EXPECT_TRUE(report->index.fields[0].prediction.isNone());
+  }
+  PipelineOptions options;
+  options.opensAtFirst = true;
+  EXPECT_EQ(make(options).value().report.manifest.fields[0].name, "T@0");
 }
 
 TEST_F(SeriesPipeline, allInstantsOfASeriesHaveOneStepAndMostArePredicted) {

@@ -65,7 +65,6 @@ TEST(FieldFiles, fieldsOfCellsAndPointsAreReadAndOtherFilesSkipped) {
   writeFoamField(folder / "area", "areaScalarField", "uniform 1");
   writeFoamField(folder / "odd", "volLabelField", "uniform 1");
   std::ofstream(folder / "note.txt") << "no field";
-  std::ofstream(folder / "note.gz") << "\x1f\x8b no gzip";
   fs::create_directory(folder / "uniform");
   const Result<CellMesh> mesh = withFields(folder);
   ASSERT_TRUE(mesh) << mesh.error().message;
@@ -102,6 +101,16 @@ TEST(FieldFiles, aDamagedFieldIsRefusedByName) {
     EXPECT_NE(mesh.error().message.find((folder / "T").string()), std::string::npos);
     EXPECT_TRUE(withFields(folder, Names{"U"})) << "nobody asked for it";
   }
+}
+
+TEST(FieldFiles, aDamagedGzipFileOfAnyKindIsLeftOutWithANote) {
+  const fs::path folder = testing::freshFolder("damaged-gzip");
+  writeFoamField(folder / "T", "volScalarField", "uniform 1");
+  std::ofstream(folder / "note.gz") << "\x1f\x8b no gzip";
+  const Result<CellMesh> mesh = withFields(folder);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(namesIn(*mesh), Names{"cell:T:1"});
+  EXPECT_TRUE(mesh->otherFields.at(0).contains("note.gz is damaged"));
 }
 
 TEST(FieldFiles, aFieldThatAMacroGivesIsLeftOutWithANote) {
