@@ -674,7 +674,7 @@ def meshes_of_openfoam_are_checked():
         ("faces", lambda lines: drop(lines, 3), "is not an index"),
         ("owner", lambda lines: swap(lines, 2, 6), "do not close"),
         ("owner", lambda lines: drop(lines, 2), "is not an index"),
-        ("neighbour", lambda lines: lines.__setitem__(lines.index("(") + 1, "0"), "a cell and itself"),
+        ("neighbour", lambda lines: lines.__setitem__(lines.index("(") + 1, "0"), "and itself"),
         ("neighbour", lambda lines: lines.__setitem__(lines.index("(") + 1, "70"), "number 70"),
         ("points", lambda lines: drop(lines, 3), None),
         ("points", lambda lines: lines.clear(), "does not begin with FoamFile"),
