@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "codec/log/log_levels.h"
+#include "proto/level_error_json.h"
 #include "simplify/commands/closing_report.h"
 #include "simplify/commands/columns.h"
 #include "simplify/commands/command_line.h"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/manifest.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/measure/measure_error.h"
 
