@@ -32,8 +32,8 @@ help:
 	make demo                  build qtet and show its sample mesh at http://127.0.0.1:8080/
 	make demo MESH=file.vtu    the same with a mesh of yours (any kind that simplify/INPUT.md names)
 	make test                  build everything and run every test
-	make check ROOM=codec      build and run the unit tests of one room (proto, codec, simplify,
-	                           server), or the tests of web-client
+	make check ROOM=codec      build and run the quick unit tests of one room (proto, codec, simplify,
+	                           server), or the tests of web-client; ALL=1 runs the slow ones, too
 	make soak TIMES=20         run the tests with servers, or TESTS=REGEX, so many times
 	make format                lay out C++ (clang-format-19) and TypeScript, JavaScript, CSS (prettier)
 	make format-check          fail where that would change a file, or a line is over 100 columns
@@ -256,12 +256,19 @@ test-system:
 
 # After a change in one room. ROOM=codec: its unit tests alone are built and run.
 ROOM ?=
+# For a quick answer it leaves out what took longer than this here before, in seconds.
+QUICK := 6
 check: CHECKED_TARGETS := --target check_$(ROOM)
 check:
 	@case "$(ROOM)" in
 	  proto | codec | simplify | server)
 	    $(MAKE) --no-print-directory build-checked CHECKED_TARGETS="$(CHECKED_TARGETS)"
-	    ctest --preset checked --parallel $(JOBS) -L '^$(ROOM)$$' ;;
+	    slow=$$(awk '/^---/ {exit} $$3 > $(QUICK) && $$1 ~ /^$(ROOM)[.]/ {print $$1}' \
+	      $(CHECKED)/Testing/Temporary/CTestCostData.txt 2>/dev/null | paste -sd '|') || true
+	    [[ -z "$(ALL)" ]] || slow=
+	    ctest --preset checked --parallel $(JOBS) -L '^$(ROOM)$$' $${slow:+-E "^($$slow)$$"}
+	    [[ -z $$slow ]] || echo "check: left to ALL=1 and test-units, over $(QUICK) s each:" \
+	      "$${slow//|/ }" ;;
 	  web-client)
 	    $(MAKE) --no-print-directory build
 	    ctest --preset release --parallel $(JOBS) -L '^web-client$$' ;;
