@@ -37,7 +37,7 @@ qtet_groups(draco_sources aarch64/draco ${draco_sources})
 set(flags -O3 -DNDEBUG -ffp-contract=off -fno-tree-slp-vectorize -w
   -isystem ${folder}/headers -isystem ${draco}/src)
 set(own_flags -std=c++23 -DQTET_VERSION="${PROJECT_VERSION}" -I${PROJECT_SOURCE_DIR})
-set(draco_flags -std=c++17 -O2)
+set(draco_flags -std=c++17 -O2 -I${PROJECT_SOURCE_DIR})
 set(objects "")
 foreach(source IN LISTS own draco_sources)
   get_filename_component(name ${source} NAME)
