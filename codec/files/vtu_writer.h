@@ -11,9 +11,9 @@ inline constexpr char kLabelNameSign = '=';
 
 /// One UnstructuredGrid piece of tetrahedra: appended raw, little-endian, ids as Int32 (Int64 where
 /// they do not fit), array sizes as UInt32 (UInt64 where an array has 4 GiB or more). Names of
-/// labels are among the data of the file. The first
-/// scalar field of the points and that of the cells are the active ones. Deterministic: no dates,
-/// no names of machines. One array at a time is in memory. Errors: the sink's.
+/// labels are among the data of the file. The first scalar field of the points and that of the
+/// cells are the active ones. Deterministic: no dates, no names of machines. One array at a time is
+/// in memory. Errors: the sink's.
 [[nodiscard]] Status writeVtu(const FileMesh& mesh, const ByteSink& sink);
 [[nodiscard]] Bytes vtuBytes(const FileMesh& mesh);
 

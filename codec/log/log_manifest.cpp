@@ -466,17 +466,17 @@ Status setManifest(LogIndex& index, Manifest manifest) {
   index.laterFields = index.hasSeries() ? static_cast<std::uint32_t>(isLater.end() - first) : 0;
   if (manifest.opening && manifest.opening->field >= manifest.fields.size() - index.laterFields)
     manifest.opening.reset();
-  std::erase_if(manifest.units, [&](const auto& entry) {
-    return !entry.first.empty() &&
-           std::ranges::none_of(manifest.fields, [&](const ManifestField& field) {
-             return nameWithoutStep(field.name).value_or(field.name) == entry.first;
-           });
-  });
-  std::erase_if(manifest.labels, [&](const auto& entry) {
+  const auto isOfNone = [&](const std::string& name, const auto& isMeant) {
     return std::ranges::none_of(manifest.fields, [&](const ManifestField& field) {
-      return mayBeLabel(field) && nameWithoutStep(field.name).value_or(field.name) == entry.first;
+      return isMeant(field) && nameWithoutStep(field.name).value_or(field.name) == name;
     });
+  };
+  std::erase_if(manifest.units, [&](const auto& entry) {
+    const auto any = [](const ManifestField&) { return true; };
+    return !entry.first.empty() && isOfNone(entry.first, any);
   });
+  std::erase_if(manifest.labels,
+                [&](const auto& entry) { return isOfNone(entry.first, mayBeLabel); });
   for (auto& [name, values] : manifest.labels)
     while (values.size() > kMaxLabelNames) values.erase(std::prev(values.end()));
   Result<Bytes> front = manifestBlock(manifest, index.laterFields);

@@ -44,10 +44,6 @@ void forEachFaceInside(const LatticeMesh& mesh, const Visit& visit) {
   });
 }
 
-bool isOneInteger(const FieldInfo& info) {
-  return isCellField(info) && !isFloatType(info.type) && info.components == 1 && info.step == 1;
-}
-
 /// All instants of a series are labels if one is, or none if some is no integer.
 std::vector<std::size_t> wholeSeries(const LatticeMesh& mesh, std::vector<std::size_t> labels) {
   std::map<std::string_view, bool> series;  // whether all can be
@@ -68,6 +64,10 @@ std::vector<std::size_t> wholeSeries(const LatticeMesh& mesh, std::vector<std::s
 }
 
 }  // namespace
+
+bool isOneInteger(const FieldInfo& field) {
+  return isCellField(field) && !isFloatType(field.type) && field.components == 1 && field.step == 1;
+}
 
 bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
   const FieldInfo& info = mesh.fields[field];

@@ -16,8 +16,11 @@ inline constexpr std::size_t kMaxLabelValues = kMaxLabelNames;
 /// tetrahedra of one hexahedron share half of their faces: so its number is none.
 inline constexpr double kLabelNeighbours = 0.6;
 
-/// Whether the field can be a label: integers of tetrahedra, stored exactly, of one component and
-/// of 2 to kMaxLabelValues values. REQUIRES: field < mesh.fields.size().
+/// Whether it holds integers of tetrahedra, stored exactly, of one component.
+[[nodiscard]] bool isOneInteger(const FieldInfo& field);
+
+/// Whether the field can be a label: isOneInteger, and of 2 to kMaxLabelValues values.
+/// REQUIRES: field < mesh.fields.size().
 [[nodiscard]] bool canBeLabel(const LatticeMesh& mesh, std::size_t field);
 
 /// The fields that are labels, ascending. They can be, and have names of values, a usual name of

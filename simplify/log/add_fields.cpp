@@ -245,11 +245,16 @@ std::map<const FieldAdder::SeriesState*, std::optional<FieldInfo>> FieldAdder::c
   return out;
 }
 
-/// A label of the log, or one by labelsOf.
+/// A label of the log, or one that was added.
+bool FieldAdder::isKnownLabel(const FieldInfo& info) const {
+  return isOneInteger(info) && labels_.contains(nameWithoutStep(info.name).value_or(info.name));
+}
+
+/// A known label, or one by labelsOf.
 bool FieldAdder::isLabel(const std::vector<Tetrahedron>& tetrahedra, const FieldInfo& info,
                          const std::vector<std::int32_t>& values) const {
-  if (!mayBeLabel(manifestFieldOf(info))) return false;
-  if (labels_.contains(nameWithoutStep(info.name).value_or(info.name))) return true;
+  if (!isOneInteger(info)) return false;
+  if (isKnownLabel(info)) return true;
   LatticeMesh alone;
   alone.tetrahedra = tetrahedra;
   alone.fields = {info};
@@ -348,8 +353,7 @@ Result<FieldAdder::Item> FieldAdder::itemOf(const Instant& instant) const {
       historyValues(log_, *history_, static_cast<std::uint32_t>(instant.number));
   if (!values) return std::unexpected(values.error());
   Item out{instant.info, std::move(*values), {}, {}, true};
-  out.isLabel = mayBeLabel(manifestFieldOf(instant.info)) &&
-                labels_.contains(nameWithoutStep(instant.info.name).value_or(instant.info.name));
+  out.isLabel = isKnownLabel(instant.info);
   if (!instant.info.hasMissing) return out;
   const std::size_t n = instant.info.components;
   const std::size_t finest =

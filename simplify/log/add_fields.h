@@ -105,6 +105,7 @@ class FieldAdder {
   FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest manifest,
              std::unique_ptr<LogHistory> history);
   [[nodiscard]] Status matchTo(const TetMesh& mesh);
+  [[nodiscard]] bool isKnownLabel(const FieldInfo& info) const;
   [[nodiscard]] bool isLabel(const std::vector<Tetrahedron>& tetrahedra, const FieldInfo& info,
                              const std::vector<std::int32_t>& values) const;
   [[nodiscard]] Result<std::vector<Item>> itemsOf(const TetMesh& mesh);
