@@ -16,6 +16,7 @@
 #include "simplify/read/listed_files.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_times.h"
+#include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/common_type.h"
 #include "simplify/read/steps/step_reports.h"
 #include "simplify/series/series.h"
@@ -251,6 +252,7 @@ class Adding {
   }
 
   Status take(ReadMesh&& read, const std::string& file, const std::optional<double>& time) {
+    eraseLabelFields(read.report, read.mesh.fields);  // they have no time
     if (Status s = nameInstants(read.mesh, file, time); !s) return s;
     if (Status s = keepInstants(read.mesh, file); !s) return s;
     if (read.mesh.fields.empty()) return {};

@@ -15,9 +15,20 @@
 #include "simplify/log/opened_log.h"
 #include "simplify/mesh/workers.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/steps/cell_labels.h"
 
 namespace qtet {
 namespace {
+
+/// Leaves out labels of the file's blocks that the log has already: nobody asked for them.
+void eraseKnownLabels(const OpenedLog& log, ReadReport& report, std::vector<MeshField>& fields) {
+  std::erase_if(report.labels, [&](const std::string& name) {
+    return std::ranges::none_of(log.manifest.fields, [&](const ManifestField& field) {
+      return field.association == "cell" && field.name == name;
+    });
+  });
+  eraseLabelFields(report, fields);
+}
 
 /// The log's fields without those that `mesh` replaces. Errors: bad-value (a name that is there,
 /// without --replace).
@@ -62,6 +73,8 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
   Result<ReadMesh> read = readMesh(from, reading);
   if (!read) return std::unexpected(read.error());
+  if (!reading.fields && !parsed.has("replace"))
+    eraseKnownLabels(*log, read->report, read->mesh.fields);
   if (read->mesh.fields.empty()) return fail(ErrorCode::kNotFound, from + " holds no field to add");
   if (const Result<CleanReport> cleaned = cleanMesh(read->mesh); !cleaned)
     return std::unexpected(cleaned.error());

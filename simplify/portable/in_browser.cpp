@@ -47,6 +47,7 @@ Status throughMeshio(const MeshioInput& input,
 
 // The module has no clock. Whoever waits for a page can close it.
 ReadingTime::ReadingTime(std::chrono::seconds patience, std::uint64_t) : patience_(patience) {}
+void ReadingTime::addFile(std::uint64_t) {}
 bool ReadingTime::isOver() const { return false; }
 std::string ReadingTime::text() const {
   return "reading it takes longer than " + std::to_string(patience_.count()) + " s";

@@ -133,8 +133,8 @@ Result<std::optional<double>> timeValueOf(const fs::path& file, const ReadOption
   if (format == MeshFormat::kPvtu) {
     const auto pieces = piecesOf(file, format);
     if (!pieces) return std::unexpected(pieces.error());
-    if (formatOf(pieces->front()) != MeshFormat::kVtu) return std::nullopt;
-    return timeValueOf(pieces->front(), options);
+    if (formatOf(pieces->front().path) != MeshFormat::kVtu) return std::nullopt;
+    return timeValueOf(pieces->front().path, options);
   }
   if (format != MeshFormat::kVtu) return std::nullopt;
   const Result<VtuFile> opened = VtuFile::open(file, options.patience);

@@ -5,6 +5,7 @@
 
 #include "proto/field_key.h"
 #include "simplify/clean/mend_faces.h"
+#include "simplify/read/abaqus/read_abaqus.h"
 #include "simplify/read/listed_files.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/select_fields.h"
@@ -14,6 +15,7 @@
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/process/run_meshio.h"
 #include "simplify/read/read_steps.h"
+#include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/text/text_readers.h"
 #include "simplify/read/unused_points.h"
@@ -36,7 +38,11 @@ bool isAbaqus(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, code)) return false;
   std::ifstream file(path);
   char first = 0;
-  return file >> first && first == '*';
+  file >> first;
+  // after a byte order mark
+  for (const char mark : {'\xEF', '\xBB', '\xBF'})
+    if (first == mark) file >> first;
+  return file && first == '*';
 }
 
 /// Fluent and Gmsh share the ending .msh; Fluent's begins with a parenthesis.
@@ -91,8 +97,8 @@ Result<CellMesh> readFluent(const std::filesystem::path& path, const ReadOptions
   return joined(readSteps(path, MeshFormat::kFluent, options, report), path, options, report);
 }
 
-Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& options,
-                          ReadReport& report);
+Result<CellMesh> readWhole(const std::filesystem::path& path, const ReadOptions& options,
+                           ReadReport& report);
 
 bool isCompressed(const std::filesystem::path& path) { return path.extension() == ".gz"; }
 
@@ -128,7 +134,7 @@ Result<CellMesh> readCompressed(const std::filesystem::path& path, const ReadOpt
   std::string inner;
   const Status done = inflated(path, [&](const std::filesystem::path& file) -> Status {
     inner = file.string();
-    out = readFile(file, options, report);
+    out = readWhole(file, options, report);
     return out ? Status{} : Status(std::unexpected(out.error()));
   });
   if (!done) return std::unexpected(done.error());
@@ -143,8 +149,9 @@ Result<CellMesh> readListed(const std::filesystem::path& path, const ReadOptions
   return joined(readSteps(path, MeshFormat::kSeries, options, report), path, options, report);
 }
 
-Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& given,
-                          ReadReport& report) {
+/// Reads with the blocks apart that `given` names, else where their values differ.
+Result<CellMesh> readWhole(const std::filesystem::path& path, const ReadOptions& given,
+                           ReadReport& report) {
   if (isFoamCase(path))
     return joined(readSteps(path / "", MeshFormat::kOpenFoam, given, report), path, given, report);
   const Result<ReadOptions> withFiles = withListedFiles(path, given);
@@ -157,12 +164,11 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
           ? MeshFormat::kPlot3d
           : formatOf(options.format.empty() ? path
                                             : std::filesystem::path("mesh." + options.format));
-  if (format == MeshFormat::kAvsUcd && isAbaqus(path))
-    return readThroughMeshio(path, "abaqus", options, report);
-  if (Status checked = checkMeshFile(path, format); !checked)
+  const bool ofAbaqus = format == MeshFormat::kAvsUcd && isAbaqus(path);
+  if (Status checked = checkMeshFile(path, ofAbaqus ? MeshFormat::kOther : format); !checked)
     return std::unexpected(checked.error());
   // they have no steps
-  if (format >= MeshFormat::kMedit && format <= MeshFormat::kUnv) {
+  if (ofAbaqus || (format >= MeshFormat::kMedit && format <= MeshFormat::kUnv)) {
     if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
       return std::unexpected(steps.error());
   }
@@ -171,6 +177,7 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
                 path.string() +
                     " is a log, which holds a mesh that is simplified already: qtet info tells of "
                     "it, qtet convert gives the mesh back");
+  if (ofAbaqus) return readAbaqus(path, report, options.patience);
   switch (format) {
     case MeshFormat::kGmsh:
       return isFluent(path) ? readFluent(path, options, report)
@@ -189,6 +196,37 @@ Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& 
     default: break;
   }
   return joined(readSteps(path, format, options, report), path, options, report);
+}
+
+/// The blocks that differ at the file's first step in some field, whatever is asked for. So all
+/// readings of a file make one mesh of it. `found` is what a reading of `asked` says of them.
+BlockPairs apartBlocksOf(const std::filesystem::path& path, const ReadOptions& asked,
+                         const ReadReport& found) {
+  const bool hasFirst = asked.time == "first" || found.times.size() < 2;
+  if (!asked.fields && hasFirst) return found.differingBlocks;
+  ReadOptions first = asked;
+  first.fields.reset();
+  first.time = "first";
+  ReadReport out;
+  // A first step that cannot be read says nothing of the others.
+  return readWhole(path, first, out) ? out.differingBlocks : found.differingBlocks;
+}
+
+Result<CellMesh> readFile(const std::filesystem::path& path, const ReadOptions& asked,
+                          ReadReport& report) {
+  const ReadReport before = report;
+  Result<CellMesh> out = readWhole(path, asked, report);
+  // Steps that fit together only after the decision are refused before.
+  if (!report.blocksMeet || asked.apartBlocks) return out;
+  ReadOptions decided = asked;
+  decided.apartBlocks = apartBlocksOf(path, asked, report);
+  if (!decided.apartBlocks->empty() || !report.differingBlocks.empty()) {
+    out = {};
+    report = before;
+    out = readWhole(path, decided, report);
+  }
+  report.apartBlocks = decided.apartBlocks;
+  return out;
 }
 
 /// "of its 12 cells, 8 hexahedron and 4 wedge were split"
@@ -265,6 +303,7 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
                            ReadReport& report) {
   Result<CellMesh> cells = readFile(path, withThresholdField(options), report);
   if (!cells) return cells;
+  addLabelFields(withThresholdField(options).fields, *cells, report);
   nameFields(cells->fields, report.notes);
   if (report.joinedByIds && !options.fields) leaveOutIds(*cells, report.notes);
   if (report.ignoredCells > 0 && cells->cells() > 0)

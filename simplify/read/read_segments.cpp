@@ -33,13 +33,15 @@ Result<std::vector<std::vector<double>>> segmentTimes(const std::filesystem::pat
   if (!first) return std::unexpected(first.error());
   const std::vector<double> times = std::move(report.times);
   if (times.empty()) return out;
+  ReadOptions decided = options;
+  if (!decided.apartBlocks) decided.apartBlocks = report.apartBlocks;
   const auto steps = chosenSteps(times, options.time, path, notes);
   if (!steps) return std::unexpected(steps.error());
   CellMesh rest;  // of the run; joinSteps compares its steps with the first, too
   std::optional<StepOrder> order;
   for (const std::size_t step : *steps) {
     Result<CellMesh> mesh = step == 0 ? std::exchange(first, CellMesh())
-                                      : readStep(path, options, shortestText(times[step]), report);
+                                      : readStep(path, decided, shortestText(times[step]), report);
     if (!mesh) return std::unexpected(mesh.error());
     if (!order || (!haveSameCells(rest, *mesh) && !order->restore(*mesh))) {
       out.emplace_back();

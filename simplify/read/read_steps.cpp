@@ -13,6 +13,7 @@
 #include "simplify/read/parts/file_series.h"
 #include "simplify/read/parts/named_files.h"
 #include "simplify/read/parts/piece_files.h"
+#include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/read_apart.h"
 #include "simplify/read/steps/step_reports.h"
@@ -37,7 +38,7 @@ Result<CellMesh> joinedPartitions(const VtkHdfFile& file, std::size_t step,
                                   const ReadOptions& options, ReadReport& report) {
   Result<std::vector<CellMesh>> blocks = file.partitions(step, options.fields, report);
   if (!blocks) return std::unexpected(blocks.error());
-  return joinBlocks(std::move(*blocks), options.joinPieces, report);
+  return joinBlocks(std::move(*blocks), options, report);
 }
 
 Result<std::vector<TimedCells>> readVtkHdf(const std::filesystem::path& path,
@@ -120,14 +121,14 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
 /// The cells of the files that the file at `path` names as parts of one mesh. Each is read alone
 /// and by a reader of its own. VTK's readers of such files believe what the summary says of types
 /// and components, and write beyond their arrays where a part has others.
-Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
-                              const std::filesystem::path& path, const ReadOptions& options,
-                              ReadReport& report, int depth) {
+Result<CellMesh> cellsOfParts(std::span<const BlockFile> parts, const std::filesystem::path& path,
+                              const ReadOptions& options, ReadReport& report, int depth) {
   std::vector<CellMesh> blocks;
   ReadOptions ofPart = options;
   ofPart.time = "last";  // the step is chosen already, and a part knows no times
   ofPart.listed = {};
-  for (const std::filesystem::path& part : parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::filesystem::path& part = parts[i].path;
     const MeshFormat format = formatOf(part);
     if (isSeries(format) || format >= MeshFormat::kGmsh)
       return badFile(path, "it names " + part.string() +
@@ -139,9 +140,10 @@ Result<CellMesh> cellsOfParts(std::span<const std::filesystem::path> parts,
     if (!read) return std::unexpected(read.error());
     addPiece(std::move(ofOne), report);
     blocks.push_back(std::move(read->back().cells));
+    nameBlock(parts[i].name, static_cast<std::int32_t>(i + 1), blocks.back());
   }
   const bool isOne = blocks.size() == 1;
-  CellMesh out = joinBlocks(std::move(blocks), options.joinPieces, report);
+  CellMesh out = joinBlocks(std::move(blocks), options, report);
   if (isOne) report.pieces = 1;
   return out;
 }
@@ -183,7 +185,9 @@ Result<std::vector<TimedCells>> readSeries(const std::filesystem::path& path, Me
   std::vector<double> times;
   for (const SeriesStep& step : *all) times.push_back(step.time);
   return readChosen(times, path, options, report, [&](std::size_t step, ReadReport& ofStep) {
-    return cellsOfParts((*all)[step].files, path, options, ofStep, 0);
+    std::vector<BlockFile> parts;
+    for (const std::filesystem::path& file : (*all)[step].files) parts.push_back({file, ""});
+    return cellsOfParts(parts, path, options, ofStep, 0);
   });
 }
 

@@ -8,6 +8,7 @@
 #include "proto/number_text.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
+#include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/series_notes.h"
 
 namespace qtet {
@@ -59,7 +60,9 @@ Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions&
 
 Result<TetMesh> readWindow(const std::filesystem::path& path, const ReadOptions& options,
                            std::span<const double> times, double rest, ReadReport& report) {
-  Result<ReadMesh> window = readTimes(path, options, times, rest);
+  ReadOptions some = options;
+  if (!some.apartBlocks) some.apartBlocks = report.apartBlocks;
+  Result<ReadMesh> window = readTimes(path, some, times, rest);
   if (!window) return std::unexpected(window.error());
   if (report.series.times.empty()) {
     report = std::move(window->report);
@@ -83,9 +86,11 @@ Result<ReadMesh> readTimesInParts(const std::filesystem::path& path, const ReadO
     const bool moves = !out->report.motion.empty();
     ReadOptions ofPart = options;
     ofPart.moves = moves;
+    if (!ofPart.apartBlocks) ofPart.apartBlocks = out->report.apartBlocks;
     Result<ReadMesh> more =
         readTimes(path, ofPart, part(at), moves ? std::optional(times.front()) : std::nullopt);
     if (!more) return more;
+    eraseLabelFields(more->report, more->mesh.fields);  // those of the first part stand for all
     if (more->mesh.points != out->mesh.points || more->mesh.tetrahedra != out->mesh.tetrahedra ||
         (!moves && !more->report.motion.empty()))
       return readTimes(path, options, times);

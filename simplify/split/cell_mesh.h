@@ -65,6 +65,14 @@ void forEachId(std::uint8_t type, std::span<Id> ids, const Visit& visit) {
   }
 }
 
+/// A label that the structure of the file gives its cells, such as its blocks. It is no field of
+/// the file, and the same at all time steps (read/steps/cell_labels.h).
+struct CellLabel {
+  std::string name;
+  std::vector<std::int32_t> values;  ///< one a cell; 0: none
+  LabelNames names;
+};
+
 /// Cells of three dimensions only. `vertices` of a polyhedron: the number of its faces, then each
 /// face's number of vertices and its vertices.
 struct CellMesh {
@@ -80,6 +88,7 @@ struct CellMesh {
   /// The file's own number of each point in all of its pieces (GlobalNodeIds and the like); empty:
   /// none.
   std::vector<std::uint64_t> pointIds{};
+  std::vector<CellLabel> labels{};
 
   [[nodiscard]] std::size_t cells() const { return types.size(); }
   [[nodiscard]] std::span<const VertexId> cell(std::size_t i) const {

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <utility>
 
 #include "codec/coding/float_bits.h"
 #include "simplify/read/options/bad_file.h"
+#include "simplify/read/steps/cell_labels.h"
 
 namespace qtet {
 namespace {
@@ -150,7 +153,8 @@ class GeometryReader {
     if (!keyword.starts_with("part")) refuse(keyword, "\"part\"");
     const std::int64_t number =
         isGold_ ? in_.integer("a part's number") : ensightPartNumber(keyword);
-    in_.line();  // its description
+    std::string name(in_.line());
+    name.erase(name.find_last_not_of(" \t\r") + 1);
     if (in_.failed()) return {};
     const auto [at, isNew] = out_.parts.try_emplace(number);
     if (!isNew) {
@@ -158,6 +162,16 @@ class GeometryReader {
       return {};
     }
     part_ = &at->second;
+    const std::string_view next = contents();
+    const bool isNumber = number > 0 && std::in_range<std::int32_t>(number);
+    if (!in_.failed())
+      nameNewCells(name, static_cast<std::int32_t>(isNumber ? number : std::ssize(out_.parts)),
+                   block().mesh);
+    return next;
+  }
+
+  /// Reads a part behind its name. Gives the keyword behind it.
+  std::string_view contents() {
     std::string_view next = in_.keyword();
     if (next.starts_with("block")) {
       addBlock();

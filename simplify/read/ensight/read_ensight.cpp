@@ -39,7 +39,7 @@ class CaseReader {
     }
     std::vector<CellMesh> blocks;
     for (EnSightBlock& block : geometry->blocks) blocks.push_back(std::move(block.mesh));
-    CellMesh out = joinBlocks(std::move(blocks), options_.joinPieces, report);
+    CellMesh out = joinBlocks(std::move(blocks), options_, report);
     out.otherFields = std::move(unread.otherFields);
     return out;
   }

@@ -102,7 +102,7 @@ FieldNames foamFieldsToRead(const FieldNames& names) {
   return out;
 }
 
-void foamFieldsAtPoints(const FieldNames& names, CellMesh& mesh, std::vector<std::string>& notes) {
+std::string foamFieldsAtPoints(const FieldNames& names, CellMesh& mesh) {
   std::vector<MeshField> fields = std::move(mesh.fields), cells;
   mesh.fields.clear();
   for (MeshField& field : fields)
@@ -116,15 +116,19 @@ void foamFieldsAtPoints(const FieldNames& names, CellMesh& mesh, std::vector<std
     if (isFloatType(field.type) && isWanted && std::ranges::none_of(mesh.fields, isCalledSo))
       mesh.fields.push_back(corners.meansOf(field, mesh.points.size()));
   }
-  if (!names && mesh.fields.size() > own)
-    notes.push_back("fields are means at the " + std::to_string(mesh.points.size()) +
-                    " points of OpenFOAM's values of " + std::to_string(mesh.cells()) +
-                    " cells, weighted by volume; `fields` cell:" + mesh.fields[own].name +
-                    " keeps those of cells, at about twice the bytes");
+  const std::string first = mesh.fields.size() > own ? mesh.fields[own].name : "";
   std::erase_if(cells, [&](const MeshField& field) {
     return isFloatType(field.type) && !isAskedAs(kCellKey, names, field.name);
   });
   std::ranges::move(cells, std::back_inserter(mesh.fields));
+  return first;
+}
+
+std::string noteOfMeans(const CellMesh& mesh, const std::string& field) {
+  return "fields are means at the " + std::to_string(mesh.points.size()) +
+         " points of OpenFOAM's values of " + std::to_string(mesh.cells()) +
+         " cells, weighted by volume; `fields` cell:" + field +
+         " keeps those of cells, at about twice the bytes";
 }
 
 }  // namespace qtet

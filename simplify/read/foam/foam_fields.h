@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "simplify/read/options/read_options.h"
 #include "simplify/split/cell_mesh.h"
@@ -16,8 +15,11 @@ namespace qtet {
 
 /// Makes point fields of float fields of cells: at each point the mean over its cells, weighted by
 /// their volumes. A field of cells stays if `names` has it as "cell:NAME", or if it holds integers.
-/// A point field that the solver wrote itself stays as it is. A note says so where `names` is
-/// empty.
-void foamFieldsAtPoints(const FieldNames& names, CellMesh& mesh, std::vector<std::string>& notes);
+/// A point field that the solver wrote itself stays as it is. Gives the name of the first one that
+/// it made, or nothing.
+std::string foamFieldsAtPoints(const FieldNames& names, CellMesh& mesh);
+
+/// The note on means. `field`: one of them.
+[[nodiscard]] std::string noteOfMeans(const CellMesh& mesh, const std::string& field);
 
 }  // namespace qtet

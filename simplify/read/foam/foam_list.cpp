@@ -256,6 +256,45 @@ Status FoamList::compactFaces(const std::function<Status(std::span<const Label>)
   return {};
 }
 
+Status FoamList::zones(
+    std::uint64_t mostUniform,
+    const std::function<Status(std::string_view, std::span<const Label>)>& give) {
+  constexpr std::uint64_t kMinZoneBytes = 4;  // "a{}" and a blank
+  const Result<std::uint64_t> told = count(kMinZoneBytes);
+  if (!told) return std::unexpected(told.error());
+  if (!take('(')) return badHere("a list does not begin with (");
+  for (std::uint64_t i = 0; i < *told; ++i) {
+    std::string_view name = word();
+    if (name.size() > 1 && name.front() == '"' && name.back() == '"')
+      name = name.substr(1, name.size() - 2);
+    if (name.empty() || !take('{')) return badHere("a zone has no name with { behind it");
+    const Result<std::vector<Label>> labels = zoneLabels(mostUniform);
+    if (!labels) return std::unexpected(labels.error());
+    mostUniform -= std::min<std::uint64_t>(mostUniform, labels->size());
+    if (Status done = give(name, *labels); !done) return done;
+  }
+  if (!take(')')) return badHere("a list of " + std::to_string(*told) + " does not end there");
+  return {};
+}
+
+/// "type cellZone; cellLabels List<label> 2(0 1);}"
+Result<std::vector<FoamList::Label>> FoamList::zoneLabels(std::uint64_t mostUniform) {
+  std::vector<Label> out;
+  while (!take('}')) {
+    if (word() == "cellLabels") {
+      skipBlanks();
+      // "List<label>" may stand before
+      if (at_ < text_.size() && text_[at_] == 'L') static_cast<void>(word());
+      Result<std::vector<Label>> read = labels(mostUniform);
+      if (!read) return read;
+      out = std::move(*read);
+    }
+    while (!take(';'))
+      if (word().empty()) return badHere("an entry of a zone does not end");
+  }
+  return out;
+}
+
 Result<std::uint64_t> FoamList::patchFaces() {
   const Result<std::uint64_t> told = count(1);
   if (!told) return std::unexpected(told.error());

@@ -49,6 +49,12 @@ class FoamList {
   /// The sum of the entries `nFaces` of a file `boundary`, which must have as many patches as it
   /// says.
   [[nodiscard]] Result<std::uint64_t> patchFaces();
+  /// Gives the name and the labels of each zone of a file `cellZones` to `take`, in order. All
+  /// zones of one value for all together have at most `mostUniform` labels. Errors: those of
+  /// labels, and of `take`; bad-input (other zones than it says).
+  [[nodiscard]] Status zones(
+      std::uint64_t mostUniform,
+      const std::function<Status(std::string_view, std::span<const Label>)>& take);
   /// A list of tuples of so many numbers. Errors: bad-input (another number of them than `count`,
   /// if it is given, or than the list says).
   [[nodiscard]] Result<std::vector<double>> tuples(std::uint32_t components,
@@ -86,6 +92,8 @@ class FoamList {
   [[nodiscard]] bool take(char sign);
   [[nodiscard]] std::string_view word();
   [[nodiscard]] Result<Label> label();
+  /// The labels of a zone, up to the end of its entries.
+  [[nodiscard]] Result<std::vector<Label>> zoneLabels(std::uint64_t mostUniform);
   [[nodiscard]] Result<std::uint64_t> count(std::uint64_t bytesEach);
   [[nodiscard]] Result<std::vector<Label>> uniformLabels(Label count, std::uint64_t most);
   [[nodiscard]] Result<std::vector<Label>> binaryLabels(std::uint64_t count);

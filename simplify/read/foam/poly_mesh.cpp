@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/limits.h"
 #include "simplify/mesh/split_mix64.h"
 #include "simplify/read/foam/cell_shaper.h"
 #include "simplify/read/foam/foam_list.h"
@@ -182,6 +183,42 @@ Status readPolyMesh(const fs::path& folder, std::chrono::seconds patience, CellM
   if (Status done = mesh.read(out.points.size()); !done) return done;
   mesh.addCellsTo(out);
   return {};
+}
+
+void addCellZones(const fs::path& folder, std::chrono::seconds patience, CellMesh& out,
+                  std::vector<std::string>& notes) {
+  if (!FoamList::isThere(folder / "cellZones")) return;
+  CellLabel label{kZoneLabel, std::vector<std::int32_t>(out.cells()), {}};
+  std::int32_t number = 0;
+  std::uint64_t twice = 0;
+  const auto read = [&]() -> Status {
+    Result<FoamList> file = FoamList::open(folder / "cellZones", patience);
+    if (!file) return std::unexpected(file.error());
+    return file->zones(out.cells(),
+                       [&](std::string_view name, std::span<const Label> cells) -> Status {
+                         ++number;
+                         if (label.names.size() < kMaxLabelNames) label.names.emplace(number, name);
+                         for (const Label cell : cells) {
+                           if (cell < 0 || std::cmp_greater_equal(cell, label.values.size()))
+                             return file->badHere("zone " + std::string(name) + " has a cell " +
+                                                  std::to_string(cell) + " that is none of the " +
+                                                  std::to_string(label.values.size()) + " cells");
+                           std::int32_t& zone = label.values[static_cast<std::size_t>(cell)];
+                           if (zone != 0) ++twice;
+                           if (zone == 0) zone = number;
+                         }
+                         return {};
+                       });
+  };
+  if (const Status done = read(); !done) {
+    notes.push_back("zones of cells were left out: " + done.error().message);
+    return;
+  }
+  if (label.names.empty()) return;
+  if (twice > 0)
+    notes.push_back(std::to_string(twice) + " cells are in two zones of " +
+                    (folder / "cellZones").string() + ", and count to the first");
+  out.labels.push_back(std::move(label));
 }
 
 }  // namespace qtet

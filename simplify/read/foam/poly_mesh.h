@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "proto/error.h"
 #include "simplify/read/options/read_options.h"
@@ -20,5 +22,14 @@ namespace qtet {
 /// have all faces of the boundary. Errors: as readFoamPoints's, bad-input also with the cell.
 [[nodiscard]] Status readPolyMesh(const std::filesystem::path& folder,
                                   std::chrono::seconds patience, CellMesh& out);
+
+/// The label of the cells' zones.
+inline constexpr const char* kZoneLabel = "cellZone";
+
+/// Gives the cells the label of their zones where the folder has a file cellZones with one at
+/// least. A cell in two zones is in the first; a note counts these. A note says so where the file
+/// is damaged, and it has no label then. REQUIRES: `out` has the cells of the folder.
+void addCellZones(const std::filesystem::path& folder, std::chrono::seconds patience, CellMesh& out,
+                  std::vector<std::string>& notes);
 
 }  // namespace qtet

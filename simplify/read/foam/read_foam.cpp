@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -14,13 +15,16 @@
 #include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/process/inflate_file.h"
-#include "simplify/read/steps/join_blocks.h"
+#include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/step_reports.h"
 
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// OpenFOAM's name of the region that has no folder of its own.
+constexpr std::string_view kDefaultRegion = "region0";
 
 /// The folders of a case that have fields: those of times, ascending. Without one it is constant,
 /// at time 0.
@@ -84,7 +88,8 @@ class Region {
     if (cells.empty())
       return fail(ErrorCode::kNotFound,
                   fields.string() + " has no mesh, nor has an earlier time; copy the case whole");
-    if (Status done = readMesh(cells, points, options); !done) return std::unexpected(done.error());
+    if (Status done = readMesh(cells, points, options, report); !done)
+      return std::unexpected(done.error());
     CellMesh out = mesh_;
     if (Status done = addFoamFields(fields, options.fields, options.patience, room_, out, report);
         !done)
@@ -93,7 +98,8 @@ class Region {
   }
 
  private:
-  Status readMesh(const fs::path& cells, const fs::path& points, const ReadOptions& options) {
+  Status readMesh(const fs::path& cells, const fs::path& points, const ReadOptions& options,
+                  ReadReport& report) {
     if (std::pair(cells, points) == read_) return {};
     const bool isMoved = cells == read_.first;
     const std::size_t before = mesh_.points.size();
@@ -107,6 +113,7 @@ class Region {
                                             std::to_string(before) + "; write the case again");
     if (Status done = isMoved ? Status{} : readPolyMesh(cells, options.patience, mesh_); !done)
       return done;
+    if (!isMoved) addCellZones(cells, options.patience, mesh_, report.notes);
     read_ = {cells, points};
     return {};
   }
@@ -134,44 +141,69 @@ std::set<std::string> regionsIn(const fs::path& folder, const Instants& instants
   return out;
 }
 
+/// The steps of each region, by its name.
+using RegionSteps = std::map<std::string, std::vector<TimedCells>>;
+
 /// A case of OpenFOAM in one folder.
-Result<std::vector<TimedCells>> readFoamCase(const fs::path& folder, const ReadOptions& options,
-                                             ReadReport& report) {
+Result<RegionSteps> readFoamCase(const fs::path& folder, const ReadOptions& options,
+                                 ReadReport& report) {
   const Instants instants = instantsIn(folder, report.notes);
-  std::vector<Region> regions;
-  for (const std::string& name : regionsIn(folder, instants))
-    regions.emplace_back(folder, instants, name);
-  if (regions.empty())
+  RegionSteps out;
+  for (const std::string& name : regionsIn(folder, instants)) {
+    Region region(folder, instants, name);
+    ReadReport ofOne;
+    Result<std::vector<TimedCells>> steps = readChosen(
+        instants.times, folder, options, ofOne,
+        [&](std::size_t step, ReadReport& ofStep) { return region.at(step, options, ofStep); });
+    if (!steps) return std::unexpected(steps.error());
+    addPiece(std::move(ofOne), report);
+    out.emplace(name, std::move(*steps));
+  }
+  if (out.empty())
     return fail(
         ErrorCode::kNotFound,
         folder.string() + " has no mesh: its constant/polyMesh is missing; copy the case whole");
-  return readChosen(instants.times, folder, options, report,
-                    [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
-                      std::vector<CellMesh> blocks;
-                      for (Region& region : regions) {
-                        Result<CellMesh> cells = region.at(step, options, ofStep);
-                        if (!cells) return cells;
-                        blocks.push_back(std::move(*cells));
-                      }
-                      return joinBlocks(std::move(blocks), options.joinPieces, ofStep);
-                    });
+  return out;
 }
 
 /// A decomposed case of OpenFOAM: each processor's folder is read as a case of its own.
-Result<std::vector<TimedCells>> readProcessors(const std::vector<fs::path>& processors,
-                                               const fs::path& path, const ReadOptions& options,
-                                               ReadReport& report) {
-  std::vector<std::vector<TimedCells>> pieces;
+Result<RegionSteps> readProcessors(const std::vector<fs::path>& processors, const fs::path& path,
+                                   const ReadOptions& options, ReadReport& report) {
+  std::map<std::string, std::vector<std::vector<TimedCells>>> pieces;
   for (const fs::path& processor : processors) {
     ReadReport ofOne;
-    Result<std::vector<TimedCells>> steps = readFoamCase(processor, options, ofOne);
-    if (!steps) return steps;
+    Result<RegionSteps> regions = readFoamCase(processor, options, ofOne);
+    if (!regions) return regions;
     addPiece(std::move(ofOne), report);
-    pieces.push_back(std::move(*steps));
+    for (auto& [name, steps] : *regions) pieces[name].push_back(std::move(steps));
   }
   report.notes.push_back("the case was read from the folders of its " +
                          std::to_string(processors.size()) + " processors");
-  return joinedPieces(std::move(pieces), path, options, report);
+  RegionSteps out;
+  for (auto& [name, ofRegion] : pieces) {
+    Result<std::vector<TimedCells>> steps =
+        joinedPieces(std::move(ofRegion), path, options, report);
+    if (!steps) return std::unexpected(steps.error());
+    out.emplace(name, std::move(*steps));
+  }
+  return out;
+}
+
+/// The regions in one mesh, as blocks with their names.
+Result<std::vector<TimedCells>> joinedRegions(RegionSteps regions, const fs::path& path,
+                                              const ReadOptions& options, ReadReport& report) {
+  if (regions.size() == 1) return std::move(regions.begin()->second);
+  std::vector<std::vector<TimedCells>> blocks;
+  for (auto& [name, steps] : regions) {
+    for (TimedCells& step : steps)
+      nameBlock(name.empty() ? kDefaultRegion : std::string_view(name),
+                static_cast<std::int32_t>(blocks.size() + 1), step.cells);
+    blocks.push_back(std::move(steps));
+  }
+  const std::uint64_t joinedBefore = report.joinedPoints;  // those of processors
+  Result<std::vector<TimedCells>> out = joinedPieces(std::move(blocks), path, options, report);
+  report.joinedPoints += joinedBefore;
+  return out;
 }
 
 }  // namespace
@@ -183,13 +215,19 @@ Result<std::vector<TimedCells>> readFoam(const fs::path& path, const ReadOptions
   ReadOptions ofCells = options;
   ofCells.fields = foamFieldsToRead(options.fields);
   const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
-  Result<std::vector<TimedCells>> steps = processors->empty()
-                                              ? readFoamCase(folder, ofCells, report)
-                                              : readProcessors(*processors, path, ofCells, report);
-  if (!steps) return steps;
-  std::vector<std::string> notes;
-  for (TimedCells& step : *steps) foamFieldsAtPoints(options.fields, step.cells, notes);
-  addNew(notes, report.notes);
+  Result<RegionSteps> regions = processors->empty()
+                                    ? readFoamCase(folder, ofCells, report)
+                                    : readProcessors(*processors, path, ofCells, report);
+  if (!regions) return std::unexpected(regions.error());
+  // of each region alone: a mean across two of them is a value of neither
+  std::string mean;
+  for (auto& [name, ofRegion] : *regions)
+    for (TimedCells& step : ofRegion)
+      if (const std::string made = foamFieldsAtPoints(options.fields, step.cells); mean.empty())
+        mean = made;
+  Result<std::vector<TimedCells>> steps = joinedRegions(std::move(*regions), path, options, report);
+  if (steps && !options.fields && !mean.empty())
+    report.notes.push_back(noteOfMeans(steps->front().cells, mean));
   return steps;
 }
 

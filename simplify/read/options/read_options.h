@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simplify/read/options/series_report.h"
@@ -35,11 +37,16 @@ struct ListedFiles {
   bool isChecked = false;
 };
 
+/// Pairs of names of blocks, the lesser name first.
+using BlockPairs = std::set<std::pair<std::string, std::string>>;
+
 struct ReadOptions {
   FieldNames fields;
   CurvedCells curved = CurvedCells::kSplit;
   std::optional<double> weld;  ///< points within this distance become one (weld_points.h)
   bool joinPieces = true;      ///< at the points that they share (join_pieces.h)
+  /// Whose points stay apart; nullopt: the file's first step says it (readMesh).
+  std::optional<BlockPairs> apartBlocks{};
   /// Adds the cell field kOriginalCellField (split_cells.h) to those asked for by name; naming it
   /// does the same.
   bool originalIds = false;
@@ -70,13 +77,18 @@ struct ReadReport {
   std::uint64_t pieces = 0;        ///< with points of their own, in the step that was read last
   std::uint64_t joinedPoints = 0;  ///< points of pieces, joined with one of an earlier piece
   bool joinedByIds = false;        ///< they were found by ids that hold for all pieces
+  bool blocksMeet = false;         ///< blocks with different names share points
+  BlockPairs differingBlocks{};    ///< they share points, at which their values differ
+  /// The pairs that stay apart, where blocks meet; nullopt: none do, or nobody has decided.
+  std::optional<BlockPairs> apartBlocks{};
   std::uint64_t weldedPoints = 0;  ///< joined with an earlier one
   std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
   /// All that the file has, ascending; empty: it has none, or its reader takes all steps at once.
   std::vector<double> times;
-  std::string motion{};            ///< of moving points: the series that has how far (joinSteps)
-  SeriesReport series{};           ///< on all steps that were read as one mesh
-  std::vector<std::string> notes;  ///< also VTK's warnings
+  std::string motion{};               ///< of moving points: the series that has how far (joinSteps)
+  SeriesReport series{};              ///< on all steps that were read as one mesh
+  std::vector<std::string> labels{};  ///< the cell fields made of labels (cell_labels.h)
+  std::vector<std::string> notes;     ///< also VTK's warnings
 };
 
 }  // namespace qtet

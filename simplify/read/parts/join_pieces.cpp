@@ -11,6 +11,7 @@
 
 #include "simplify/read/parts/near_points.h"
 #include "simplify/read/parts/point_sets.h"
+#include "simplify/read/parts/point_values.h"
 #include "simplify/split/cell_shapes.h"
 
 namespace qtet {
@@ -50,9 +51,81 @@ bool everyPieceOnce(std::span<const VertexId> run, const PieceOf& pieceOf) {
   return true;
 }
 
-void uniteAll(std::span<const VertexId> run, PointSets& sets) {
-  for (const VertexId v : run.subspan(1)) sets.unite(run.front(), v);
-}
+/// Which points are one. Asks their blocks and values before, and counts those that differ.
+class Joining {
+ public:
+  Joining(const CellMesh& mesh, const BlocksOfPoints& blocks)
+      : blocks_(blocks),
+        values_(mesh, blocks.block),
+        differs_(mesh.points.size()),
+        isApart_(mesh.points.size()) {}
+
+  /// Whether their blocks let them be one.
+  [[nodiscard]] bool mayJoin(VertexId a, VertexId b) {
+    const std::vector<std::int32_t>& block = blocks_.block;
+    if (block.empty() || block[a] == block[b]) return true;
+    blocksMeet_ = true;
+    const auto pair = std::minmax({block[a], block[b]});
+    const bool differ = !values_.agree(a, b);
+    if (differ) differing_.insert(pair);
+    if (blocks_.apart ? blocks_.apart->contains(pair) : differ) {
+      isApart_[std::max(a, b)] = true;
+      return false;
+    }
+    if (differ) differs_[std::max(a, b)] = true;
+    return true;
+  }
+
+  /// Unites each set of the run's points with the first one, all of whose points it may join.
+  void uniteAll(std::span<const VertexId> run, PointSets& sets) {
+    if (blocks_.block.empty()) {
+      for (const VertexId v : run) sets.unite(run.front(), v);
+      return;
+    }
+    if (run.size() > kMostAtOnePlace) return;
+    std::map<VertexId, std::vector<VertexId>> given;  // by their earliest point
+    for (const VertexId v : run) given[sets.find(v)].push_back(v);
+    std::vector<std::vector<VertexId>> united;
+    for (const auto& [first, more] : given) {
+      const auto into =
+          std::ranges::find_if(united, [&](const auto& known) { return mayJoinAll(known, more); });
+      if (into == united.end()) {
+        united.push_back(more);
+        continue;
+      }
+      sets.unite(into->front(), first);
+      into->insert(into->end(), more.begin(), more.end());
+    }
+  }
+
+  void tell(PointSets& sets, JoinedPieces& out) const {
+    for (VertexId v = 0; v < differs_.size(); ++v) {
+      const bool isJoined = sets.find(v) != v;
+      out.differingPoints += isJoined && differs_[v] ? 1 : 0;
+      out.blockPoints += !isJoined && isApart_[v] ? 1 : 0;
+    }
+    out.blocksMeet = blocksMeet_;
+    out.differing = differing_;
+  }
+
+ private:
+  /// More points of blocks stay as they are: so many blocks meet nowhere.
+  static constexpr std::size_t kMostAtOnePlace = 1024;
+
+  /// Asks all pairs, so that all that differ are known.
+  bool mayJoinAll(std::span<const VertexId> known, std::span<const VertexId> more) {
+    bool out = true;
+    for (const VertexId a : known)
+      for (const VertexId b : more) out = mayJoin(a, b) && out;
+    return out;
+  }
+
+  const BlocksOfPoints& blocks_;
+  PointValues values_;
+  std::vector<bool> differs_, isApart_;
+  bool blocksMeet_ = false;
+  NumberPairs differing_;
+};
 
 double diagonalOf(const std::vector<Position>& points) {
   Position low{}, high{};
@@ -65,7 +138,7 @@ double diagonalOf(const std::vector<Position>& points) {
 }
 
 /// False: the ids are none that hold for all pieces, and nothing is joined.
-bool uniteByIds(const CellMesh& mesh, const PieceOf& pieceOf, PointSets& sets) {
+bool uniteByIds(const CellMesh& mesh, const PieceOf& pieceOf, Joining& joining, PointSets& sets) {
   if (mesh.pointIds.size() != mesh.points.size()) return false;
   const Runs runs(mesh.points.size(),
                   [&](VertexId a, VertexId b) { return mesh.pointIds[a] < mesh.pointIds[b]; });
@@ -81,7 +154,7 @@ bool uniteByIds(const CellMesh& mesh, const PieceOf& pieceOf, PointSets& sets) {
     }
   });
   if (!sound || !any) return false;
-  runs.each([&](std::span<const VertexId> run) { uniteAll(run, sets); });
+  runs.each([&](std::span<const VertexId> run) { joining.uniteAll(run, sets); });
   return true;
 }
 
@@ -110,24 +183,25 @@ class Neighbours {
     for (std::size_t c = 0; c < mesh.cells(); ++c) addFaces(c);
   }
 
-  void uniteIn(PointSets& sets) const {
+  void uniteIn(Joining& joining, PointSets& sets) const {
     for (const auto& [corners, sides] : faces_) {
       // Three or more are cells that lie in one another; two of one piece are neighbours already.
       if (sides.size() != 2) continue;
       for (const VertexId a : mesh_.cell(sides[0]))
         for (const VertexId b : mesh_.cell(sides[1]))
-          if (a != kGhost && b != kGhost && mayBeOne(a, b, sets)) sets.unite(a, b);
+          if (a != kGhost && b != kGhost && mayBeOne(a, b, joining, sets)) sets.unite(a, b);
     }
   }
 
  private:
-  /// Whether they are at one place, and no set gets two points of one piece.
-  [[nodiscard]] bool mayBeOne(VertexId a, VertexId b, PointSets& sets) const {
+  /// Whether they are at one place, and no set gets two points of one piece, or other values.
+  [[nodiscard]] bool mayBeOne(VertexId a, VertexId b, Joining& joining, PointSets& sets) const {
     if (run_[a].empty() || run_[a].data() != run_[b].data()) return false;
     const VertexId setA = sets.find(a), setB = sets.find(b);
     for (const VertexId m : run_[a])
       for (const VertexId n : run_[a])
-        if (m != n && sets.find(m) == setA && sets.find(n) == setB && pieceOf_(m) == pieceOf_(n))
+        if (m != n && sets.find(m) == setA && sets.find(n) == setB &&
+            (pieceOf_(m) == pieceOf_(n) || !joining.mayJoin(m, n)))
           return false;
     return true;
   }
@@ -156,26 +230,29 @@ class Neighbours {
 
 /// Unites the points in each run where no piece has two; elsewhere faces decide.
 template <class Less>
-void uniteRuns(const CellMesh& mesh, const PieceOf& pieceOf, const Less& less, PointSets& sets) {
+void uniteRuns(const CellMesh& mesh, const PieceOf& pieceOf, const Less& less, Joining& joining,
+               PointSets& sets) {
   const Runs runs(mesh.points.size(), less);
   bool isClear = true;
   runs.each([&](std::span<const VertexId> run) {
-    everyPieceOnce(run, pieceOf) ? uniteAll(run, sets) : static_cast<void>(isClear = false);
+    everyPieceOnce(run, pieceOf) ? joining.uniteAll(run, sets) : static_cast<void>(isClear = false);
   });
-  if (!isClear) Neighbours(mesh, pieceOf, runs).uniteIn(sets);
+  if (!isClear) Neighbours(mesh, pieceOf, runs).uniteIn(joining, sets);
 }
 
 /// The points at exactly the same place, and those nearby where the pieces fit together.
-PointSets unitedByPlaces(const CellMesh& mesh, const PieceOf& pieceOf, JoinedPieces& out) {
+PointSets unitedByPlaces(const CellMesh& mesh, const PieceOf& pieceOf, Joining& joining,
+                         JoinedPieces& out) {
   PointSets exact(mesh.points.size());
   uniteRuns(
       mesh, pieceOf,
-      [&](VertexId a, VertexId b) { return isBefore(mesh.points[a], mesh.points[b]); }, exact);
+      [&](VertexId a, VertexId b) { return isBefore(mesh.points[a], mesh.points[b]); }, joining,
+      exact);
   const NearPoints nearby = nearPoints(mesh, pieceOf);
   PointSets near = exact;
   uniteRuns(
       mesh, pieceOf, [&](VertexId a, VertexId b) { return nearby.groups[a] < nearby.groups[b]; },
-      near);
+      joining, near);
   for (VertexId v = 0; v < mesh.points.size(); ++v)
     out.nearPoints += near.find(v) != v && exact.find(v) == v ? 1 : 0;
   out.apartPoints = nearby.apart;
@@ -219,7 +296,8 @@ void compact(CellMesh& mesh, std::vector<VertexId>& names) {
 
 }  // namespace
 
-JoinedPieces joinPieces(CellMesh& mesh, std::span<const VertexId> pieceEnds) {
+JoinedPieces joinPieces(CellMesh& mesh, std::span<const VertexId> pieceEnds,
+                        const BlocksOfPoints& blocks) {
   assert(std::ranges::is_sorted(pieceEnds));
   assert(mesh.pointIds.empty() || mesh.pointIds.size() == mesh.points.size());
   JoinedPieces out;
@@ -227,8 +305,10 @@ JoinedPieces joinPieces(CellMesh& mesh, std::span<const VertexId> pieceEnds) {
   assert(pieceEnds.back() == mesh.points.size());
   const PieceOf pieceOf(pieceEnds);
   PointSets sets(mesh.points.size());
-  out.byIds = uniteByIds(mesh, pieceOf, sets);
-  if (!out.byIds) sets = unitedByPlaces(mesh, pieceOf, out);
+  Joining joining(mesh, blocks);
+  out.byIds = uniteByIds(mesh, pieceOf, joining, sets);
+  if (!out.byIds) sets = unitedByPlaces(mesh, pieceOf, joining, out);
+  joining.tell(sets, out);
   std::vector<VertexId> names(mesh.points.size());
   for (VertexId v = 0; v < names.size(); ++v) {
     names[v] = sets.find(v);

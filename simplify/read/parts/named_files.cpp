@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 
 #include "simplify/read/options/bad_file.h"
@@ -22,21 +23,55 @@ Result<const XmlElement*> listIn(const std::filesystem::path& path, const std::s
   return list;
 }
 
+/// A file of a block with the names of the blocks around it, the outermost first.
+struct NestedFile {
+  std::filesystem::path path;
+  std::vector<std::string> names;
+};
+
 void addBlockFiles(const XmlElement& element, const std::filesystem::path& path,
-                   std::vector<std::filesystem::path>& out, std::vector<std::string>& notes) {
+                   std::vector<std::string>& names, std::vector<NestedFile>& out,
+                   std::vector<std::string>& notes) {
   constexpr std::array kVolumes{".vtu", ".vts",  ".vtr",  ".vti",  ".vtk",
                                 ".vtm", ".pvtu", ".pvts", ".pvtr", ".pvti"};
   for (const auto& child : element.children) {
+    const std::string name(child->attribute("name"));
+    const bool isNamed = !name.empty() && (names.empty() || names.back() != name);
+    if (isNamed) names.push_back(name);
     if (const std::string_view file = child->attribute("file"); !file.empty()) {
       const std::filesystem::path part = path.parent_path() / file;
       if (std::ranges::find(kVolumes, part.extension()) != kVolumes.end())
-        out.push_back(part);
+        out.push_back({part, names});
       else
         notes.push_back("its block " + part.filename().string() +
                         " was ignored: such a file holds no volume cells");
     }
-    addBlockFiles(*child, path, out, notes);
+    addBlockFiles(*child, path, names, out, notes);
+    if (isNamed) names.pop_back();
   }
+}
+
+std::string joinedBySlash(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : "/") + name;
+  return out;
+}
+
+/// Blocks by their own names, or with those around them where two of these are called alike.
+std::vector<BlockFile> named(const std::vector<NestedFile>& files) {
+  std::map<std::string, std::set<std::string>> whole;  // by the last name
+  for (const NestedFile& file : files)
+    if (!file.names.empty()) whole[file.names.back()].insert(joinedBySlash(file.names));
+  std::vector<BlockFile> out;
+  for (const NestedFile& file : files) {
+    if (file.names.empty())
+      out.push_back({file.path, ""});
+    else if (whole[file.names.back()].size() == 1)
+      out.push_back({file.path, file.names.back()});
+    else
+      out.push_back({file.path, joinedBySlash(file.names)});
+  }
+  return out;
 }
 
 /// A text in which the parts of one time differ.
@@ -91,32 +126,32 @@ Result<std::vector<SeriesEntry>> entriesOfPvd(const std::filesystem::path& path)
   return entries;
 }
 
-Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path& path,
-                                                    MeshFormat format) {
+Result<std::vector<BlockFile>> piecesOf(const std::filesystem::path& path, MeshFormat format) {
   std::unique_ptr<XmlElement> tree;
   const Result<const XmlElement*> grid = listIn(path, std::string(rootType(format)), tree);
   if (!grid) return std::unexpected(grid.error());
-  std::vector<std::filesystem::path> out;
+  std::vector<BlockFile> out;
   for (const auto& element : (*grid)->children) {
     if (element->name != "Piece") continue;
     const std::string_view file = element->attribute("Source");
     if (file.empty())
       return badFile(path, "its <Piece> number " + std::to_string(out.size()) +
                                " names no file; save it again");
-    out.push_back(path.parent_path() / file);
+    out.push_back({path.parent_path() / file, ""});
   }
   if (out.empty()) return badFile(path, "it names no <Piece>; save it again");
   return out;
 }
 
-Result<std::vector<std::filesystem::path>> blocksOf(const std::filesystem::path& path,
-                                                    std::vector<std::string>& notes) {
+Result<std::vector<BlockFile>> blocksOf(const std::filesystem::path& path,
+                                        std::vector<std::string>& notes) {
   std::unique_ptr<XmlElement> tree;
   const Result<const XmlElement*> set = listIn(path, "vtkMultiBlockDataSet", tree);
   if (!set) return std::unexpected(set.error());
-  std::vector<std::filesystem::path> out;
-  addBlockFiles(**set, path, out, notes);
-  return out;
+  std::vector<NestedFile> out;
+  std::vector<std::string> names;
+  addBlockFiles(**set, path, names, out, notes);
+  return named(out);
 }
 
 }  // namespace qtet

@@ -15,14 +15,22 @@ namespace qtet {
 /// whose time is none). A time may be left out where no entry has one, and each is another part.
 [[nodiscard]] Result<std::vector<SeriesEntry>> entriesOfPvd(const std::filesystem::path& path);
 
+/// A file that is a part of a mesh. The name is that of its block, or empty: it is a piece.
+struct BlockFile {
+  std::filesystem::path path;
+  std::string name;
+};
+
 /// The Source of each Piece that a summary names. Errors: those of readXml; bad-input (no piece, or
 /// one without a file). REQUIRES: namesPieces(format).
-[[nodiscard]] Result<std::vector<std::filesystem::path>> piecesOf(const std::filesystem::path& path,
-                                                                  MeshFormat format);
+[[nodiscard]] Result<std::vector<BlockFile>> piecesOf(const std::filesystem::path& path,
+                                                      MeshFormat format);
 
 /// The files of a .vtm file's blocks, depth first. Those that can hold no volume cells (surfaces,
-/// tables) are noted instead. Errors: those of readXml; bad-input (no such file).
-[[nodiscard]] Result<std::vector<std::filesystem::path>> blocksOf(const std::filesystem::path& path,
-                                                                  std::vector<std::string>& notes);
+/// tables) are noted instead. A block is called by its own name, or that of the block around it.
+/// Names that come again are led by those of all blocks around: "wing/solid". Errors: those of
+/// readXml; bad-input (no such file).
+[[nodiscard]] Result<std::vector<BlockFile>> blocksOf(const std::filesystem::path& path,
+                                                      std::vector<std::string>& notes);
 
 }  // namespace qtet

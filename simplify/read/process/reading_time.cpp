@@ -8,13 +8,20 @@ namespace {
 /// No reading takes longer, and a clock does not overflow: ten years.
 constexpr std::uint64_t kLongestSeconds = 315'360'000;
 
+std::chrono::milliseconds timeFor(std::uint64_t fileBytes) {
+  return std::chrono::milliseconds(
+      std::min(fileBytes / (ReadingTime::kSlowestBytesPerSecond / 1000), kLongestSeconds * 1000));
+}
+
 }  // namespace
 
 ReadingTime::ReadingTime(std::chrono::seconds patience, std::uint64_t fileBytes)
-    : patience_(patience),
-      end_(Clock::now() + patience +
-           std::chrono::milliseconds(
-               std::min(fileBytes / (kSlowestBytesPerSecond / 1000), kLongestSeconds * 1000))) {}
+    : patience_(patience), end_(Clock::now() + patience + timeFor(fileBytes)) {}
+
+void ReadingTime::addFile(std::uint64_t fileBytes) {
+  const std::chrono::milliseconds more = timeFor(fileBytes);
+  end_ = end_ > Clock::time_point::max() - more ? Clock::time_point::max() : end_ + more;
+}
 
 bool ReadingTime::isOver() const { return Clock::now() > end_; }
 

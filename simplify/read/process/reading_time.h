@@ -23,6 +23,9 @@ class ReadingTime {
   /// Begins now.
   ReadingTime(std::chrono::seconds patience, std::uint64_t fileBytes);
 
+  /// The reading, which began before, has another file of so many bytes.
+  void addFile(std::uint64_t fileBytes);
+
   [[nodiscard]] bool isOver() const;
   /// Says why reading ended and what to do, to stand behind the file's name.
   [[nodiscard]] std::string text() const;

@@ -32,24 +32,41 @@ try:
 except ImportError:
     sys.exit(77)
 import os
+import shutil
 import xml.etree.ElementTree as tree
+from xml.sax.saxutils import quoteattr
 
 source, folder, kind, wanted = sys.argv[1:5]
 os.chdir(os.path.dirname(source))  # meshio looks there for the binary files that an XDMF names
 
-# faces and lines of second order, which Gmsh writes beside the volume
-OTHERS = {"CPS6": "triangle6", "CPS8": "quad8", "T3D3": "line3", "B32": "line3", "S8": "quad8"}
-try:
-    from meshio.abaqus import _abaqus
-    _abaqus.abaqus_to_meshio_type.update(OTHERS)
-except (ImportError, AttributeError):
-    pass
+def names_of(mesh):
+    """The names of MED's families, as our own files have those of a label's values."""
+    if "cell_tags" not in mesh.cell_data:
+        return ""
+    row = '<DataArray type="Int64" Name=%s NumberOfTuples="1" format="ascii">%d</DataArray>'
+    families = getattr(mesh, "cell_tags", {})
+    return "".join(row % (quoteattr("cell_tags=" + ", ".join(names)), family)
+                   for family, names in families.items() if names and "".join(names).isprintable())
+
+def add_names(names, path):
+    """meshio writes no data of the file."""
+    with open(path, "rb") as file, open(path + ".named", "wb") as named:
+        for line in file:
+            named.write(line)
+            if line.strip() == b"<UnstructuredGrid>":
+                named.write(b"<FieldData>" + names.encode(errors="replace") + b"</FieldData>\n")
+                break
+        shutil.copyfileobj(file, named)
+    os.replace(path + ".named", path)
 
 def write(mesh, name):
+    names = names_of(mesh)
     mesh.cell_sets, mesh.point_sets, mesh.field_data, mesh.info = {}, {}, {}, None
     # read once and removed: compressing would take most of the time
     meshio.write(folder + "/" + name, mesh, file_format="vtu", binary=True, compression=None,
                  header_type="UInt64")
+    if names:
+        add_names(names, folder + "/" + name)
 
 parts = wanted.split(",")
 

@@ -9,8 +9,14 @@
 #include <cstring>
 #include <iterator>
 #include <new>
+#include <ranges>
 #include <span>
+#include <string>
 #include <type_traits>
+#include <utility>
+
+#include "proto/limits.h"
+#include "simplify/read/steps/step_reports.h"
 
 namespace qtet {
 namespace {
@@ -21,7 +27,12 @@ namespace {
 template <class Io, class Field>
 void transferField(Io& io, Field& field) {
   io.list(field.name), io.one(field.components), io.list(field.type);
-  io.list(field.values), io.list(field.association);
+  io.list(field.values), io.list(field.association), io.names(field.labelNames);
+}
+
+template <class Io, class Label>
+void transferLabel(Io& io, Label& label) {
+  io.list(label.name), io.list(label.values), io.names(label.names);
 }
 
 template <class Io, class Step>
@@ -31,6 +42,7 @@ void transferStep(Io& io, Step& step) {
   io.list(mesh.vertices), io.list(mesh.cellIds), io.list(mesh.pointType), io.list(mesh.pointIds);
   io.each(mesh.fields, [&](auto& field) { transferField(io, field); });
   io.each(mesh.otherFields, [&](auto& name) { io.list(name); });
+  io.each(mesh.labels, [&](auto& label) { transferLabel(io, label); });
 }
 
 template <class Io, class Report>
@@ -39,6 +51,7 @@ void transferReport(Io& io, Report& report) {
   io.one(report.joinedByIds), io.list(report.times);
   io.each(report.ignoredFields, [&](auto& name) { io.list(name); });
   io.each(report.notes, [&](auto& note) { io.list(note); });
+  io.one(report.blocksMeet), io.pairs(report.differingBlocks);
 }
 
 class Sender {
@@ -59,6 +72,17 @@ class Sender {
   void each(const std::vector<T>& values, const Each& each) {
     one(std::uint64_t{values.size()});
     for (const T& value : values) each(value);
+  }
+  /// The first kMaxLabelNames: a log has no more.
+  void names(const LabelNames& names) {
+    const auto count = std::min<std::uint64_t>(names.size(), kMaxLabelNames);
+    one(count);
+    for (const auto& [value, name] : std::views::take(names, static_cast<std::ptrdiff_t>(count)))
+      one(value), list(name);
+  }
+  void pairs(const BlockPairs& pairs) {
+    one(std::uint64_t{pairs.size()});
+    for (const auto& [name, other] : pairs) list(name), list(other);
   }
 
  private:
@@ -100,6 +124,28 @@ class Receiver {
     one(size);
     if (size > bytes_.size()) failed_ = true;  // each takes a byte at least
     for (std::uint64_t i = 0; i < size && !failed_; ++i) each(values.emplace_back());
+  }
+  void names(LabelNames& names) {
+    std::uint64_t count = 0;
+    one(count);
+    if (count > kMaxLabelNames) failed_ = true;
+    for (std::uint64_t i = 0; i < count && !failed_; ++i) {
+      std::int32_t value = 0;
+      std::string name;
+      one(value), list(name);
+      if (!name.empty()) names.emplace(value, std::move(name));
+    }
+  }
+
+  void pairs(BlockPairs& pairs) {
+    std::uint64_t count = 0;
+    one(count);
+    if (count > bytes_.size()) failed_ = true;  // each takes a byte at least
+    for (std::uint64_t i = 0; i < count && !failed_; ++i) {
+      std::string name, other;
+      list(name), list(other);
+      pairs.emplace(std::move(name), std::move(other));
+    }
   }
 
   [[nodiscard]] bool failed() const { return failed_; }
@@ -176,6 +222,7 @@ Result<std::vector<TimedCells>> receiveCells(int file, ReadReport& report) {
   report.joinedByIds = told.joinedByIds, report.times = std::move(told.times);
   std::ranges::move(told.ignoredFields, std::back_inserter(report.ignoredFields));
   std::ranges::move(told.notes, std::back_inserter(report.notes));
+  addBlocks(std::move(told), report);
   return steps;
 }
 

@@ -4,13 +4,17 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <set>
 #include <span>
+#include <utility>
 
 #include "simplify/read/options/bad_file.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/join_pieces.h"
 #include "simplify/read/parts/near_points.h"
+#include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/common_type.h"
 #include "simplify/read/steps/moving_points.h"
 #include "simplify/read/steps/series_notes.h"
@@ -31,14 +35,17 @@ const MeshField* find(const CellMesh& mesh, const MeshField& like) {
 MeshField commonField(const MeshField& field, const std::vector<CellMesh>& blocks) {
   MeshField out{field.name, field.components, field.type, {}, field.association};
   bool isInAll = true;
+  std::set<std::int32_t> ambiguous;  // values to which blocks give different names
   for (const CellMesh& block : blocks) {
     const MeshField* there = find(block, field);
     isInAll = isInAll && there;
     if (!there) continue;
     if (there->components != out.components) return {};
-    out.labelNames.insert(there->labelNames.begin(), there->labelNames.end());
+    for (const auto& named : there->labelNames)
+      if (out.labelNames.insert(named).first->second != named.second) ambiguous.insert(named.first);
     out.type = commonType(out.type, there->type);
   }
+  for (const std::int32_t value : ambiguous) out.labelNames.erase(value);
   return isInAll || isFloatType(out.type) ? out : MeshField{};
 }
 
@@ -112,18 +119,87 @@ std::string howJoined(const JoinedPieces& joined) {
   return ", " + std::to_string(joined.nearPoints) + " of them apart by at most " + shareOfEdges();
 }
 
+/// Blocks have numbers in the mesh, and names in the options and the report. The names are those of
+/// all steps, with whatever fields.
+class BlockNames {
+ public:
+  explicit BlockNames(const CellMesh& mesh) {
+    const auto label = std::ranges::find(mesh.labels, kBlockLabel, &CellLabel::name);
+    if (label != mesh.labels.end()) names_ = &label->names;
+  }
+  [[nodiscard]] BlockPairs named(const NumberPairs& pairs) const {
+    BlockPairs out;
+    for (const auto& [a, b] : pairs) out.insert(ordered(nameOf(a), nameOf(b)));
+    return out;
+  }
+  /// The pairs of `blocks` that have these names.
+  [[nodiscard]] NumberPairs numbered(const BlockPairs& pairs,
+                                     const std::vector<std::int32_t>& blocks) const {
+    std::map<std::string, std::int32_t> numbers;
+    for (const std::int32_t block : std::set(blocks.begin(), blocks.end()))
+      numbers.emplace(nameOf(block), block);
+    NumberPairs out;
+    for (const auto& [name, other] : pairs) {
+      const auto a = numbers.find(name), b = numbers.find(other);
+      if (a != numbers.end() && b != numbers.end()) out.insert(ordered(a->second, b->second));
+    }
+    return out;
+  }
+
+ private:
+  template <class T>
+  static std::pair<T, T> ordered(T a, T b) {
+    return b < a ? std::pair(std::move(b), std::move(a)) : std::pair(std::move(a), std::move(b));
+  }
+  [[nodiscard]] std::string nameOf(std::int32_t block) const {
+    if (names_)
+      if (const auto name = names_->find(block); name != names_->end()) return name->second;
+    return std::to_string(block);
+  }
+
+  const LabelNames* names_ = nullptr;
+};
+
+/// "16 points lie at the place of another block's point, ..."
+void noteBlocks(const JoinedPieces& joined, std::vector<std::string>& notes) {
+  const std::string share = "by more than a thousandth of a field's range";
+  if (joined.blockPoints > 0)
+    notes.push_back(std::to_string(joined.blockPoints) +
+                    " points lie at the place of another block's point and stay apart, because "
+                    "values of the two blocks differ " +
+                    share +
+                    " at the file's first step; `weld` 0 joins them, with the values of the "
+                    "earlier block");
+  if (joined.differingPoints > 0)
+    notes.push_back(std::to_string(joined.differingPoints) +
+                    " points were joined with another block's point, though values differ " +
+                    share +
+                    ", because those blocks agree at the file's first step; they took the values "
+                    "of the earlier block; `weld` none keeps the blocks apart, with their values");
+}
+
 /// "its 8 pieces were joined at 1234 points that they share"
-void join(CellMesh& mesh, std::span<const VertexId> ends, bool isWanted, ReadReport& report) {
+void join(CellMesh& mesh, std::span<const VertexId> ends, const ReadOptions& options,
+          ReadReport& report) {
   report.pieces = ends.size();
   if (ends.size() < 2) return;
   const std::string pieces = "its " + std::to_string(ends.size()) + " pieces ";
-  if (!isWanted) {
+  // More points than ids can name: checkCellMesh refuses them.
+  const bool canBeNamed = mesh.points.size() < kGhost;
+  if (!options.joinPieces || !canBeNamed) {
     report.notes.push_back(pieces + "stay apart (`weld` none)");
     return;
   }
-  const JoinedPieces joined = joinPieces(mesh, ends);
+  BlocksOfPoints blocks{blocksOfPoints(mesh)};
+  const BlockNames names(mesh);
+  if (options.apartBlocks) blocks.apart = names.numbered(*options.apartBlocks, blocks.block);
+  const JoinedPieces joined = joinPieces(mesh, ends, blocks);
   report.joinedPoints = joined.points;
   report.joinedByIds = joined.byIds;
+  report.blocksMeet = report.blocksMeet || joined.blocksMeet;
+  report.differingBlocks.merge(names.named(joined.differing));
+  noteBlocks(joined, report.notes);
+  if (joined.points == 0 && joined.blockPoints > 0) return;
   if (joined.points == 0)
     report.notes.push_back(
         pieces + "have no points in common, and stay apart; `weld` D joins points within D");
@@ -226,11 +302,12 @@ bool haveSameCells(const CellMesh& a, const CellMesh& b) {
   return a.points.size() == b.points.size() && a.types == b.types && a.vertices == b.vertices;
 }
 
-CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& report) {
+CellMesh joinBlocks(std::vector<CellMesh> blocks, const ReadOptions& options, ReadReport& report) {
   std::erase_if(blocks, [](const CellMesh& block) { return block.cells() == 0; });
   if (blocks.empty()) return {};
   if (blocks.size() == 1) return std::move(blocks.front());
   CellMesh out;
+  out.labels = joinedLabels(blocks);
   out.pointType = blocks.front().pointType;
   out.fields = commonFields(blocks, report.notes);
   const bool haveIds = std::ranges::all_of(
@@ -262,9 +339,7 @@ CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared, ReadReport& r
     out.otherFields.insert(out.otherFields.end(), block.otherFields.begin(),
                            block.otherFields.end());
   }
-  // More points than ids can name: checkCellMesh refuses them.
-  const bool canBeNamed = out.points.size() < kGhost;
-  join(out, ends, joinShared && canBeNamed, report);
+  join(out, ends, options, report);
   return out;
 }
 

@@ -11,12 +11,13 @@
 namespace qtet {
 
 /// The blocks one after the other, cells numbered on. A block whose points are those of the one
-/// before (as Exodus has them) shares them. The others are pieces of their own, which are joined at
-/// the points that they share (join_pieces.h) where `joinShared` says so. A field whose types
-/// differ takes the narrowest type that holds all values. A field of floats that a block lacks is
-/// NaN there. A field of integers that a block lacks, or whose components differ, is left out. The
-/// report's notes say so.
-[[nodiscard]] CellMesh joinBlocks(std::vector<CellMesh> blocks, bool joinShared,
+/// before (as Exodus has them) shares them. The others are pieces of their own. They are joined at
+/// the points that they share (join_pieces.h) unless `options.joinPieces` is false. Points of
+/// blocks with names (cell_labels.h) stay apart where `options.apartBlocks` names both, or else
+/// where their values differ. A field whose types differ takes the narrowest type that holds all
+/// values. A field of floats that a block lacks is NaN there. A field of integers that a block
+/// lacks, or whose components differ, is left out. The report's notes say so.
+[[nodiscard]] CellMesh joinBlocks(std::vector<CellMesh> blocks, const ReadOptions& options,
                                   ReadReport& report);
 
 /// Whether both meshes have as many points and the same cells, which their points' places do not

@@ -1,6 +1,7 @@
 #include "simplify/read/steps/step_reports.h"
 
 #include <span>
+#include <utility>
 
 #include "simplify/read/steps/join_blocks.h"
 
@@ -23,6 +24,11 @@ void addNew(std::vector<std::string>& from, std::vector<std::string>& to) {
     if (std::ranges::find(to, text) == to.end()) to.push_back(std::move(text));
 }
 
+void addBlocks(ReadReport&& part, ReadReport& report) {
+  report.blocksMeet = report.blocksMeet || part.blocksMeet;
+  report.differingBlocks.merge(part.differingBlocks);
+}
+
 void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
   report.pieces = step.pieces;
   report.joinedPoints = step.joinedPoints;
@@ -33,6 +39,7 @@ void addStep(ReadReport&& step, bool isFirst, ReadReport& report) {
                                 step.ignoredFields.end());
   }
   addNew(step.notes, report.notes);
+  addBlocks(std::move(step), report);
 }
 
 void addPiece(ReadReport&& piece, ReadReport& report) {
@@ -40,6 +47,7 @@ void addPiece(ReadReport&& piece, ReadReport& report) {
   report.times = std::move(piece.times);
   addNew(piece.ignoredFields, report.ignoredFields);
   addNew(piece.notes, report.notes);
+  addBlocks(std::move(piece), report);
 }
 
 Result<std::vector<TimedCells>> joinedPieces(std::vector<std::vector<TimedCells>> pieces,
@@ -59,7 +67,7 @@ Result<std::vector<TimedCells>> joinedPieces(std::vector<std::vector<TimedCells>
     std::vector<CellMesh> blocks;
     for (std::vector<TimedCells>& piece : pieces) blocks.push_back(std::move(piece[s].cells));
     ReadReport step;
-    CellMesh cells = joinBlocks(std::move(blocks), options.joinPieces, step);
+    CellMesh cells = joinBlocks(std::move(blocks), options, step);
     addStep(std::move(step), s == 0, report);
     out.push_back({pieces.front()[s].time, std::move(cells)});
   }

@@ -16,6 +16,9 @@ namespace qtet {
 /// Moves the texts that are not there yet.
 void addNew(std::vector<std::string>& from, std::vector<std::string>& to);
 
+/// Adds which blocks meet, and which of them differ.
+void addBlocks(ReadReport&& part, ReadReport& report);
+
 /// Adds the report on one step more. Every step has the same mesh, so counts are those of one, and
 /// earlier notes need not be repeated.
 void addStep(ReadReport&& step, bool isFirst, ReadReport& report);

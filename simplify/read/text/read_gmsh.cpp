@@ -7,21 +7,15 @@
 
 #include "proto/limits.h"
 #include "proto/number_text.h"
-#include "simplify/mesh/split_mix64.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/text/gmsh_elements.h"
 #include "simplify/read/text/mesh_scanner.h"
+#include "simplify/read/text/plain_numbers.h"
 #include "simplify/read/text/text_readers.h"
 
 namespace qtet {
 namespace {
-
-/// Numbers in a file may be any, also multiples of the size of the library's table. The library's
-/// own hash of an integer is the integer, so all of these would lie in one bucket.
-struct MixedHash {
-  std::size_t operator()(std::uint64_t tag) const { return SplitMix64(tag).next(); }
-};
 
 /// Gmsh's own numbers of nodes and elements, which may have gaps, to ours.
 class Numbers {

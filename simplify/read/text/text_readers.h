@@ -36,7 +36,9 @@ namespace qtet {
                                           std::chrono::seconds patience = kReadPatience);
 
 /// I-DEAS universal files (.unv) as Salome and Gmsh write them: datasets 2411 and 781 of nodes,
-/// 2412 and 780 of elements. Groups and results are skipped.
+/// 2412 and 780 of elements. Groups of elements that do not overlap are the label Group
+/// (labelOfSets); results at nodes of dataset 2414 are point fields. Others are left out, with a
+/// note.
 /// https://www.ceas3.uc.edu/sdrluff (datasets by number)
 [[nodiscard]] Result<CellMesh> readUnv(const std::filesystem::path& path, ReadReport& report,
                                        std::chrono::seconds patience = kReadPatience);

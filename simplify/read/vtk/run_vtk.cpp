@@ -14,8 +14,10 @@
 
 #include <exception>
 #include <new>
+#include <string_view>
 
 #include "simplify/read/options/bad_file.h"
+#include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/step_reports.h"
 #include "simplify/read/vtk/vtk_cells.h"
@@ -80,31 +82,40 @@ class MessageCapture {
   vtkNew<MessageWindow> window_;
 };
 
+/// The name of the iterator's block; empty: the file gives it none.
+std::string currentName(vtkCompositeDataIterator& each) {
+  if (each.HasCurrentMetaData() == 0) return {};
+  const char* name = each.GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME());
+  // VTK calls Exodus' blocks so that have no name
+  return !name || std::string_view(name).starts_with("Unnamed block ID:") ? "" : name;
+}
+
 /// The volume blocks of what a reader gave, in one mesh.
 Result<CellMesh> cellsOfOutput(vtkDataObject* output, const ReadOptions& options,
                                const std::filesystem::path& path, ReadReport& report) {
   std::vector<CellMesh> blocks;
-  const auto add = [&](vtkDataObject* object) -> Status {
+  const auto add = [&](vtkDataObject* object, const std::string& name) -> Status {
     auto* data = vtkDataSet::SafeDownCast(object);
     if (!data || data->GetNumberOfCells() + data->GetNumberOfPoints() == 0) return {};
     Result<CellMesh> cells = cellsOf(*data, options.fields, path, report);
     if (!cells) return std::unexpected(cells.error());
     blocks.push_back(std::move(*cells));
+    nameBlock(name, static_cast<std::int32_t>(blocks.size()), blocks.back());
     return {};
   };
   auto* composite = vtkCompositeDataSet::SafeDownCast(output);
   if (!composite) {
     if (!vtkDataSet::SafeDownCast(output))
       return badFile(path, "VTK found no mesh in it; export the mesh as .vtu");
-    if (Status done = add(output); !done) return std::unexpected(done.error());
+    if (Status done = add(output, ""); !done) return std::unexpected(done.error());
     return blocks.empty() ? CellMesh{} : std::move(blocks.front());
   }
   const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
   for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem()) {
-    if (Status done = add(each->GetCurrentDataObject()); !done)
+    if (Status done = add(each->GetCurrentDataObject(), currentName(*each)); !done)
       return std::unexpected(done.error());
   }
-  return joinBlocks(std::move(blocks), options.joinPieces, report);
+  return joinBlocks(std::move(blocks), options, report);
 }
 
 std::vector<double> timesOf(vtkAlgorithm& reader) {

@@ -263,5 +263,38 @@ TEST_F(AddStepsTool, aStepsFieldCanBeNamedAmongAllSteps) {
   EXPECT_EQ(part.code, 0) << part.err;
 }
 
+// Blocks say of no step what they are. A log has them from its first steps on.
+TEST_F(AddStepsTool, blocksWithNamesAreNoStep) {
+  put("blocks.vtm",
+      R"(<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet><DataSet name="left" )"
+      R"(file="step-0.vtu"/><DataSet name="right" file="moved.vtu"/></vtkMultiBlockDataSet>)"
+      "</VTKFile>");
+  TetMesh moved = at(0);
+  for (Position& p : moved.points) p[0] += 5;
+  write("moved.vtu", moved);
+  const auto list = [&](const std::string& name, const std::vector<std::string>& times) {
+    std::string sets;
+    for (const std::string& time : times)
+      sets += "<DataSet timestep=\"" + time + "\" file=\"blocks.vtm\"/>";
+    put(name, R"(<VTKFile type="Collection"><Collection>)" + sets + "</Collection></VTKFile>");
+  };
+  list("first.pvd", {"0", "1"});
+  list("more.pvd", {"2", "3"});
+  const Ran made = run("simplify first.pvd --time all -o blocks.qtet --base-cells 600");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Ran added = run("add-steps blocks.qtet more.pvd -o more.qtet");
+  ASSERT_EQ(added.code, 0) << added.err;
+  const Ran info = run("info more.qtet");
+  EXPECT_NE(info.out.find("BlockId: 1 = left, 2 = right"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("T: 4 instants"), std::string::npos) << info.out;
+  TetMesh other = at(0);
+  other.fields[0].name = "p";
+  write("step-0.vtu", other);
+  moved.fields[0].name = "p";
+  write("moved.vtu", moved);
+  const Ran field = run("add-field blocks.qtet --from blocks.vtm -o field.qtet");
+  EXPECT_EQ(field.code, 0) << field.err;
+}
+
 }  // namespace
 }  // namespace qtet

@@ -833,7 +833,8 @@ TEST(OwnReaders, noneGoesOnAfterItsTime) {
        {fileWith("a.msh", gmsh22(false)), fileWith("b.msh", gmsh41(true)),
         fileWith("a.mesh", medit(false, 2)), fileWith("a.meshb", medit(true, 3)),
         fileWith("a.su2", su2()), tetgenFiles(kNode, kEle), fileWith("a.unv", unv),
-        fileWith("a.vtk", legacy), fileWith("a.vtu", vtu)}) {
+        fileWith("a.vtk", legacy), fileWith("a.vtu", vtu),
+        fileWith("a.inp", "*NODE\n1, 0, 0, 0\n")}) {
     const Result<ReadMesh> read = readMesh(path, options);
     ASSERT_FALSE(read) << path;
     EXPECT_EQ(read.error().code, ErrorCode::kBadInput) << path;

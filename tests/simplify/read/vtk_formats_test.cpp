@@ -7,11 +7,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
+#include <tuple>
 
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/read_times.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/split/cell_grids.h"
 #include "tests/support/paths/test_paths.h"
@@ -431,6 +434,79 @@ TEST(VtkFormats, exodusBlocksHaveTheirFieldsAndNumbers) {
   EXPECT_EQ(read.report.split.cells[kHexahedronCell], 4u);
 }
 
+TEST(VtkFormats, exodusBlocksKeepTheirNames) {
+  std::ifstream file(given("two.e"), std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  constexpr std::size_t kBlockNames = 2120, kNameBytes = 256;  // where the file has them, empty
+  for (const auto& [place, name] : {std::pair{0u, "fluid"}, std::pair{1u, "solid"}})
+    bytes.replace(kBlockNames + place * kNameBytes, 5, name);
+  const fs::path path = fileWith("named.e", bytes);
+  ReadOptions options;
+  for (const char* time : {"last", "all"}) {
+    options.time = time;
+    const Result<ReadMesh> read = readMesh(path, options);
+    ASSERT_TRUE(read) << read.error().text();
+    const MeshField* label = field(*read, time == std::string("all") ? "ObjectId@0.5" : "ObjectId");
+    ASSERT_TRUE(label);
+    EXPECT_EQ(label->labelNames, (LabelNames{{12, "fluid"}, {94, "solid"}}));
+    EXPECT_FALSE(field(*read, "BlockId"));
+  }
+}
+
+/// Two blocks with names and one point field T, at 1 and at `second`, in a folder of their own.
+fs::path namedBlocks(double second) {
+  const fs::path path =
+      fileWith("named.vtm",
+               "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
+               "<DataSet name=\"fluid\" file=\"a.vtu\"/><DataSet name=\"solid\" file=\"b.vtu\"/>"
+               "</vtkMultiBlockDataSet></VTKFile>");
+  for (const auto& [name, x, value] :
+       {std::tuple{"a.vtu", 0.0, 1.0}, std::tuple{"b.vtu", 1.0, second}}) {
+    TetMesh mesh = testing::oneCell();
+    if (x > 0) mesh.points = {{0, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
+    mesh.fields = {{"T", 1, "float64", std::vector<double>(4, value), "point"}};
+    const Bytes bytes = vtuBytes(mesh);
+    std::ofstream(path.parent_path() / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+  }
+  return path;
+}
+
+TEST(VtkFormats, blocksKeepTheirNamesAndTheirValuesWhereTheyMeet) {
+  for (const auto& [second, points] : {std::pair{1.0, 5u}, std::pair{8000.0, 8u}}) {
+    const Result<ReadMesh> read = readMesh(namedBlocks(second));
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->mesh.points.size(), points);
+    const MeshField* label = field(*read, "BlockId");
+    ASSERT_TRUE(label);
+    EXPECT_EQ(label->values, (std::vector<double>{1, 2}));
+    EXPECT_EQ(label->labelNames, (LabelNames{{1, "fluid"}, {2, "solid"}}));
+  }
+}
+
+TEST(VtkFormats, blocksOfASeriesAreOneFieldInAllParts) {
+  const fs::path path = namedBlocks(8000).parent_path() / "run.pvd";
+  std::string sets;
+  for (int time = 0; time < 3; ++time)
+    sets += "<DataSet timestep=\"" + std::to_string(time) + "\" file=\"named.vtm\"/>";
+  std::ofstream(path) << "<VTKFile type=\"Collection\"><Collection>" + sets +
+                             "</Collection></VTKFile>";
+  ReadOptions options;
+  options.time = "all";
+  const std::vector<double> times{0, 1, 2};
+  for (const std::size_t atOnce : {3u, 1u}) {
+    const Result<ReadMesh> read = readTimesInParts(path, options, times, atOnce);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->mesh.fields.size(), 4u);
+    EXPECT_EQ(std::ranges::count(read->mesh.fields, "BlockId", &MeshField::name), 1);
+    EXPECT_EQ(read->mesh.points.size(), 8u) << "the first step decides for all of them";
+  }
+  options.fields = std::vector<std::string>{"T"};
+  EXPECT_EQ(readMesh(path, options)->mesh.fields.size(), 3u);
+  options.fields = std::vector<std::string>{"BlockId"};
+  EXPECT_EQ(readMesh(path, options)->mesh.fields.size(), 1u);
+}
+
 TEST(VtkFormats, cgnsZonesAreReadWithTheirSolution) {  // two files that the CGNS library wrote
   const ReadMesh mixed = expectABar(given("unstructured.cgns"), 1);
   EXPECT_EQ(mixed.report.split.cells[kHexahedronCell], 4u);
@@ -535,22 +611,6 @@ TEST(VtkFormats, aDamagedExodusFileIsAnErrorOrAMesh) {
   for (std::size_t length = 0; length < whole.size(); length += 500) {
     const Result<ReadMesh> read = readMesh(fileWith("cut.e", whole.substr(0, length)));
     EXPECT_TRUE(read || !read.error().message.empty());
-  }
-}
-
-/// Abaqus goes through meshio: a mesh where it is installed, else an error that says what to
-/// install.
-TEST(VtkFormats, abaqusIsReadThroughMeshioOrRefusedWithAdvice) {
-  const std::string text =
-      "*HEADING\n*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n1, 1, "
-      "2, 3, 4\n";
-  const Result<ReadMesh> read = readMesh(fileWith("one.inp", text));
-  if (read) {
-    EXPECT_EQ(read->mesh.tetrahedra, testing::oneCell().tetrahedra);
-    EXPECT_FALSE(readMesh(fileWith("bad.inp", text.substr(0, 40))));
-  } else {
-    EXPECT_EQ(read.error().code, ErrorCode::kNotFound) << read.error().text();
-    EXPECT_NE(read.error().message.find("apt install python3-meshio"), std::string::npos);
   }
 }
 

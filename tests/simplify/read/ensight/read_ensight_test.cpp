@@ -653,5 +653,48 @@ TEST(ReadEnSight, filesThatVtkWroteAreReadAndRefusedWhereTheyAreCutOff) {
   }
 }
 
+TEST(ReadEnSight, partsAreBlocksWithTheirNumbersAndNames) {
+  for (const Dialect dialect : dialects()) {
+    SCOPED_TRACE(std::string(dialect.isGold ? "gold " : "6 ") +
+                 std::to_string(static_cast<int>(dialect.kind)));
+    EnSightWriter out(dialect.kind, dialect.isGold);
+    out.header().line("two parts").line("").line("node id off").line("element id off");
+    const std::vector<Position> points = barPoints(1);
+    const auto write = [&](std::size_t begin, std::size_t end) {
+      out.line("coordinates").integers({static_cast<std::int32_t>(end - begin)});
+      std::vector<float> all;
+      for (std::size_t i = 0; i < 3 * (end - begin); ++i) {
+        const std::size_t point = dialect.isGold ? i % (end - begin) : i / 3,
+                          axis = dialect.isGold ? i / (end - begin) : i % 3;
+        all.push_back(static_cast<float>(points[begin + point][axis]));
+      }
+      out.reals(all, dialect.isGold ? 1 : 3);
+    };
+    if (!dialect.isGold) write(0, 12);
+    for (const std::int32_t part : {7, 9}) {
+      if (dialect.isGold)
+        out.line("part").integers({part});
+      else
+        out.line("part " + std::to_string(part));
+      out.line(part == 7 ? "wing " : "tail");
+      if (dialect.isGold) write(part == 7 ? 0 : 4, part == 7 ? 8 : 12);
+      const std::int32_t first = part == 7 || dialect.isGold ? 1 : 5;
+      std::vector<std::int32_t> corners(8);
+      for (std::int32_t k = 0; k < 8; ++k) corners[static_cast<std::size_t>(k)] = first + k;
+      out.line("hexa8").integers({1}).integers(corners, 8);
+    }
+    const fs::path path = testing::fileWith("parts.case", front(dialect) + "model: parts.geo\n");
+    writeBytes(path.parent_path() / "parts.geo", out.bytes());
+    const Result<ReadMesh> read = readMesh(path);
+    ASSERT_TRUE(read) << read.error().text();
+    ASSERT_EQ(read->mesh.fields.size(), 1u);
+    const MeshField& field = read->mesh.fields[0];
+    EXPECT_EQ(field.name, "BlockId");
+    EXPECT_EQ(field.labelNames, (LabelNames{{7, "wing"}, {9, "tail"}}));
+    EXPECT_EQ(field.values.front(), 7);
+    EXPECT_EQ(field.values.back(), 9);
+  }
+}
+
 }  // namespace
 }  // namespace qtet

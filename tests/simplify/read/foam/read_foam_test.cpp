@@ -157,7 +157,7 @@ TEST(ReadFoam, aMeshThatChangesIsThatOfTheLatestTimeThatHasOne) {
   EXPECT_NE(refusalAt(marker, "3").find("2/polyMesh/points"), std::string::npos);
 }
 
-TEST(ReadFoam, regionsAreJoinedWhereTheyTouch) {
+TEST(ReadFoam, regionsOfOtherValuesStayApartWhateverIsRead) {
   const fs::path marker = testing::fileWith("regions.foam", ""), folder = marker.parent_path();
   testing::writeTwoCubes(folder / "constant/fluid/polyMesh");
   testing::writeTwoCubes(folder / "constant/solid/polyMesh", 2);
@@ -170,7 +170,7 @@ TEST(ReadFoam, regionsAreJoinedWhereTheyTouch) {
   const Result<ReadMesh> read = readMesh(folder, options);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_NEAR(filledBy(read->mesh).volume, 4, 1e-9);
-  EXPECT_EQ(read->report.joinedPoints, 4u);
+  EXPECT_EQ(read->report.joinedPoints, 0u);
   EXPECT_TRUE(hasNote(*read, "p is not in 1 of 2 blocks"));
   for (std::size_t i = 0; i < read->mesh.tetrahedra.size(); ++i) {
     double x = 0;
@@ -179,6 +179,82 @@ TEST(ReadFoam, regionsAreJoinedWhereTheyTouch) {
   }
   testing::writeTwoCubes(folder / "constant/polyMesh", -2);
   EXPECT_NEAR(filledBy(readAt(marker, "last").mesh).volume, 6, 1e-9);
+}
+
+const MeshField* labelOf(const ReadMesh& read, const std::string& name) {
+  const auto at = std::ranges::find(read.mesh.fields, name, &MeshField::name);
+  return at == read.mesh.fields.end() ? nullptr : &*at;
+}
+
+// A mean across two regions would be a value of neither.
+TEST(ReadFoam, pointsOfRegionsKeepTheValuesOfTheirRegion) {
+  const fs::path folder = testing::freshFolder("regions-apart");
+  testing::writeTwoCubes(folder / "constant/fluid/polyMesh");
+  testing::writeTwoCubes(folder / "constant/solid/polyMesh", 2);
+  for (const auto& [region, value] : {std::pair{"fluid", "1"}, std::pair{"solid", "8000"}})
+    for (const char* time : {"0", "1"})
+      writeFoamField(folder / time / region / "rho", "volScalarField",
+                     std::string("uniform ") + value);
+  const ReadMesh read = readAt(folder, "last");
+  EXPECT_TRUE(hasNote(read, "4 points lie at the place of another block's point"));
+  EXPECT_TRUE(hasNote(read, "`weld` 0 joins them"));
+  const MeshField *rho = labelOf(read, "rho"), *block = labelOf(read, "BlockId");
+  ASSERT_TRUE(rho && block);
+  EXPECT_EQ(block->labelNames, (LabelNames{{1, "fluid"}, {2, "solid"}}));
+  for (std::size_t t = 0; t < read.mesh.tetrahedra.size(); ++t)
+    for (const VertexId v : read.mesh.tetrahedra[t])
+      EXPECT_EQ(rho->values[v], block->values[t] == 1 ? 1 : 8000) << t;
+  const ReadMesh all = readAt(folder, "all");
+  EXPECT_EQ(fieldsIn(all), (Names{"point:rho@0", "point:rho@1", "cell:BlockId"}));
+  EXPECT_EQ(all.mesh.points.size(), read.mesh.points.size());
+}
+
+TEST(ReadFoam, zonesOfCellsAreALabel) {
+  const fs::path marker = twoCubesCase(), mesh = marker.parent_path() / "constant/polyMesh";
+  const auto writeZones = [&](const std::string& body) {
+    testing::writeFoam(mesh / "cellZones", "regIOobject", body);
+    return readAt(marker, "all");
+  };
+  const std::string first = "first { type cellZone; cellLabels List<label> 1(1); }\n",
+                    second = "second\n{\n type cellZone;\n cellLabels\n2{1};\n}\n";
+  const ReadMesh one = writeZones("1\n(\n" + first + ")\n");
+  EXPECT_EQ(fieldsIn(one), (Names{"point:p", "point:q", "cell:cellZone"}));
+  const MeshField* zone = labelOf(one, "cellZone");
+  ASSERT_TRUE(zone);
+  EXPECT_EQ(zone->labelNames, (LabelNames{{1, "first"}}));
+  EXPECT_EQ(zone->values.front(), 0);
+  EXPECT_EQ(zone->values.back(), 1);
+  const ReadMesh two = writeZones("2\n(\n" + second + first + ")\n");
+  EXPECT_TRUE(hasNote(two, "2 cells are in two zones"));
+  ASSERT_TRUE(labelOf(two, "cellZone"));
+  EXPECT_EQ(labelOf(two, "cellZone")->values.back(), 1) << "the first";
+  for (const std::string& bad : std::vector<std::string>{
+           std::string("1\n(\nx { cellLabels 1(2); }\n)\n"), "1\n(\nx { cellLabels 3{1}; }\n)\n",
+           "2\n(\n" + first + ")\n", std::string("1(x { cellLabels 1(1)"), std::string("9")}) {
+    const ReadMesh left = writeZones(bad);
+    EXPECT_EQ(fieldsIn(left), (Names{"point:p", "point:q"})) << bad;
+    EXPECT_TRUE(hasNote(left, "zones of cells were left out")) << bad;
+  }
+  EXPECT_EQ(fieldsIn(writeZones("0\n(\n)\n")), (Names{"point:p", "point:q"}));
+}
+
+TEST(ReadFoam, zonesAndRegionsOfProcessorsAreThoseOfTheCase) {
+  const fs::path folder = testing::freshFolder("zones-of-processors");
+  for (int i = 0; i < 2; ++i) {
+    const fs::path piece = folder / ("processor" + std::to_string(i));
+    for (const auto& [region, x] : {std::pair{"fluid", 0}, std::pair{"solid", 10}}) {
+      testing::writeTwoCubes(piece / "constant" / region / "polyMesh", x + 2 * i);
+      testing::writeFoam(
+          piece / "constant" / region / "polyMesh/cellZones", "regIOobject",
+          "2(none { cellLabels 0(); } " + std::string(region) + "Zone { cellLabels 1(0); })");
+    }
+  }
+  const ReadMesh read = readAt(folder, "last");
+  EXPECT_EQ(fieldsIn(read), (Names{"cell:BlockId", "cell:cellZone"}));
+  EXPECT_EQ(read.report.joinedPoints, 4u);
+  EXPECT_EQ(labelOf(read, "BlockId")->labelNames, (LabelNames{{1, "fluid"}, {2, "solid"}}));
+  EXPECT_EQ(labelOf(read, "cellZone")->labelNames,
+            (LabelNames{{1, "none"}, {2, "fluidZone"}, {3, "solidZone"}}));
 }
 
 TEST(ReadFoam, aRegionWithoutAMeshYetIsRefused) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 
 namespace qtet {
 namespace {
@@ -187,6 +188,121 @@ TEST(JoinPieces, idsOutsideThePointsStayWhatTheyAre) {
   joinPieces(mesh, std::vector<VertexId>{8, 16});
   EXPECT_EQ(mesh.cell(0)[3], kGhost);
   EXPECT_EQ(mesh.cell(2)[0], kGhost) << "a polyhedron's counts are no ids";
+}
+
+/// Two cubes that touch, as blocks 1 and 2, with `left` and `right` as their values of T.
+CellMesh twoBlocks(double left, double right, const std::string& type = "float64") {
+  CellMesh mesh;
+  addCube(mesh, {0, 0, 0});
+  addCube(mesh, {1, 0, 0});
+  mesh.fields.push_back({"T", 1, type, std::vector<double>(16, left), "point"});
+  std::ranges::fill(mesh.fields[0].values.begin() + 8, mesh.fields[0].values.end(), right);
+  mesh.fields.push_back({"wide", 1, "float64", std::vector<double>(16, 0), "point"});
+  return mesh;
+}
+
+BlocksOfPoints blocksOfCubes(std::optional<NumberPairs> apart = {}) {
+  BlocksOfPoints out{std::vector<std::int32_t>(16, 1), std::move(apart)};
+  std::ranges::fill(out.block.begin() + 8, out.block.end(), 2);
+  return out;
+}
+
+const std::vector<VertexId> kCubeEnds{8, 16};
+
+TEST(JoinPieces, pointsOfBlocksStayApartWhereTheirValuesDiffer) {
+  CellMesh mesh = twoBlocks(1, 8000);
+  const JoinedPieces joined = joinPieces(mesh, kCubeEnds, blocksOfCubes());
+  EXPECT_EQ(joined.points, 0u);
+  EXPECT_EQ(joined.blockPoints, 4u);
+  EXPECT_EQ(joined.differing, (NumberPairs{{1, 2}}));
+  EXPECT_EQ(mesh.points.size(), 16u);
+  CellMesh pieces = twoBlocks(1, 8000);
+  EXPECT_EQ(joinPieces(pieces, kCubeEnds).points, 4u) << "pieces of one mesh hang together";
+}
+
+TEST(JoinPieces, roundingMissingValuesAndIntegersKeepNothingApart) {
+  for (const auto& [left, right, type] :
+       {std::tuple{1.0, 1.0, "float64"}, std::tuple{1.0, kNan, "float32"},
+        std::tuple{kNan, 1.0, "float64"}, std::tuple{1.0, 8000.0, "int32"}}) {
+    CellMesh mesh = twoBlocks(left, right, type);
+    EXPECT_EQ(joinPieces(mesh, kCubeEnds, blocksOfCubes()).points, 4u) << left << " " << right;
+    EXPECT_EQ(mesh.fields[0].values[1], 1) << left << " " << right;
+  }
+  for (const auto& [difference, points] : {std::pair{0.9, 4u}, std::pair{1.1, 0u}}) {
+    CellMesh mesh = twoBlocks(0, difference);
+    mesh.fields[0].values[0] = 1000;  // so that the difference is about a thousandth of the range
+    const JoinedPieces joined = joinPieces(mesh, kCubeEnds, blocksOfCubes());
+    EXPECT_EQ(joined.points, points) << difference;
+    EXPECT_EQ(joined.blockPoints, 4u - points) << difference;
+  }
+}
+
+TEST(JoinPieces, globalIdsJoinNoValuesThatDiffer) {
+  CellMesh mesh = twoBlocks(1, 8000);
+  mesh.pointIds = {0, 1, 2, 3, 4, 5, 6, 7, 1, 11, 12, 2, 5, 15, 16, 6};
+  const JoinedPieces joined = joinPieces(mesh, kCubeEnds, blocksOfCubes());
+  EXPECT_TRUE(joined.byIds);
+  EXPECT_EQ(joined.points, 0u);
+  EXPECT_EQ(joined.blockPoints, 4u);
+  EXPECT_EQ(joined.differing, (NumberPairs{{1, 2}}));
+}
+
+TEST(JoinPieces, blocksThatAgreedBeforeAreJoinedAndTheirDifferencesCounted) {
+  CellMesh mesh = twoBlocks(1, 8000);
+  const JoinedPieces joined = joinPieces(mesh, kCubeEnds, blocksOfCubes(NumberPairs{}));
+  EXPECT_EQ(joined.points, 4u);
+  EXPECT_EQ(joined.differingPoints, 4u);
+  EXPECT_EQ(joined.differing, (NumberPairs{{1, 2}}));
+}
+
+TEST(JoinPieces, blocksThatAreKeptApartShareNoPointWhateverTheirValues) {
+  CellMesh mesh = twoBlocks(1, 1);
+  const JoinedPieces joined = joinPieces(mesh, kCubeEnds, blocksOfCubes(NumberPairs{{1, 2}}));
+  EXPECT_EQ(joined.points, 0u);
+  EXPECT_EQ(joined.blockPoints, 4u);
+  EXPECT_TRUE(joined.blocksMeet);
+  EXPECT_TRUE(joined.differing.empty());
+}
+
+// Three cubes that share an edge. The one without values agrees with both others, which differ.
+TEST(JoinPieces, aBlockWithoutValuesJoinsNoTwoThatDiffer) {
+  std::vector<double> values{kNan, 1, 8000};
+  std::vector<std::size_t> order{0, 1, 2};
+  do {
+    for (const bool areNamed : {false, true}) {
+      CellMesh mesh = twoBlocks(values[order[0]], values[order[1]]);
+      addCube(mesh, {0, 1, 0});
+      mesh.fields[0].values.resize(24, values[order[2]]);
+      mesh.fields[1].values.resize(24, 0);
+      BlocksOfPoints blocks = blocksOfCubes();
+      blocks.block.resize(24, 3);
+      if (areNamed) {
+        NumberPairs apart;
+        for (std::int32_t a = 1; a <= 3; ++a)
+          for (std::int32_t b = a + 1; b <= 3; ++b)
+            if (order[a - 1] != 0 && order[b - 1] != 0) apart.emplace(a, b);
+        blocks.apart = apart;
+      }
+      joinPieces(mesh, std::vector<VertexId>{8, 16, 24}, blocks);
+      std::multiset<double> atEdge;
+      for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        if (mesh.points[v] == Position{1, 1, 0}) atEdge.insert(mesh.fields[0].values[v]);
+      EXPECT_EQ(atEdge, (std::multiset<double>{1, 8000})) << order[0] << order[1] << order[2];
+    }
+  } while (std::ranges::next_permutation(order).found);
+}
+
+TEST(JoinPieces, whereThreeBlocksMeetThoseThatAgreeAreOne) {
+  CellMesh mesh = twoBlocks(1, 8000);
+  addCube(mesh, {0, 1, 0});  // shares points 2, 3, 6, 7 of the first, of which 2 and 6 are the
+  mesh.fields[0].values.resize(24, 8000);  // second's, too
+  mesh.fields[1].values.resize(24, 0);
+  BlocksOfPoints blocks = blocksOfCubes();
+  blocks.block.resize(24, 3);
+  const JoinedPieces joined = joinPieces(mesh, std::vector<VertexId>{8, 16, 24}, blocks);
+  EXPECT_EQ(joined.points, 2u) << "those of the second and the third";
+  EXPECT_EQ(shared(mesh, 1, 2), 2u);
+  EXPECT_EQ(shared(mesh, 0, 1), 0u);
 }
 
 }  // namespace

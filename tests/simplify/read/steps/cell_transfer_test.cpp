@@ -4,7 +4,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <iterator>
 #include <limits>
+#include <string_view>
+#include <utility>
+
+#include "proto/limits.h"
 
 namespace qtet {
 namespace {
@@ -27,7 +32,8 @@ std::vector<TimedCells> twoSteps() {
     step.cells.pointIds = {4, 5, 6, 1'000'000'000'000};
     step.cells.pointType = "float32";
     step.cells.fields = {{"T", 1, "float64", {1, 2, std::numeric_limits<double>::infinity(), 4}},
-                         {"part", 2, "int16", {-1, 3}, "cell"}};
+                         {"part", 2, "int16", {-1, 3}, "cell", {{-1, "none"}, {3, "a"}}}};
+    step.cells.labels = {{"BlockId", {4}, {{4, "fluid"}}}};
     step.cells.otherFields = {"name", ""};
   }
   out[1].cells = {};
@@ -61,7 +67,12 @@ TEST_F(CellTransfer, whatIsSentArrives) {
     EXPECT_EQ(b.fields[f].type, a.fields[f].type);
     EXPECT_EQ(b.fields[f].values, a.fields[f].values);
     EXPECT_EQ(b.fields[f].association, a.fields[f].association);
+    EXPECT_EQ(b.fields[f].labelNames, a.fields[f].labelNames);
   }
+  ASSERT_EQ(b.labels.size(), 1u);
+  EXPECT_EQ(b.labels[0].name, "BlockId");
+  EXPECT_EQ(b.labels[0].values, a.labels[0].values);
+  EXPECT_EQ(b.labels[0].names, a.labels[0].names);
   EXPECT_EQ((*back)[1].cells.cells(), 0u);
   EXPECT_EQ(got.ignoredCells, 4u);
   EXPECT_EQ(got.joinedPoints, 9u);
@@ -87,6 +98,37 @@ TEST_F(CellTransfer, bytesCutAnywhereAreRefused) {
     ASSERT_FALSE(back) << size;
     EXPECT_EQ(back.error().code, ErrorCode::kBadInput);
   }
+}
+
+TEST_F(CellTransfer, asManyNamesArriveAsALogHolds) {
+  std::vector<TimedCells> sent = twoSteps();
+  LabelNames& names = sent[0].cells.labels[0].names;
+  for (std::int32_t i = 0; std::cmp_less(i, kMaxLabelNames + 1); ++i) names.emplace(i, "x");
+  ReadReport report;
+  sendCells(file_, sent, report);
+  const auto back = receiveCells(file_, report);
+  ASSERT_TRUE(back) << back.error().text();
+  EXPECT_EQ((*back)[0].cells.labels[0].names.size(), kMaxLabelNames);
+}
+
+TEST_F(CellTransfer, moreNamesThanALogHoldsAreRefused) {
+  std::vector<TimedCells> sent = twoSteps();
+  LabelNames& names = sent[0].cells.labels[0].names;
+  for (std::int32_t i = 0; std::cmp_less(i, kMaxLabelNames); ++i) names.emplace(i, "x");
+  ReadReport report;
+  sendCells(file_, sent, report);
+  // the count stands before the first value and its name
+  const std::uint64_t count = kMaxLabelNames, more = count + 1;
+  std::vector<char> bytes(static_cast<std::size_t>(::lseek(file_, 0, SEEK_END)));
+  ASSERT_EQ(::pread(file_, bytes.data(), bytes.size(), 0), std::ssize(bytes));
+  const std::string_view all(bytes.data(), bytes.size()),
+      known(reinterpret_cast<const char*>(&count), sizeof count);
+  const std::size_t at = all.rfind(known);
+  ASSERT_NE(at, std::string_view::npos);
+  ASSERT_EQ(::pwrite(file_, &more, sizeof more, static_cast<off_t>(at)), std::ssize(known));
+  const auto back = receiveCells(file_, report);
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().code, ErrorCode::kBadInput);
 }
 
 TEST_F(CellTransfer, lengthsBeyondTheBytesAllocateNothing) {
