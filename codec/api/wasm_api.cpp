@@ -39,21 +39,21 @@ int report(const Error& error) {
   return 1 + static_cast<int>(error.code);
 }
 
+bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
+  return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
+}
+
 qtet::Result<std::vector<std::int32_t>> blockValues(std::uint32_t chunk, std::uint32_t part,
                                                     std::span<const std::int32_t> symbols,
                                                     ByteView digits) {
   const LogIndex& index = refiner->index();
-  if (chunk < index.chunks.size() && part < index.parts() &&
-      index.chunks[chunk].valueCodec == qtet::CodecId::kAdaptive)
+  if (hasBlock(chunk, part) && index.blockCodec(chunk, part) == qtet::CodecId::kAdaptive)
     return qtet::decodeAdaptiveBlock(digits, index.components(part), index.tuples(chunk, part));
   return qtet::joinValues(symbols, digits);
 }
 
 int noLog() { return report({ErrorCode::kBadOrder, "no log is open: call qtet_open first"}); }
 
-bool hasBlock(std::uint32_t chunk, std::uint32_t part) {
-  return refiner && chunk < refiner->index().chunks.size() && part < refiner->index().parts();
-}
 bool hasField(std::uint32_t field) { return refiner && field < refiner->index().fields.size(); }
 
 }  // namespace
@@ -129,8 +129,7 @@ std::uint32_t qtet_field_parent(std::uint32_t field, std::uint32_t parent) {
 }
 std::uint32_t qtet_block_codec(std::uint32_t chunk, std::uint32_t part) {
   if (!hasBlock(chunk, part)) return 0;
-  const qtet::ChunkEntry& e = refiner->index().chunks[chunk];
-  return static_cast<std::uint32_t>(part == qtet::kStructurePart ? e.structureCodec : e.valueCodec);
+  return static_cast<std::uint32_t>(refiner->index().blockCodec(chunk, part));
 }
 
 const std::uint32_t* qtet_chunk_brings(std::uint32_t chunk) {
@@ -170,8 +169,13 @@ int qtet_apply_field(std::uint32_t field, std::uint32_t chunk, const std::int32_
   if (!refiner) return noLog();
   if (!hasField(field))
     return report({ErrorCode::kNotFound, "there is no field " + std::to_string(field)});
-  const auto values = blockValues(chunk, qtet::kFirstFieldPart + field, std::span(symbols, count),
-                                  ByteView(digits, digitBytes));
+  const std::uint32_t part = qtet::kFirstFieldPart + field;
+  if (hasBlock(chunk, part) && refiner->index().blockCodec(chunk, part) == qtet::CodecId::kLifted) {
+    const auto status = refiner->applyField(field, chunk, ByteView(digits, digitBytes));
+    return status ? 0 : report(status.error());
+  }
+  const auto values =
+      blockValues(chunk, part, std::span(symbols, count), ByteView(digits, digitBytes));
   if (!values) return report(values.error());
   const auto status = refiner->applyField(field, chunk, *values);
   return status ? 0 : report(status.error());

@@ -27,7 +27,7 @@ const char* qtet_error();
 std::uint32_t qtet_chunk_count();
 std::uint32_t qtet_level_count();
 /// Decodes the end of a manifest, the figures of all levels and of `fields` fields
-/// (codec/coding/level_columns.h); `errors` is a KnownErrors, 0 to 2. qtet_level_numbers() then
+/// (codec/coding/level_columns.h); `errors` is a KnownErrors, 0 to 1. qtet_level_numbers() then
 /// gives them until the next such call.
 int qtet_level_columns(const std::uint8_t* bytes, std::uint32_t size, std::uint32_t errors,
                        std::uint32_t fields);

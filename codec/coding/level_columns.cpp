@@ -17,10 +17,9 @@ constexpr std::uint32_t zigzag(std::uint32_t difference) {
 constexpr std::uint32_t unzigzag(std::uint32_t code) { return code >> 1 ^ (code & 1 ? ~0u : 0u); }
 
 // Maxima stay for some levels and then jump; everything else goes on as it did.
-constexpr bool staysOrJumps(std::uint32_t column, KnownErrors errors) {
-  if (errors == KnownErrors::kSome && column == kKnownColumn) return true;
-  const std::uint32_t first = firstPairColumn(errors);
-  return column >= first && (column - first) % 2 == 1;
+constexpr bool staysOrJumps(std::uint32_t column) {
+  if (column == kKnownColumn) return true;
+  return column >= kFirstPairColumn && (column - kFirstPairColumn) % 2 == 1;
 }
 
 // Unsigned arithmetic wraps, so that any number follows any other.
@@ -32,7 +31,7 @@ void code(Coder& coder, LevelColumns& numbers, std::uint32_t levels, KnownErrors
   };
   for (std::uint32_t column = 0; column < numbers.size() / levels; ++column) {
     NumberModel model;
-    const bool stays = staysOrJumps(column, errors);
+    const bool stays = staysOrJumps(column);
     std::uint32_t last = 0, difference = 0;
     bool isFirst = true;
     for (std::uint32_t level = 0; level < levels; ++level) {
@@ -54,13 +53,10 @@ bool isSoundLevel(const LevelColumns& numbers, std::uint32_t levels, std::uint32
   for (std::uint32_t c = 0; c < kCountColumns; ++c)
     if (at(c) > kMaxElements) return false;
   if (errors == KnownErrors::kNone) return true;
-  const std::uint32_t first = firstPairColumn(errors);
-  for (std::uint32_t c = errors == KnownErrors::kSome ? kKnownColumn + 1 : kCountColumns; c < first;
-       ++c)
+  for (std::uint32_t c = kKnownColumn + 1; c < kFirstPairColumn; ++c)
     if (at(c) > kMaxVolumeFigure) return false;
-  for (std::uint32_t c = first; c + 1 < numbers.size() / levels; c += 2)
+  for (std::uint32_t c = kFirstPairColumn; c + 1 < numbers.size() / levels; c += 2)
     if (at(c) > at(c + 1) || at(c + 1) > kMaxErrorFigure) return false;
-  if (errors == KnownErrors::kAll) return true;
   const bool isEnd = level == 0 || level + 1 == levels;
   return at(kKnownColumn) == 1 || (at(kKnownColumn) == 0 && !isEnd);
 }

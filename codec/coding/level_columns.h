@@ -16,23 +16,20 @@ using LevelColumns = std::vector<std::uint32_t>;
 /// Which levels have a known error.
 enum class KnownErrors : std::uint8_t {
   kNone,
-  kAll,   ///< as logs before version 2.3 have it: with the net change of volume
   kSome,  ///< the first, the last, and others
 };
 
 /// Columns of the counts: tetrahedra, vertices, boundary triangles.
 inline constexpr std::uint32_t kCountColumns = 3;
-/// With errors of some levels: 1 where the error is known, else 0.
+/// With errors: 1 where the error is known, else 0.
 inline constexpr std::uint32_t kKnownColumn = 3;
 
 /// The columns before the pairs of figures (codec/coding/error_figure.h), mean and max: to the
 /// level, to the original, of each field.
-[[nodiscard]] constexpr std::uint32_t firstPairColumn(KnownErrors errors) {
-  // the volume kept; or which are known, the volume lost and the volume gained (all in 10^-6)
-  return kCountColumns + (errors == KnownErrors::kAll ? 1 : 3);
-}
+/// Behind which are known, the volume lost and the volume gained (in 10^-6).
+inline constexpr std::uint32_t kFirstPairColumn = kCountColumns + 3;
 [[nodiscard]] constexpr std::uint32_t levelColumnCount(std::uint32_t fields, KnownErrors errors) {
-  return errors == KnownErrors::kNone ? kCountColumns : firstPairColumn(errors) + 2 * (2 + fields);
+  return errors == KnownErrors::kNone ? kCountColumns : kFirstPairColumn + 2 * (2 + fields);
 }
 
 /// Units in one original's volume, and the most of them: ten times the original is no

@@ -9,6 +9,7 @@
 #include "codec/log/last_uses.h"
 #include "codec/log/log_index.h"
 #include "codec/mesh/growing_mesh.h"
+#include "codec/record/lifted_values.h"
 #include "codec/record/point_values.h"
 #include "proto/limits.h"
 
@@ -25,12 +26,19 @@ constexpr std::uint64_t kFixed = 1u << 20;
 constexpr std::uint64_t kBaseTetrahedron = 300;
 // A refiner's own figures of a chunk, beside its row of the table.
 constexpr std::uint64_t kChunk = 128;
-// Draco's buffers of an integer, the digits behind it, and what comes out.
-constexpr std::uint64_t kBlockInteger = 24;
+// An integer of a block: Draco's buffers, the digits behind it, and what comes out. Lifted blocks
+// have no list of integers.
+constexpr std::uint64_t kDracoInteger = 24, kAdaptiveInteger = 8;
+
+std::uint64_t integerBytes(CodecId codec) {
+  return codec == CodecId::kDraco      ? kDracoInteger
+         : codec == CodecId::kAdaptive ? kAdaptiveInteger
+                                       : 0;
+}
 
 struct Totals {
   Slots slots;
-  std::uint64_t records = 0, structureBytes = 0, blockIntegers = 0;
+  std::uint64_t records = 0, structureBytes = 0, blockBytes = 0;
 };
 
 /// Sums over the chunks up to the one that completes the level.
@@ -49,23 +57,40 @@ Totals totalsOf(const LogIndex& index, std::uint32_t level, std::span<const std:
     out.slots.triangles += entry.newBoundaryTriangles;
     out.records += entry.records;
     out.structureBytes += entry.blocks[kStructurePart].size;
-    const std::uint64_t positions = std::uint64_t{3} * index.tuples(chunk, kPositionsPart);
+    const auto bytes = [&](std::uint32_t part) {
+      return integerBytes(index.blockCodec(chunk, part)) * index.components(part) *
+             index.tuples(chunk, part);
+    };
     std::uint64_t largest = 0;
     for (const auto& [association, field] : widest)
-      largest = std::max(largest, std::uint64_t{index.fields[field].components} *
-                                      index.tuples(chunk, kFirstFieldPart + field));
-    out.blockIntegers = std::max(out.blockIntegers, positions + largest);
+      largest = std::max(largest, bytes(kFirstFieldPart + field));
+    out.blockBytes = std::max(out.blockBytes, bytes(kPositionsPart) + largest);
     if (entry.lastLevel >= level) break;
   }
   return out;
 }
 
-/// One field's values, and its differences.
-std::uint64_t bytesOf(const FieldShape& field, const Slots& slots) {
+bool isLifted(const LogIndex& index, std::uint32_t field) {
+  return index.blockCodec(0, kFirstFieldPart + field) == CodecId::kLifted;
+}
+
+/// One field's values, its differences, and the sizes that lifted blocks keep.
+std::uint64_t bytesOf(const LogIndex& index, std::uint32_t number, const Slots& slots) {
+  const FieldShape& field = index.fields[number];
+  const bool ofPoints = field.association == Association::kPoint;
   const std::uint64_t values =
-      sizeof(std::int32_t) * std::uint64_t{field.components} *
-      (field.association == Association::kPoint ? slots.vertices : slots.tetrahedra);
-  return field.prediction.isNone() ? values : 2 * values;
+      std::uint64_t{field.components} * (ofPoints ? slots.vertices : slots.tetrahedra);
+  return values * (sizeof(std::int32_t) * (field.prediction.isNone() ? 1 : 2) +
+                   (isLifted(index, number) ? 1 : 0));
+}
+
+/// The models of the lifted block in hand.
+std::uint64_t modelBytes(const LogIndex& index, std::span<const std::uint32_t> fields) {
+  std::size_t most = 0;
+  for (const std::uint32_t field : fields)
+    if (isLifted(index, field))
+      most = std::max(most, liftedModelBytes(index.fields[field].components));
+  return most;
 }
 
 /// The most of them at a time, one after the other.
@@ -74,9 +99,9 @@ std::uint64_t mostAtATime(const LogIndex& index, const Slots& slots,
   const std::vector<std::vector<std::uint32_t>> uses = lastUses(index.fields, fields);
   std::uint64_t now = 0, most = 0;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    now += bytesOf(index.fields[fields[i]], slots);
+    now += bytesOf(index, fields[i], slots);
     most = std::max(most, now);
-    for (const std::uint32_t ended : uses[i]) now -= bytesOf(index.fields[ended], slots);
+    for (const std::uint32_t ended : uses[i]) now -= bytesOf(index, ended, slots);
   }
   return most;
 }
@@ -85,7 +110,7 @@ std::uint64_t fieldBytes(const LogIndex& index, const Slots& slots,
                          std::span<const std::uint32_t> fields, FieldsHeld held) {
   std::uint64_t sum = 0, largest = 0;
   for (const std::uint32_t field : fields) {
-    const std::uint64_t bytes = bytesOf(index.fields[field], slots);
+    const std::uint64_t bytes = bytesOf(index, field, slots);
     sum += bytes;
     largest = std::max(largest, bytes);
   }
@@ -122,7 +147,7 @@ std::uint64_t decodingBytes(const LogIndex& index, std::uint32_t level,
       index.manifest.size() + index.laterManifest.size();
   return kFixed + table + (roomy ? 1 : kDoubling) * mesh +
          kBaseTetrahedron * index.chunks.front().newTetrahedra +
-         fieldBytes(index, all.slots, needed, held) + kBlockInteger * all.blockIntegers;
+         fieldBytes(index, all.slots, needed, held) + all.blockBytes + modelBytes(index, needed);
 }
 
 }  // namespace qtet

@@ -25,12 +25,10 @@ struct Header {
   std::uint32_t chunks = 0, fields = 0, dependencies = 0, closing = 0, laterBytes = 0;
   std::uint64_t fileBytes = 0;
   std::uint8_t positionBits = 0;
-  std::uint16_t major = 0, minor = 0;
 
   [[nodiscard]] std::uint64_t headBytes() const {
     return std::uint64_t{LogIndex::kHeaderBytes} + manifestBytes + tableBytes;
   }
-  [[nodiscard]] bool hasLaterPart() const { return major == LogIndex::kVersionOfSeries; }
 };
 
 Result<Header> readHeader(ByteView bytes) {
@@ -43,22 +41,19 @@ Result<Header> readHeader(ByteView bytes) {
   ByteReader r(bytes.first(LogIndex::kHeaderBytes));
   r.take(kMagic.size());
   const auto major = r.read<std::uint16_t>();
-  const auto minor = r.read<std::uint16_t>();
-  if (major != LogIndex::kVersionMajor && major != LogIndex::kVersionOfSeries)
+  r.take(sizeof(LogIndex::kVersionMinor));
+  if (major != LogIndex::kVersionMajor)
     return fail(ErrorCode::kBadVersion,
-                "version " + std::to_string(major) + " of the format; this build reads versions " +
-                    std::to_string(LogIndex::kVersionMajor) + " and " +
-                    std::to_string(LogIndex::kVersionOfSeries) +
+                "version " + std::to_string(major) + " of the format; this build reads version " +
+                    std::to_string(LogIndex::kVersionMajor) +
                     (major < LogIndex::kVersionMajor
                          ? ": make the log again from its input with qtet simplify"
                          : ": use a newer qtet"),
                 8);
   Header h;
-  h.major = major;
-  h.minor = minor;
   const auto layout = r.read<std::uint8_t>();
   h.positionBits = r.read<std::uint8_t>();
-  bool reservedAreZero = r.read<std::uint16_t>() == 0;
+  const bool reservedAreZero = r.read<std::uint16_t>() == 0;
   h.fileBytes = r.read<std::uint64_t>();
   h.manifestBytes = r.read<std::uint32_t>();
   h.tableBytes = r.read<std::uint32_t>();
@@ -69,15 +64,13 @@ Result<Header> readHeader(ByteView bytes) {
   h.dependencies = r.read<std::uint32_t>();
   h.closing = r.read<std::uint32_t>();
   h.laterBytes = r.read<std::uint32_t>();
-  reservedAreZero &= h.laterBytes == 0 || h.hasLaterPart();
   if (r.read<std::uint32_t>() != crc32c(bytes.first(LogIndex::kHeaderBytes - 4)))
     return fail(ErrorCode::kBadChecksum,
                 "the header's CRC-32C does not match; fetch the file again",
                 LogIndex::kHeaderBytes - 4);
   if (!reservedAreZero)
     return fail(ErrorCode::kBadValue,
-                "a reserved byte of the header (14, 15 or 56 to 59) is not 0; use a newer qtet",
-                14);
+                "a reserved byte of the header (14 or 15) is not 0; use a newer qtet", 14);
   if (layout != 0)
     return fail(ErrorCode::kBadVersion,
                 "layout " + std::to_string(layout) +
@@ -139,7 +132,7 @@ Status checkClosing(const LogIndex& index, std::uint64_t offset, const Header& h
 }
 
 // A field's association and flags, and its prediction in time. Missing bytes stay in `r`.
-Status readShape(ByteReader& r, bool mayBePredicted, std::uint32_t field, FieldShape& out) {
+Status readShape(ByteReader& r, std::uint32_t field, FieldShape& out) {
   const auto bad = [&](std::uint64_t before, const std::string& what) {
     return fail(ErrorCode::kBadValue, "field " + std::to_string(field) + what, r.offset() - before);
   };
@@ -147,12 +140,14 @@ Status readShape(ByteReader& r, bool mayBePredicted, std::uint32_t field, FieldS
   const auto association = r.read<std::uint8_t>();
   if (components == 0 || components > kMaxFieldComponents)
     return bad(2, " has a number of components outside 1..16");
-  const bool isPredicted = mayBePredicted && (association & kPredictedFlag) != 0;
-  const std::uint32_t kind = association & ~(kMissingFlag | (isPredicted ? kPredictedFlag : 0u));
+  const bool isPredicted = (association & kPredictedFlag) != 0;
+  const std::uint32_t kind = association & ~(kMissingFlag | kPredictedFlag);
   if (kind > static_cast<std::uint32_t>(Association::kCell))
-    return bad(1, " has the association " + std::to_string(association) +
-                      "; this build knows 0 (points) and 1 (cells), and 128 more for missing "
-                      "values: use a newer qtet, or build the log again");
+    return bad(
+        1,
+        " has the association " + std::to_string(association) +
+            "; this build knows 0 (points) and 1 (cells), 64 more for a prediction "
+            "in time, and 128 more for missing values: use a newer qtet, or build the log again");
   out.components = components;
   out.association = static_cast<Association>(kind);
   out.hasMissing = (association & kMissingFlag) != 0;
@@ -200,12 +195,13 @@ void writeShapes(ByteWriter& w, std::span<const FieldShape> fields) {
   }
 }
 
-// Fields, bytes and checksum of the part of later instants. A field takes two bytes at least.
+// Fields, bytes and checksum of the part of later instants, if there is one. A field takes two
+// bytes at least.
 LogIndex::Unread readLaterSummary(ByteReader& r, const Header& header) {
   LogIndex::Unread out;
   out.bytes = header.laterBytes;
   out.fields = r.readVarint();
-  out.crc = r.read<std::uint32_t>();
+  if (out.fields > 0) out.crc = r.read<std::uint32_t>();
   if (!r.failed() && (out.fields > header.fields || (out.fields > 0) != (out.bytes > 0) ||
                       2 * std::uint64_t{out.fields} > out.bytes))
     r.fail(ErrorCode::kBadValue,
@@ -253,10 +249,10 @@ Status check(const LogIndex& index, const Header& header) {
       return bad(ErrorCode::kLimitExceeded, "more than 2^29 vertices, cells or triangles");
     if (e.structureCodec != CodecId::kRange ||
         (e.valueCodec != CodecId::kDraco && e.valueCodec != CodecId::kAdaptive &&
-         e.valueCodec != CodecId::kEmpty))
+         e.valueCodec != CodecId::kLifted))
       return bad(ErrorCode::kBadCodec, "an unknown codec id");
-    if (e.valueCodec == CodecId::kEmpty && e.size() > e.blocks[kStructurePart].size)
-      return bad(ErrorCode::kBadCodec, "value blocks of the codec 'no bytes' that have bytes");
+    if (e.valueCodec != index.chunks[0].valueCodec)
+      return bad(ErrorCode::kBadCodec, "its values have another codec than those of chunk 0");
     if (i == 0 ? e.firstLevel != 0 || e.lastLevel != 0 || e.records != 0 || e.endSlot != kLevelEnd
                : e.firstLevel == 0)
       return bad(ErrorCode::kBadValue, "levels out of order");
@@ -300,6 +296,14 @@ std::uint32_t LogIndex::tuples(std::uint32_t chunk, std::uint32_t part) const {
   if (part == kPositionsPart) return e.newVertices;
   if (fields[part - kFirstFieldPart].association == Association::kCell) return e.newTetrahedra;
   return e.newVertices + e.records;
+}
+
+CodecId LogIndex::blockCodec(std::uint32_t chunk, std::uint32_t part) const {
+  assert(chunk < chunks.size() && part < parts());
+  const ChunkEntry& e = chunks[chunk];
+  if (part == kStructurePart) return e.structureCodec;
+  if (part == kPositionsPart) return positionCodec(e.valueCodec);
+  return qtet::blockCodec(e.valueCodec, fields[part - kFirstFieldPart].association);
 }
 
 bool LogIndex::hasCellField() const {
@@ -353,19 +357,17 @@ Result<LogIndex> LogIndex::parseHead(ByteView bytes) {
                 kHeaderBytes + std::uint64_t{header->manifestBytes});
   LogIndex index;
   index.positionBits = header->positionBits;
-  index.manifestMinor = header->minor;
   index.fileBytes = header->fileBytes;
   index.manifest.assign(manifest.begin(), manifest.end());
   ByteReader r(table, kHeaderBytes + std::uint64_t{header->manifestBytes});
-  if (header->hasLaterPart()) index.unread = readLaterSummary(r, *header);
+  index.unread = readLaterSummary(r, *header);
   for (std::uint32_t f = 0; f < header->fields - index.unread.fields; ++f) {
-    if (Status s = readShape(r, header->hasLaterPart(), f, index.fields.emplace_back());
-        !s || r.failed())
+    if (Status s = readShape(r, f, index.fields.emplace_back()); !s || r.failed())
       return std::unexpected(r.failed() ? r.error() : s.error());
   }
   if (r.failed()) return std::unexpected(r.error());
   if (Status s = checkPredictions(index); !s) return std::unexpected(s.error());
-  const RowParts parts{index.parts(), header->hasLaterPart()};
+  const RowParts parts{index.parts(), index.unread.fields > 0};
   // before rows are allocated
   if (r.remaining() <
       header->chunks * minRowBytes(parts) + std::uint64_t{header->closing} * kMinClosingRowBytes)
@@ -400,7 +402,7 @@ Status LogIndex::readLater(ByteView part) {
   ByteReader r(bytes, at);
   const auto before = static_cast<std::uint32_t>(fields.size());
   for (std::uint32_t f = before; f < before + unread.fields; ++f) {
-    if (Status s = readShape(r, true, f, fields.emplace_back()); !s || r.failed())
+    if (Status s = readShape(r, f, fields.emplace_back()); !s || r.failed())
       return r.failed() ? std::unexpected(r.error()) : s;
   }
   if (Status s = checkPredictions(*this, before); !s) return s;
@@ -435,24 +437,20 @@ Bytes LogIndex::encodeLater() const {
 }
 
 Bytes LogIndex::encode() const {
-  const bool isThree = hasSeries() || laterFields > 0;
   const std::span front = std::span(fields).first(fields.size() - laterFields);
   const Bytes later = encodeLater();
   ByteWriter table;
-  if (isThree) {
-    table.writeVarint(laterFields);
-    table.write(crc32c(later));
-  }
+  table.writeVarint(laterFields);
+  if (laterFields > 0) table.write(crc32c(later));
   writeShapes(table, front);
   writeChunkRows(table, chunks,
-                 {kFirstFieldPart + static_cast<std::uint32_t>(front.size()), isThree});
+                 {kFirstFieldPart + static_cast<std::uint32_t>(front.size()), laterFields > 0});
   writeClosingRows(table, closing);
 
   ByteWriter w;
   w.append(kMagic);
-  w.write(isThree ? kVersionOfSeries : kVersionMajor);
-  const bool hasCells = closingBlock(ClosingKind::kOriginalCells) != nullptr;
-  w.write(std::max(manifestMinor, hasCells ? kMinorOfOriginalCells : std::uint16_t{0}));
+  w.write(kVersionMajor);
+  w.write(kVersionMinor);
   w.write(std::uint8_t{0});  // layout
   w.write(positionBits);
   w.write(std::uint16_t{0});

@@ -18,27 +18,15 @@ namespace qtet {
 
 struct LogIndex {
   static constexpr std::uint32_t kHeaderBytes = 64;
-  /// Without fields that are predicted in time, and with some.
-  static constexpr std::uint16_t kVersionMajor = 2, kVersionOfSeries = 3;
-  /// The minor version of a log with original cells; one without is of 0.
-  static constexpr std::uint16_t kMinorOfOriginalCells = 1;
-  /// The minor version of a log whose manifest has a focus or an opening.
-  static constexpr std::uint16_t kMinorOfFirstView = 2;
-  /// The minor version of a log that has known errors, since not all levels need have one.
-  static constexpr std::uint16_t kMinorOfSomeErrors = 3;
-  /// The minor version of a log whose manifest has units.
-  static constexpr std::uint16_t kMinorOfUnits = 4;
-  /// The minor version of a log whose manifest has labels.
-  static constexpr std::uint16_t kMinorOfLabels = 5;
+  /// The format's version: this one is written, and any minor version is read.
+  static constexpr std::uint16_t kVersionMajor = 4, kVersionMinor = 0;
 
   std::uint8_t positionBits = 0;
   std::uint64_t fileBytes = 0;
   Bytes manifest;  ///< as it stands in the file; codec/log/log_manifest.h reads it
-  /// The least minor version that has what the manifest holds; when read, the header's.
-  std::uint16_t manifestMinor = 0;
   std::vector<FieldShape> fields;
   /// How many of the last fields stand in the part of later instants, which a viewer fetches after
-  /// its first picture. A log of version 2 has none.
+  /// its first picture.
   std::uint32_t laterFields = 0;
   Bytes laterManifest;  ///< of these fields, as it stands in the part; log_manifest.h reads it
   std::uint64_t laterOffset = 0;  ///< of these bytes in the file, once they are read
@@ -62,6 +50,8 @@ struct LogIndex {
     assert(part != kStructurePart && part < parts());
     return part == kPositionsPart ? 3 : fields[part - kFirstFieldPart].components;
   }
+  /// How a block is coded. REQUIRES: there is such a block.
+  [[nodiscard]] CodecId blockCodec(std::uint32_t chunk, std::uint32_t part) const;
   [[nodiscard]] bool hasCellField() const;
   /// Some fields are predicted in time.
   [[nodiscard]] bool hasSeries() const;

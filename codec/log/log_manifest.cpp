@@ -101,13 +101,13 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
 
 // ---- what follows the fields
 
-constexpr unsigned kAllErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4,
-                   kSomeErrorsFollow = 8, kUnitsFollow = 16, kLabelsFollow = 32;
+constexpr unsigned kErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4, kUnitsFollow = 8,
+                   kLabelsFollow = 16;
 constexpr unsigned kKnownFlags = 2 * kLabelsFollow - 1;
 constexpr std::uint8_t kNoCut = 3;
 
 unsigned flagsOf(const Manifest& manifest) {
-  return (manifest.levels.front().error ? kSomeErrorsFollow : 0) |
+  return (manifest.levels.front().error ? kErrorsFollow : 0) |
          (manifest.focus ? kFocusFollows : 0) | (manifest.opening ? kOpeningFollows : 0) |
          (manifest.units.empty() ? 0 : kUnitsFollow) |
          (manifest.labels.empty() ? 0 : kLabelsFollow);
@@ -199,29 +199,16 @@ Opening readOpening(ByteReader& r, std::size_t fields) {
   return opening;
 }
 
-std::uint16_t minorOfFlags(unsigned flags) {
-  if ((flags & kLabelsFollow) != 0) return LogIndex::kMinorOfLabels;
-  if ((flags & kUnitsFollow) != 0) return LogIndex::kMinorOfUnits;
-  if ((flags & kSomeErrorsFollow) != 0) return LogIndex::kMinorOfSomeErrors;
-  return flags > kAllErrorsFollow ? LogIndex::kMinorOfFirstView : 0;
-}
-
-KnownErrors readFirstView(ByteReader& r, const LogIndex& index, Manifest& out) {
+KnownErrors readFirstView(ByteReader& r, Manifest& out) {
   const unsigned flags = r.read<std::uint8_t>();
-  constexpr unsigned kTwice = kAllErrorsFollow | kSomeErrorsFollow;
-  if (flags > kKnownFlags || (flags & kTwice) == kTwice)
+  if (flags > kKnownFlags)
     r.fail(ErrorCode::kBadValue,
            "the manifest's flags say what this build does not know; use a newer qtet");
-  if (minorOfFlags(flags) > index.manifestMinor)
-    r.fail(ErrorCode::kBadValue,
-           "the manifest's flags say what the header's version does not know; fetch or build the "
-           "log again");
   if ((flags & kFocusFollows) != 0) out.focus = readFocus(r);
   if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, out.fields.size());
   if ((flags & kUnitsFollow) != 0) out.units = readUnits(r);
   if ((flags & kLabelsFollow) != 0) out.labels = readLabels(r);
-  if ((flags & kSomeErrorsFollow) != 0) return KnownErrors::kSome;
-  return (flags & kAllErrorsFollow) != 0 ? KnownErrors::kAll : KnownErrors::kNone;
+  return (flags & kErrorsFollow) != 0 ? KnownErrors::kSome : KnownErrors::kNone;
 }
 
 // ---- levels
@@ -316,20 +303,10 @@ class LevelReader {
 };
 
 std::optional<LevelError> readError(LevelReader& reader, std::size_t fields, KnownErrors errors) {
-  if (errors == KnownErrors::kNone || (errors == KnownErrors::kSome && reader.next() == 0))
-    return std::nullopt;
+  if (errors == KnownErrors::kNone || reader.next() == 0) return std::nullopt;
   LevelError out;
-  if (errors == KnownErrors::kSome) {
-    out.volumeLost = reader.volume();
-    out.volumeGained = reader.volume();
-  } else {  // what is left of both after they have cancelled each other out
-    const std::uint32_t kept = reader.next();
-    const auto share = [](std::uint32_t more, std::uint32_t less) {
-      return more > less ? (more - less) / static_cast<double>(kVolumeFigure) : 0;
-    };
-    out.volumeLost = share(kVolumeFigure, kept);
-    out.volumeGained = share(kept, kVolumeFigure);
-  }
+  out.volumeLost = reader.volume();
+  out.volumeGained = reader.volume();
   for (OneSidedDistance* side : {&out.toLevel, &out.toOriginal})
     side->mean = reader.error(), side->max = reader.error();
   out.fields.resize(fields);
@@ -402,7 +379,7 @@ Status readLaterErrors(ByteReader& r, std::uint32_t fields, Manifest& out) {
 }
 
 Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
-  const KnownErrors errors = readFirstView(r, index, out);
+  const KnownErrors errors = readFirstView(r, out);
   const ByteView bytes = r.take(r.remaining());
   if (r.failed()) return std::unexpected(r.error());
   const std::vector<std::uint32_t> chunks = completingChunks(index);
@@ -422,8 +399,6 @@ Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
 }
 
 }  // namespace
-
-std::uint16_t minorOf(const Manifest& manifest) { return minorOfFlags(flagsOf(manifest)); }
 
 Result<Bytes> manifestBlock(const Manifest& manifest, std::size_t later) {
   if (Status s = checkErrors(manifest); !s) return std::unexpected(s.error());
@@ -482,7 +457,6 @@ Status setManifest(LogIndex& index, Manifest manifest) {
   Result<Bytes> front = manifestBlock(manifest, index.laterFields);
   if (!front) return std::unexpected(front.error());
   index.manifest = std::move(*front);
-  index.manifestMinor = minorOf(manifest);
   index.laterManifest =
       index.laterFields > 0 ? laterManifestBlock(manifest, index.laterFields) : Bytes{};
   if (index.laterManifest.size() > kMaxManifestBytes)

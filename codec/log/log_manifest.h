@@ -33,10 +33,6 @@ struct LogIndex;
 /// manifestBlock takes.
 [[nodiscard]] Bytes laterManifestBlock(const Manifest& manifest, std::size_t later);
 
-/// The least minor version of the format that has what manifestBlock writes.
-/// REQUIRES: at least one level.
-[[nodiscard]] std::uint16_t minorOf(const Manifest& manifest);
-
 /// Reads index.manifest and, if the index has later fields, index.laterManifest. The rest of the
 /// index gives bits of the lattice, shapes of the fields, the number of levels and each level's
 /// chunk. Errors: truncated; limit-exceeded (found before anything is allocated); bad-value with

@@ -7,11 +7,9 @@
 
 namespace qtet {
 
-/// The newest version that it writes, for a log that needs all of it. Newer minor versions are read
-/// as well.
+/// The version that it writes. Newer minor versions are read as well.
 [[nodiscard]] inline std::string newestLogVersion() {
-  return std::to_string(LogIndex::kVersionOfSeries) + "." +
-         std::to_string(LogIndex::kMinorOfLabels);
+  return std::to_string(LogIndex::kVersionMajor) + "." + std::to_string(LogIndex::kVersionMinor);
 }
 [[nodiscard]] inline std::string oldestLogVersion() {
   return std::to_string(LogIndex::kVersionMajor) + ".0";

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "codec/log/field_blocks.h"
 #include "codec/log/level_runs.h"
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
@@ -48,6 +49,29 @@ Status writeStream(RecordWriter& writer, const FusionHistory& history,
                    const LogWriterOptions& options) {
   if (Status s = writeLevelRuns(writer, history.levels, options); !s) return s;
   return writer.closeChunk(history.levels, kLevelEnd);
+}
+
+/// Codes the fields one after the other, and gives the blocks of all chunks to `body`.
+Status writeChunks(RecordWriter& writer, const FusionHistory& history,
+                   const LogWriterOptions& options, const ByteSink& body) {
+  const ValueOrder& order = writer.order();
+  std::vector<std::vector<Bytes>> fields;
+  for (std::size_t f = 0; f < history.fields.size(); ++f) {
+    if (options.stop.stop_requested()) return cancelled();
+    Result<std::vector<Bytes>> blocks =
+        encodeFieldBlocks(order, history.fields[f], history.values[f], options.valueCodec);
+    if (!blocks) return std::unexpected(blocks.error());
+    fields.push_back(std::move(*blocks));
+  }
+  std::vector<ChunkEntry>& rows = writer.chunks().rows();
+  for (std::size_t chunk = 0; chunk < rows.size(); ++chunk) {
+    if (Status s = body(writer.chunks().geometry()[chunk]); !s) return s;
+    for (const std::vector<Bytes>& blocks : fields) {
+      if (Status s = ChunkWriter::addBlock(rows[chunk], blocks[chunk]); !s) return s;
+      if (Status s = body(blocks[chunk]); !s) return s;
+    }
+  }
+  return {};
 }
 
 /// Gives the closing blocks to `body`, and their rows.
@@ -157,11 +181,12 @@ Result<EncodedHead> encodeLog(const FusionHistory& history, const LogWriterOptio
   if (Status s = checkLimits(history, options); !s) return std::unexpected(s.error());
   if (Status s = checkCellFields(history); !s) return std::unexpected(s.error());
 
-  RecordWriter writer(history, options.valueCodec, body, options.stop);
+  RecordWriter writer(history, options.valueCodec, options.stop);
   if (Status s = writer.base(); !s) return std::unexpected(s.error());
   if (Status s = writeStream(writer, history, options); !s) return std::unexpected(s.error());
   if (Status s = checkRecords(history, writer.chunks().rows()); !s)
     return std::unexpected(s.error());
+  if (Status s = writeChunks(writer, history, options, body); !s) return std::unexpected(s.error());
 
   Result<LogIndex> index = indexOf(history, options, writer);
   if (!index) return std::unexpected(index.error());

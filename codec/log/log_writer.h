@@ -36,7 +36,7 @@ struct LogWriterOptions {
   std::string generator;  ///< "qtet 0.3.0"
   /// A chunk ends at the record that takes it beyond; the first ones are smaller, from 4 KB on.
   std::uint32_t chunkBytes = 64 << 10;
-  CodecId valueCodec = CodecId::kDraco;  ///< kDraco or kAdaptive
+  CodecId valueCodec = CodecId::kLifted;  ///< kLifted, kDraco or kAdaptive
   /// For the manifest: none, or one a level, coarse-first, the input's mesh included.
   LevelErrors errors;
   std::optional<Focus> focus = std::nullopt;      ///< for the manifest
@@ -45,8 +45,8 @@ struct LogWriterOptions {
   Labels labels{};                                ///< the same
   /// Gives the closing blocks, once the chunks are written; none without it.
   std::function<Status(const FinestMesh&, const ClosingSink&)> closing{};
-  std::function<void(double)> progress{};  ///< fraction done, 0..1
-  std::stop_token stop{};                  ///< asked at every record
+  std::function<void(double)> progress{};  ///< fraction of the geometry done, 0..1
+  std::stop_token stop{};                  ///< asked at every record, and at every field
 };
 
 struct LogStatistics {
@@ -69,9 +69,10 @@ struct EncodedHead {
   LogStatistics statistics;
 };
 
-/// Writes the history backwards, coarse-first. `body` takes the blocks in file order, so that they
-/// need not be in memory at once. Errors: bad-value (the history contradicts itself or holds a
-/// fusion that no label coding describes), limit-exceeded, bad-codec, cancelled, the sink's.
+/// Writes the history backwards, coarse-first. `body` takes the blocks in file order, once all are
+/// coded: the geometry first, then field after field. Errors: bad-value (the history contradicts
+/// itself or holds a fusion that no label coding describes), limit-exceeded, bad-codec, cancelled,
+/// the sink's.
 [[nodiscard]] Result<EncodedHead> encodeLog(const FusionHistory& history,
                                             const LogWriterOptions& options, const ByteSink& body);
 

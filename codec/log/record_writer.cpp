@@ -11,16 +11,18 @@
 
 namespace qtet {
 
-RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec, ByteSink body,
-                           std::stop_token stop)
+RecordWriter::RecordWriter(const FusionHistory& history, CodecId valueCodec, std::stop_token stop)
     : history_(history),
       stop_(std::move(stop)),
-      chunks_(history.fields, valueCodec, std::move(body)),
+      chunks_(valueCodec),
       mirror_(history),
       describer_(history, mirror_),
-      fields_(history, mirror_),
+      estimate_(history),
+      hasCellFields_(std::ranges::any_of(history.fields, isCellField)),
       coder_(chunks_.structure(), models_, mirror_.mesh(), link_, chunks_.positions()),
-      added_(history.levels + 1u) {}
+      added_(history.levels + 1u) {
+  order_.points = PointAncestry(!std::ranges::all_of(history.fields, isCellField));
+}
 
 Status RecordWriter::base() {
   assert(mirror_.vertices().empty());
@@ -57,7 +59,9 @@ Status RecordWriter::base() {
   for (VertexId v = 0; v < points.size(); ++v)
     for (std::uint32_t c = 0; c < 3; ++c)
       chunks_.positions().code<true>(predictBase(coder.births[v], v, c, true, at), points[v][c]);
-  fields_.base(coder.births, chunks_.fields());
+  order_.baseBirths = std::move(coder.births);
+  order_.baseVertices = mirror_.vertices();
+  if (hasCellFields_) order_.cells.addBase(mesh().tetrahedra);
   meter_.spend(mesh().tetrahedra.size());
   return {};
 }
@@ -78,11 +82,18 @@ Status RecordWriter::start(const CoarsePart& coarse, std::span<const std::uint32
 
 Status RecordWriter::closeChunk(std::uint32_t lastLevel, std::uint32_t endSlot) {
   if (Status s = chunks_.close(lastLevel, endSlot, mesh().next()); !s) return s;
+  order_.chunkBirths.push_back(static_cast<std::uint32_t>(order_.points.births().size()));
+  order_.chunkCells.push_back(mesh().next().tetrahedra);
   meter_.grant(chunks_.rows().back().blocks[kStructurePart].size);
   if (!meter_.isExceeded()) return {};
   return fail(ErrorCode::kLimitExceeded,
               "too many levels of too few fusions, which readers refuse as too much work; simplify "
               "less (`targetRatio`)");
+}
+
+const ValueOrder& RecordWriter::order() {
+  order_.tetrahedra = mirror_.tetrahedra();
+  return order_;
 }
 
 const Fusion* RecordWriter::flag(VertexId v) {
@@ -109,13 +120,16 @@ Status RecordWriter::record(VertexId v, Fusion fusion) {
   Split split;
   if (!coder_.code(v, truth, split)) return bad("its cells cannot be described by labels");
   const Slots before = mesh().next();
-  fields_.beforeSplit(v, link_, split);
+  order_.points.add(v, mesh(), link_, split);
+  if (hasCellFields_)
+    order_.cells.addRestored(mesh().star(v), link_, split.deleted, before.tetrahedra);
+  order_.prey.push_back(fusion.prey);
+  order_.fused.push_back(fusion.fused);
   mirror_.apply(v, link_, split, fusion, describer_.restored(split));
   describer_.place(v);
   for (VertexId slot = before.vertices; slot < mesh().next().vertices; ++slot)
     describer_.place(slot);
-  fields_.afterSplit(fusion, before.tetrahedra, chunks_.fields());
-  chunks_.endRecord();
+  chunks_.endRecord(estimate_.bits(fusion, order_.cells, mirror_.tetrahedra(), before.tetrahedra));
   const Slots& after = mesh().next();
   Slots& level = added_[mesh().level()];
   level.vertices += after.vertices - before.vertices;

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "codec/log/chunk_writer.h"
+#include "codec/log/field_estimate.h"
 #include "codec/log/work_meter.h"
 #include "codec/mesh/link.h"
-#include "codec/record/field_writer.h"
 #include "codec/record/fusion_history.h"
 #include "codec/record/mirror_mesh.h"
 #include "codec/record/record_coder.h"
@@ -20,9 +20,8 @@ namespace qtet {
 
 class RecordWriter {
  public:
-  /// `history` must outlive it. `stop` is asked at every record. `body` takes the blocks.
-  RecordWriter(const FusionHistory& history, CodecId valueCodec, ByteSink body,
-               std::stop_token stop);
+  /// `history` must outlive it. `stop` is asked at every record.
+  RecordWriter(const FusionHistory& history, CodecId valueCodec, std::stop_token stop);
   RecordWriter(const RecordWriter&) = delete;
   RecordWriter& operator=(const RecordWriter&) = delete;
 
@@ -49,6 +48,8 @@ class RecordWriter {
   [[nodiscard]] RecordModels& models() { return models_; }
   [[nodiscard]] GrowingMesh& mesh() { return mirror_.mesh(); }
   [[nodiscard]] const MirrorMesh& mirror() const { return mirror_; }
+  /// The order in which fields are coded. REQUIRES: all is written.
+  [[nodiscard]] const ValueOrder& order();
   /// The slots that each level has added so far, the base mesh first.
   [[nodiscard]] const std::vector<Slots>& added() const { return added_; }
   /// The positions' share of the structure blocks, in 64ths of a bit.
@@ -68,7 +69,9 @@ class RecordWriter {
   ChunkWriter chunks_;
   MirrorMesh mirror_;
   SplitDescriber describer_;
-  FieldWriter fields_;
+  const FieldEstimate estimate_;
+  const bool hasCellFields_;
+  ValueOrder order_;
   Link link_;
   RecordModels models_;
   RecordCoder<RangeEncoder> coder_;

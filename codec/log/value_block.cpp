@@ -35,6 +35,7 @@ Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values, std::uint32
 
 Result<std::vector<std::int32_t>> decodeValueBlock(ByteView bytes, std::uint32_t components,
                                                    std::uint32_t tuples, CodecId codec) {
+  assert(codec == CodecId::kDraco || codec == CodecId::kAdaptive);
   if (codec == CodecId::kAdaptive) return decodeAdaptiveBlock(bytes, components, tuples);
   if (tuples == 0)
     return bytes.empty() ? Result<std::vector<std::int32_t>>{}

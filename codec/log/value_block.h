@@ -16,14 +16,13 @@ namespace qtet {
 /// REQUIRES kDraco or kAdaptive. Errors: limit-exceeded (a magnitude of 2^31), bad-codec (Draco
 /// refused).
 [[nodiscard]] Result<Bytes> encodeValueBlock(std::span<const std::int32_t> values,
-                                             std::uint32_t components,
-                                             CodecId codec = CodecId::kDraco);
+                                             std::uint32_t components, CodecId codec);
 
-/// The inverse; `tuples` is what the chunk table promises. Errors: bad-codec, bad-value (another
-/// number of tuples, components or digits).
+/// The inverse; `tuples` is what the chunk table promises. REQUIRES the same codecs. Errors:
+/// bad-codec, bad-value (another number of tuples, components or digits).
 [[nodiscard]] Result<std::vector<std::int32_t>> decodeValueBlock(ByteView bytes,
                                                                  std::uint32_t components,
                                                                  std::uint32_t tuples,
-                                                                 CodecId codec = CodecId::kDraco);
+                                                                 CodecId codec);
 
 }  // namespace qtet

@@ -12,6 +12,7 @@
 #include "codec/mesh/growing_mesh.h"
 #include "codec/mesh/link.h"
 #include "codec/mesh/mesh.h"
+#include "codec/mesh/placement.h"
 #include "codec/record/values.h"
 #include "proto/limits.h"
 
@@ -22,16 +23,39 @@ namespace qtet {
 /// along the step passes.
 struct Slope {
   static constexpr int kWeightBits = 12;
+  static constexpr int kReachBits = 8;
+  static constexpr std::uint16_t kMaxReach = 0x7FFF;
+  /// Added to a reach whose exit lies on the boundary, beyond which there is nothing.
+  static constexpr std::uint16_t kBeyond = 0x8000;
 
-  std::array<VertexId, 6> vertex{};      ///< 0 where the weight is 0
+  std::array<VertexId, 6> vertex{};      ///< against the step, along it; 0 where the weight is 0
   std::array<std::int16_t, 6> weight{};  ///< in 1 / 2^kWeightBits
+  /// How far the exit of each side is, in 1 / 2^kReachBits of the step; 0: there is none.
+  std::array<std::uint16_t, 2> reach{};
 
-  /// `difference(v)` is v's value less the fused vertex's.
+  [[nodiscard]] std::int64_t reachOf(std::size_t side) const { return reach[side] & kMaxReach; }
+  [[nodiscard]] bool isBeyond(std::size_t side) const { return (reach[side] & kBeyond) != 0; }
+
+  [[nodiscard]] bool hasBoth() const { return reach[0] > 0 && reach[1] > 0; }
+  /// A side's sum times this, in 1/256, is the change over a step as that side alone has it. 0
+  /// without an exit there.
+  [[nodiscard]] std::int64_t ratio(std::size_t side) const {
+    const std::int64_t own = reachOf(side);
+    return own == 0 ? 0
+                    : std::min<std::int64_t>((256 * (reachOf(0) + reachOf(1)) + own / 2) / own,
+                                             kMaxReach);
+  }
+
+  /// By the exits within the mesh. `difference(v)` is v's value less the fused vertex's.
   template <class Difference>
   [[nodiscard]] std::int64_t change(const Difference& difference) const {
-    std::int64_t sum = 0;
-    for (std::size_t i = 0; i < vertex.size(); ++i) sum += weight[i] * difference(vertex[i]);
-    return sum;
+    std::array<std::int64_t, 2> sum{};
+    for (std::size_t i = 0; i < vertex.size(); ++i) sum[i / 3] += weight[i] * difference(vertex[i]);
+    if (!isBeyond(0) && !isBeyond(1)) return sum[0] + sum[1];
+    std::int64_t within = 0;
+    for (std::size_t side = 0; side < 2; ++side)
+      if (!isBeyond(side)) within += sum[side] * ratio(side) >> 8;
+    return within;
   }
 };
 
@@ -48,9 +72,13 @@ struct Birth {
   std::uint8_t k = 2;
 
   static constexpr int kStepBits = 8;
+
+  std::uint8_t place = 0;  ///< the Placement, and 4 times the near prey vertex
+  [[nodiscard]] Placement placement() const { return static_cast<Placement>(place & 3); }
+  [[nodiscard]] std::size_t near() const { return place >> 2; }
 };
 
-/// The records so far, as far as point fields depend on them. Takes 16 bytes a record and 36 a
+/// The records so far, as far as point fields depend on them. Takes 16 bytes a record and 40 a
 /// slope.
 class PointAncestry {
  public:
@@ -67,6 +95,8 @@ class PointAncestry {
   /// Notes the split of v. REQUIRES: link built, the split not yet applied.
   void add(VertexId v, const GrowingMesh& mesh, const Link& link, const Split& split);
   [[nodiscard]] std::span<const Birth> births() const { return births_; }
+  /// The first birth of each level that has one.
+  [[nodiscard]] std::span<const std::uint32_t> levelStarts() const { return levelStarts_; }
   /// Those that a record's tuples are predicted by. REQUIRES: there are slopes.
   [[nodiscard]] std::span<const Slope> slopesAt(const Birth& b) const {
     return std::span(slopes_).subspan(b.firstSlope, b.k == 2 ? 1 : b.k);
@@ -122,6 +152,8 @@ class PointAncestry {
   bool withSlopes_;
   std::vector<Birth> births_;
   std::vector<Slope> slopes_;
+  std::vector<std::uint32_t> levelStarts_;
+  std::uint32_t level_ = 0;                    // of the last birth
   std::vector<std::array<double, 3>> turned_;  // of the link in hand
 };
 

@@ -9,6 +9,13 @@
 
 namespace qtet {
 
+/// A page decodes the base mesh by a module without the rest, which is half as large (web-client).
+#ifdef QTET_BASE_ONLY
+inline constexpr bool kBaseOnly = true;
+#else
+inline constexpr bool kBaseOnly = false;
+#endif
+
 struct ChunkPlan {
   explicit ChunkPlan(const LogIndex& logIndex) : index(logIndex), slots(1) {
     for (const ChunkEntry& e : index.chunks) {

@@ -174,9 +174,14 @@ Result<std::vector<std::int32_t>> LogFile::values(std::uint32_t chunk, std::uint
   if (Status s = checkBlock(*this, chunk, part); !s) return std::unexpected(s.error());
   const LogIndex& index = state_->index;
   auto out = decodeValueBlock(block(chunk, part), index.components(part), index.tuples(chunk, part),
-                              index.chunks[chunk].valueCodec);
+                              index.blockCodec(chunk, part));
   releaseBlock(*this, chunk, part);
   return out;
+}
+
+Result<ByteView> LogFile::checkedBlock(std::uint32_t chunk, std::uint32_t part) const {
+  if (Status s = checkBlock(*this, chunk, part); !s) return std::unexpected(s.error());
+  return block(chunk, part);
 }
 
 Result<ByteView> LogFile::closing(ClosingKind kind, std::uint32_t field) const {
@@ -213,7 +218,15 @@ Status applyFieldBlock(const LogFile& log, Refiner& refiner, std::uint32_t chunk
     return fail(ErrorCode::kNotFound, "there is no chunk " + std::to_string(chunk));
   if (field >= log.index().fields.size())
     return fail(ErrorCode::kNotFound, "there is no field " + std::to_string(field));
-  const auto values = log.values(chunk, kFirstFieldPart + field);
+  const std::uint32_t part = kFirstFieldPart + field;
+  if (log.index().blockCodec(chunk, part) == CodecId::kLifted) {
+    const Result<ByteView> bytes = log.checkedBlock(chunk, part);
+    if (!bytes) return std::unexpected(bytes.error());
+    const Status applied = refiner.applyField(field, chunk, *bytes);
+    releaseBlock(log, chunk, part);
+    return applied;
+  }
+  const auto values = log.values(chunk, part);
   if (!values) return std::unexpected(values.error());
   return refiner.applyField(field, chunk, *values);
 }

@@ -57,9 +57,11 @@ class LogFile {
   [[nodiscard]] std::uint64_t headBytes() const;
   [[nodiscard]] ByteView block(std::uint32_t chunk, std::uint32_t part) const;
   /// The integers of a value block, after comparing it with its CRC-32C; its memory is given back.
-  /// Errors: bad-checksum, decodeValueBlock's. REQUIRES: not the structure.
+  /// Errors: bad-checksum, decodeValueBlock's. REQUIRES: not the structure, nor a lifted block.
   [[nodiscard]] Result<std::vector<std::int32_t>> values(std::uint32_t chunk,
                                                          std::uint32_t part) const;
+  /// The bytes of a block after comparing them with its CRC-32C. Errors: bad-checksum.
+  [[nodiscard]] Result<ByteView> checkedBlock(std::uint32_t chunk, std::uint32_t part) const;
   /// The bytes of a closing block after comparing them with its CRC-32C. Errors: not-found (the log
   /// has none of the kind), bad-checksum.
   [[nodiscard]] Result<ByteView> closing(ClosingKind kind, std::uint32_t field = 0) const;

@@ -9,10 +9,8 @@
 #include <vector>
 
 #include "codec/log/codec_id.h"
-#include "codec/record/base_coder.h"
-#include "codec/record/cell_values.h"
 #include "codec/record/fusion_history.h"
-#include "codec/record/point_values.h"
+#include "codec/record/value_order.h"
 
 namespace qtet {
 
@@ -25,15 +23,8 @@ struct LogHistory {
   FusionHistory history;
   std::uint32_t vertices = 0;    ///< of the last level
   std::uint32_t tetrahedra = 0;  ///< of the last level
-  std::vector<BaseBirth> baseBirths;
-  /// Slot of the base mesh -> the history's vertex.
-  std::vector<VertexId> baseVertices;
-  PointAncestry points{true};
-  CellAncestry cells;
-  std::vector<std::array<VertexId, 4>> prey;  ///< of each birth, in the order of coding
-  /// Births and tetrahedra before chunk i, and of all chunks.
-  std::vector<std::uint32_t> chunkBirths, chunkCells;
-  std::vector<CodecId> valueCodecs;  ///< of each chunk
+  ValueOrder order;
+  CodecId valueCodec = CodecId::kLifted;
 };
 
 /// Errors: all that decoding gives. `progress` receives the fraction done.
@@ -46,12 +37,5 @@ struct LogHistory {
 [[nodiscard]] Result<std::vector<std::int32_t>> historyValues(const LogFile& log,
                                                               const LogHistory& history,
                                                               std::uint32_t field);
-
-/// One field's block of every chunk, as a log's writer would have made them. `values` holds
-/// components integers for each of the history's vertices or, of a cell field, tetrahedra. Errors:
-/// limit-exceeded, bad-codec.
-[[nodiscard]] Result<std::vector<Bytes>> encodeFieldBlocks(const LogHistory& log,
-                                                           const FieldInfo& field,
-                                                           std::span<const std::int32_t> values);
 
 }  // namespace qtet

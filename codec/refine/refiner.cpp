@@ -15,13 +15,6 @@ namespace qtet {
 
 namespace {
 
-// A page decodes the base mesh by a module without the rest, which is half as large (web-client).
-#ifdef QTET_BASE_ONLY
-constexpr bool kBaseOnly = true;
-#else
-constexpr bool kBaseOnly = false;
-#endif
-
 // Whether so much can be had at once.
 bool hasMemory(std::uint64_t bytes) {
   if (bytes > std::numeric_limits<std::size_t>::max() / 2) return false;
@@ -141,6 +134,10 @@ Status Refiner::apply(std::uint32_t chunk, ByteView structure,
 Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk,
                            std::span<const std::int32_t> values) {
   return state_->fields.apply(field, chunk, values);
+}
+
+Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, ByteView block) {
+  return state_->fields.apply(field, chunk, block);
 }
 
 Status Refiner::readLater(ByteView part) {

@@ -37,6 +37,9 @@ class Refiner {
   /// Applies field `field` of chunk `chunk`: as many tuples as LogIndex::tuples says. A field may
   /// lag behind the mesh, never run ahead, and takes chunks in file order, like the mesh.
   Status applyField(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
+  /// The same of a lifted block's bytes. Errors: truncated and limit-exceeded as well. REQUIRES:
+  /// LogIndex::blockCodec says kLifted.
+  Status applyField(std::uint32_t field, std::uint32_t chunk, ByteView block);
 
   /// Brings the later fields of an index that was read without them (LogIndex::readLater). Errors:
   /// readLater's; then nothing has changed. REQUIRES: index().unreadBytes() > 0.
@@ -48,8 +51,9 @@ class Refiner {
 
   /// From now on fields of this association have values at these elements alone, once all their
   /// blocks are applied. Values at other elements mean nothing. This takes much less time than all
-  /// values. REQUIRES: the log has such a field and none was applied; the elements are there; no
-  /// chunk comes later.
+  /// values. Lifted blocks take as long as ever, since each value depends on those round it.
+  /// REQUIRES: the log has such a field and none was applied; the elements are there; no chunk
+  /// comes later.
   void fieldsOnlyAt(Association association, std::span<const std::uint32_t> elements);
 
   /// A chunk that goes beyond `level` then ends there, and chunks that begin beyond it are refused.

@@ -1,8 +1,10 @@
 #include "codec/refine/refiner_fields.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "codec/mesh/time_prediction.h"
+#include "codec/record/lifted_values.h"
 #include "codec/refine/chunk_plan.h"
 
 namespace qtet {
@@ -54,7 +56,7 @@ void RefinerFields::inheritPoints(Field& field, std::uint32_t components,
         field.values[(b.firstNew + j) * n + c] = field.values[b.slot * n + c];
 }
 
-Status RefinerFields::mayCome(std::uint32_t field, std::uint32_t chunk, std::size_t values) const {
+Status RefinerFields::mayCome(std::uint32_t field, std::uint32_t chunk) const {
   if (field >= fields_.size())
     return refuseChunk(ErrorCode::kNotFound, chunk, "there is no such field");
   const Field& f = fields_[field];
@@ -72,17 +74,18 @@ Status RefinerFields::mayCome(std::uint32_t field, std::uint32_t chunk, std::siz
       return refuseChunk(ErrorCode::kBadOrder, chunk,
                          "field " + std::to_string(field) + " is predicted from field " +
                              std::to_string(parent.field) + ", which needs the chunk first");
-  if (values != std::size_t{plan_.index.tuples(chunk, kFirstFieldPart + field)} *
-                    plan_.index.fields[field].components)
-    return refuseChunk(ErrorCode::kBadValue, chunk, "wrong number of field values");
   return {};
 }
 
 Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
                             std::span<const std::int32_t> values) {
-  if (Status order = mayCome(field, chunk, values.size()); !order) return order;
+  if (Status order = mayCome(field, chunk); !order) return order;
+  assert(plan_.index.blockCodec(chunk, kFirstFieldPart + field) != CodecId::kLifted);
   Field& f = fields_[field];
   const FieldShape shape = plan_.index.fields[field];
+  if (values.size() !=
+      std::size_t{plan_.index.tuples(chunk, kFirstFieldPart + field)} * shape.components)
+    return refuseChunk(ErrorCode::kBadValue, chunk, "wrong number of field values");
   Values coded(values);
   if (isNeededAlone(shape))
     codeNeeded(f, shape, chunk, coded);
@@ -95,6 +98,64 @@ Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk,
   if (f.broken)
     return refuseChunk(ErrorCode::kBadValue, chunk, "field values out of range or left over");
   ++f.chunks;
+  return {};
+}
+
+Status RefinerFields::apply(std::uint32_t field, std::uint32_t chunk, ByteView block) {
+  if (Status order = mayCome(field, chunk); !order) return order;
+  assert(plan_.index.blockCodec(chunk, kFirstFieldPart + field) == CodecId::kLifted);
+  Field& f = fields_[field];
+  const FieldShape shape = plan_.index.fields[field];
+  const std::uint64_t values =
+      std::uint64_t{plan_.index.tuples(chunk, kFirstFieldPart + field)} * shape.components;
+  if (values > mostValuesIn(block))
+    return refuseChunk(ErrorCode::kLimitExceeded, chunk,
+                       "a value block promises more than its bytes can hold");
+  f.broken = true;  // until the block has gone in whole
+  if (Status coded = codeLifted(f, shape, chunk, block); !coded) return coded;
+  f.broken = false;
+  ++f.chunks;
+  return {};
+}
+
+// All of it, also where few elements are needed: what a value takes depends on those round it.
+Status RefinerFields::codeLifted(Field& f, const FieldShape& shape, std::uint32_t chunk,
+                                 ByteView bytes) const {
+  const bool isPredicted = !shape.prediction.isNone();
+  std::vector<std::int32_t>& coded = isPredicted ? f.differences : f.values;
+  f.values.resize(records_.mesh().points.size() * shape.components);
+  coded.resize(f.values.size());
+  f.sizes.resize(f.values.size());
+  const AddedElements& added = added_[chunk];
+  const std::size_t baseVertices = chunk == 0 ? base_.size() : 0;
+  if (baseVertices == 0 && added.firstBirth == added.endBirth)
+    return bytes.empty() || added.extent == Extent::kPartial
+               ? Status{}
+               : refuseChunk(ErrorCode::kBadValue, chunk, "a value block of no values has bytes");
+  RangeDecoder decoder(bytes);
+  LiftedBlock<RangeDecoder> block(decoder, {coded, f.sizes}, shape.components, shape.hasMissing);
+  for (VertexId v = 0; v < baseVertices; ++v) block.base(v, base_[v]);
+  for (VertexId v = 0; isPredicted && v < baseVertices; ++v) restore(f, shape, v);
+  if (chunk == 0) inheritPoints(f, shape.components, 0);
+  const PointAncestry& ancestry = records_.ancestry().points;
+  const std::span<const std::uint32_t> starts = ancestry.levelStarts();
+  auto nextLevel = std::ranges::upper_bound(starts, added.firstBirth);
+  LiftingRule rule;
+  for (std::size_t b = added.firstBirth; !kBaseOnly && b < added.endBirth; ++b) {
+    const bool isLevel = nextLevel != starts.end() && b == *nextLevel;
+    if (isLevel) ++nextLevel;
+    if (isLevel || b == added.firstBirth) rule = block.rule({});
+    const Birth& birth = ancestry.births()[b];
+    block.record(rule, birth, ancestry.slopesAt(birth), {});
+    if (!isPredicted) continue;
+    restore(f, shape, birth.slot);
+    for (std::size_t j = 0; j + 1 < birth.k; ++j) restore(f, shape, birth.firstNew + j);
+  }
+  if (decoder.overrun())
+    return refuseChunk(ErrorCode::kTruncated, chunk, "a value block ends before its values do");
+  const bool isWhole = decoder.atEnd() || added.extent == Extent::kPartial;
+  if (block.bad() || !isWhole)
+    return refuseChunk(ErrorCode::kBadValue, chunk, "field values out of range or left over");
   return {};
 }
 

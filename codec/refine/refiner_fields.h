@@ -31,6 +31,7 @@ class RefinerFields {
 
   /// Implements Refiner::applyField.
   Status apply(std::uint32_t field, std::uint32_t chunk, std::span<const std::int32_t> values);
+  Status apply(std::uint32_t field, std::uint32_t chunk, ByteView block);
   /// Takes in that the plan has more fields than before.
   void planHasGrown();
   /// Implements Refiner::forgetField.
@@ -51,8 +52,9 @@ class RefinerFields {
     std::vector<std::int32_t> values;
     // of a field that is predicted in time: what its blocks hold
     std::vector<std::int32_t> differences;
-    std::uint32_t chunks = 0;  // that have come
-    bool broken = false;       // a block failed half-way: what it wrote is noise
+    std::vector<std::uint8_t> sizes;  // where blocks are lifted (LiftedField)
+    std::uint32_t chunks = 0;         // that have come
+    bool broken = false;              // a block failed half-way: what it wrote is noise
   };
 
   /// A record, or a tetrahedron, whose values are coded though others' are not.
@@ -68,11 +70,13 @@ class RefinerFields {
     std::vector<std::vector<Coded>> chunks;
   };
 
-  [[nodiscard]] Status mayCome(std::uint32_t field, std::uint32_t chunk, std::size_t values) const;
+  [[nodiscard]] Status mayCome(std::uint32_t field, std::uint32_t chunk) const;
   void inheritPoints(Field& field, std::uint32_t components, std::size_t firstBirth) const;
   void inheritCells(Field& field, const FieldShape& shape, CellId first, CellId end) const;
   void codePoints(Field& field, const FieldShape& shape, std::uint32_t chunk,
                   Values& residuals) const;
+  [[nodiscard]] Status codeLifted(Field& field, const FieldShape& shape, std::uint32_t chunk,
+                                  ByteView block) const;
   void codeNeeded(Field& field, const FieldShape& shape, std::uint32_t chunk,
                   Values& residuals) const;
   [[nodiscard]] bool isNeededAlone(const FieldShape& shape) const {

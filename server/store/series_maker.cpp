@@ -162,11 +162,11 @@ std::uint64_t SeriesMaker::Kept::bytesOf(std::span<const std::uint32_t> fields) 
   std::uint64_t sum = 0;
   for (const std::uint32_t f : fields) {
     const FieldShape& shape = log().fields()[f];
-    const std::uint64_t elements = shape.association == Association::kPoint
-                                       ? refiner.points().size()
-                                       : refiner.tetrahedra().size();
+    const bool ofPoints = shape.association == Association::kPoint;
+    const std::uint64_t elements = ofPoints ? refiner.points().size() : refiner.tetrahedra().size();
     const std::uint64_t copies = shape.prediction.isNone() ? 1 : 2;
-    sum += copies * sizeof(std::int32_t) * elements * shape.components;
+    // a lifted block keeps a byte beside each value
+    sum += (copies * sizeof(std::int32_t) + (ofPoints ? 1 : 0)) * elements * shape.components;
   }
   return sum;
 }

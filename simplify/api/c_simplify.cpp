@@ -159,8 +159,9 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
   out.labelWeights = std::move(*labels);
   if (from.regions != nullptr) out.regions = from.regions;
   out.measure = std::move(*measure);
-  out.valueCodec =
-      from.valueCodec == QTET_CODEC_ADAPTIVE ? qtet::CodecId::kAdaptive : qtet::CodecId::kDraco;
+  out.valueCodec = from.valueCodec == QTET_CODEC_LIFTED  ? qtet::CodecId::kLifted
+                   : from.valueCodec == QTET_CODEC_DRACO ? qtet::CodecId::kDraco
+                                                         : qtet::CodecId::kAdaptive;
   out.keep = {from.keepOrder != 0, from.lossless != 0, from.originalIds != 0};
   out.timeStatistics = from.timeStatistics != 0;
   return out;

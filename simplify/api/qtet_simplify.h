@@ -69,7 +69,7 @@ typedef struct {
 enum { QTET_ALGORITHM_QTET = 0, QTET_ALGORITHM_PAPER = 1 };
 enum { QTET_PLACEMENT_AUTO = 0, QTET_PLACEMENT_OPTIMAL = 1, QTET_PLACEMENT_VERTEX = 2 };
 enum { QTET_MEASURE_NONE = 0, QTET_MEASURE_LEVELS = 1, QTET_MEASURE_ALL = 2 };
-enum { QTET_CODEC_DRACO = 0, QTET_CODEC_ADAPTIVE = 1 };
+enum { QTET_CODEC_LIFTED = 0, QTET_CODEC_DRACO = 1, QTET_CODEC_ADAPTIVE = 2 };
 
 /* In the order of doing; QTET_STAGE_MEASURE and QTET_STAGE_KEEP only where they are asked for. */
 enum {
@@ -104,7 +104,7 @@ typedef struct {
   uint32_t algorithm;       /* QTET_ALGORITHM_QTET */
   uint32_t placement;       /* QTET_PLACEMENT_AUTO */
   uint32_t measure;         /* QTET_MEASURE_LEVELS: the known error of each level */
-  uint32_t valueCodec;      /* QTET_CODEC_DRACO */
+  uint32_t valueCodec;      /* QTET_CODEC_LIFTED */
   uint32_t keepOrder;       /* 1: the log keeps the input's numbering; 0 */
   uint32_t lossless;        /* 1: it keeps the input's own numbers; 0 */
   uint32_t reserved;        /* 0 */

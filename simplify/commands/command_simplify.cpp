@@ -16,9 +16,10 @@ namespace qtet {
 namespace {
 
 CodecId valueCodecOf(const std::string& name) {
+  if (name == "lifted") return CodecId::kLifted;
   if (name == "draco") return CodecId::kDraco;
   if (name == "adaptive") return CodecId::kAdaptive;
-  throw UsageError("--geometry-codec '" + name + "' is not known; give draco or adaptive");
+  throw UsageError("--value-codec '" + name + "' is not known; give lifted, draco or adaptive");
 }
 
 Algorithm algorithmOf(const std::string& name) {
@@ -74,7 +75,7 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
     throw UsageError(withOptionNames(checked.error().message));
   options.measure = measureOptionsOf(parsed);
   options.units = unitsOf(parsed);
-  options.valueCodec = valueCodecOf(parsed.get<std::string>("geometry-codec"));
+  options.valueCodec = valueCodecOf(parsed.get<std::string>("value-codec"));
   request.read.originalIds = parsed.has("original-ids");
   options.timeStatistics = parsed.has("time-statistics");
   if (options.timeStatistics && isSegmentList(request.output))
@@ -109,11 +110,12 @@ int runSimplify(const Words& words, Console& console) {
       "given "
       "several times. Names such as \"T [K]\" have theirs")("time-unit", po::value<std::string>(),
                                                             "the unit of times")(
-      "geometry-codec", po::value<std::string>()->default_value("draco"),
-      "how positions and fields are coded: draco, or adaptive, which is 1 to 6 % smaller and which "
-      "only qtet can read")("keep-order",
-                            "keep the input's numbering of points, cells and their vertices: "
-                            "extract gives it back at the last level")(
+      "value-codec", po::value<std::string>()->default_value("lifted"),
+      "how values are coded: lifted is smallest (positions by Draco), draco is quickest to decode, "
+      "adaptive is a coder of our own for positions too")(
+      "keep-order",
+      "keep the input's numbering of points, cells and their vertices: "
+      "extract gives it back at the last level")(
       "lossless",
       "keep the input's own coordinates and field values: extract gives them back bit for bit at "
       "the last level")("original-ids",
@@ -148,7 +150,7 @@ int runSimplify(const Words& words, Console& console) {
         {"quality and base mesh",
          {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
           "placement", "shape-weight", "preserve-regions", "position-bits"}},
-        {"output", {"geometry-codec", "keep-order", "original-ids", "measure"}},
+        {"output", {"value-codec", "keep-order", "original-ids", "measure"}},
         {"rare", {"algorithm"}}}},
       options, {"IN..."});
   if (parsed.helped(console)) return kExitOk;

@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "codec/log/field_blocks.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/manifest_field.h"
 #include "codec/refine/log_file.h"
@@ -82,8 +83,7 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
     : log_(log),
       options_(std::move(options)),
       manifest_(std::move(manifest)),
-      history_(std::move(history)),
-      fused_(std::make_unique<FusedValues>(*history_)) {
+      history_(std::move(history)) {
   for (const auto& [name, values] : manifest_.labels) labels_.insert(name);
   FusionHistory& h = history_->history;
   HistoryLevels levels(h);
@@ -283,7 +283,8 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
     item.isLabel = isLabel(mesh.tetrahedra, info, quantised->values);
     quantised->info.labelNames = namesOfValues(info, quantised->values);
     item.values = inLogOrder(quantised->values, info.components, logs);
-    if (!isCellField(info)) item.values = fused_->of(std::move(item.values), info.components);
+    if (!isCellField(info))
+      item.values = fusedValues(*history_, std::move(item.values), info.components);
     if (!quantised->missing.empty())
       item.missing = inLogOrder(quantised->missing, info.components, logs);
     item.info = info;
@@ -473,7 +474,8 @@ Status FieldAdder::encode(const Numbers& numbers) {
     depths_.push_back(depthOf(prediction, depths_));
     NewField& field = added_.fields[numbers.all[i] - manifest_.fields.size()];
     field.prediction = prediction;
-    Result<std::vector<Bytes>> blocks = encodeFieldBlocks(*history_, h.fields[i], h.values[i]);
+    Result<std::vector<Bytes>> blocks =
+        encodeFieldBlocks(history_->order, h.fields[i], h.values[i], history_->valueCodec);
     if (!blocks) return std::unexpected(blocks.error());
     field.blocks = std::move(*blocks);
   }

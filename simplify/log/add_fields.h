@@ -135,7 +135,6 @@ class FieldAdder {
   Manifest manifest_;
   std::set<std::string, std::less<>> labels_;  // of the log and those added, without @TIME
   std::unique_ptr<LogHistory> history_;
-  std::unique_ptr<FusedValues> fused_;
   std::vector<Tetrahedron> finest_;  // the last level's cells
   TetMesh matched_;                  // the mesh that `match_` is of, without fields
   MeshMatch match_;

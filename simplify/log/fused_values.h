@@ -2,7 +2,6 @@
 // (SERIES.md, "Fields added later").
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,20 +9,11 @@
 
 namespace qtet {
 
-class FusedValues {
- public:
-  /// `log` must outlive it.
-  explicit FusedValues(const LogHistory& log);
-
-  /// Values of all of the history's vertices from those of the last level's, `components` integers
-  /// each. A fused vertex on an edge takes the values of its two prey at its place there. With more
-  /// than two prey it takes their mean by the volume that they stand for.
-  [[nodiscard]] std::vector<std::int32_t> of(std::vector<std::int32_t> values,
-                                             std::uint32_t components) const;
-
- private:
-  const LogHistory& log_;
-  std::vector<std::array<double, 4>> shares_;  // of each fusion's prey
-};
+/// Values of all of the history's vertices from those of the last level's, `components` integers
+/// each. A fused vertex has the value that follows from its prey by the usual curvature
+/// (VALUES.md, "Lifted blocks"), so that a log tells no correction.
+[[nodiscard]] std::vector<std::int32_t> fusedValues(const LogHistory& log,
+                                                    std::vector<std::int32_t> values,
+                                                    std::uint32_t components);
 
 }  // namespace qtet

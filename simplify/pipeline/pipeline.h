@@ -47,7 +47,7 @@ struct PipelineOptions {
   /// Only its effort, bounds and rule for the base mesh count. Without it nothing is measured, and
   /// no rule chooses the base mesh.
   std::optional<MeasureOptions> measure{std::in_place};
-  CodecId valueCodec = CodecId::kDraco;
+  CodecId valueCodec = CodecId::kLifted;
   KeepOptions keep{};
   Units units{};
   /// Each series gives four more fields, its statistics over all instants (time_statistics.h).

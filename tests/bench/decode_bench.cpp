@@ -32,7 +32,7 @@ Blocks positionsOf(const LogFile& log) {
   for (std::uint32_t c = 0; c < index.chunks.size(); ++c)
     out.push_back(
         need(decodeValueBlock(log.block(c, kPositionsPart), 3, index.tuples(c, kPositionsPart),
-                              index.chunks[c].valueCodec)));
+                              index.blockCodec(c, kPositionsPart))));
   return out;
 }
 

@@ -75,7 +75,7 @@ std::vector<std::vector<std::int32_t>> valuesOf(const LogIndex& index, ByteView 
     const BlockEntry& block = index.block(chunk, part);
     out.push_back(
         need(decodeValueBlock(bytes.subspan(block.offset, block.size), index.components(part),
-                              index.tuples(chunk, part), index.chunks[chunk].valueCodec)));
+                              index.tuples(chunk, part), index.blockCodec(chunk, part))));
   }
   return out;
 }

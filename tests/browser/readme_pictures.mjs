@@ -23,7 +23,7 @@ const kLook = 'mesh=fin&field=Density&colormap=turbo&clip=y:0.5';
 const kPart = {x: 110, y: 95, width: 840, height: 450};
 const kWidth = 364;
 /** Shares of the log's bytes: the last level within each is shown. */
-const kShares = [0.03, 0.1, 1];
+const kShares = [0.03, 0.25, 1];
 const kViewerShare = 0.4;
 
 mkdirSync(options.out, {recursive: true});
@@ -31,9 +31,9 @@ const {folder} = makeLog(options.bin, 'fin', options.out, ['fin'], ['--fields', 
 const tool = join(options.bin, 'qtet');
 const log = join(folder, 'fin.qtet');
 const {bytes, levels} = JSON.parse(execFileSync(tool, ['info', log, '--json']));
-/** Levels that end with a chunk, about where the viewer holds, and whose error is measured. */
+/** Levels that end with a chunk, about where the viewer holds. */
 const shown = levels.filter(
-  ({cumulativeBytes, error}, i) => error && cumulativeBytes !== levels[i + 1]?.cumulativeBytes,
+  ({cumulativeBytes}, i) => cumulativeBytes !== levels[i + 1]?.cumulativeBytes,
 );
 const lastWithin = (share) =>
   shown.filter(({cumulativeBytes}) => cumulativeBytes <= share * bytes).at(-1);
@@ -66,18 +66,26 @@ async function pictureOfCanvas() {
   });
 }
 
+/**
+ * The last level within the share that the viewer holds exactly. A chunk may end within another.
+ */
+async function place(share) {
+  for (let last = lastWithin(share); last; last = shown[shown.indexOf(last) - 1]) {
+    const viewer = await hold(last, kDesktop);
+    const {tetrahedra} = await viewer.counts();
+    const png = await viewer.page.evaluate(pictureOfCanvas);
+    await browser.closePages();
+    if (tetrahedra === last.tetrahedra) return {level: last, png};
+  }
+  throw new Error(`no level within ${share} of the bytes is held exactly`);
+}
+
 async function coarseToFine() {
   const places = [];
-  for (const level of kShares.map(lastWithin)) {
-    const viewer = await hold(level, kDesktop);
-    const {tetrahedra} = await viewer.counts();
-    if (tetrahedra !== level.tetrahedra)
-      throw new Error(`the viewer shows ${tetrahedra} cells instead of ${level.tetrahedra}`);
-    places.push({level, png: await viewer.page.evaluate(pictureOfCanvas)});
-    await browser.closePages();
-  }
-  const off = ({error}) => `${(100 * error.fields[0].rms).toPrecision(2)} % off`;
-  const place = ({level, png}, index) =>
+  for (const share of kShares) places.push(await place(share));
+  const off = ({error}) =>
+    error ? `${(100 * error.fields[0].rms).toPrecision(2)} % off` : 'on its way';
+  const figure = ({level, png}, index) =>
     `<figure><div><img src="${png}"></div><figcaption>
        <b>${kilobytes(level.cumulativeBytes)}</b> · ${cells(level)} ·
        ${index === places.length - 1 ? 'as it was' : off(level)}</figcaption></figure>`;
@@ -92,7 +100,7 @@ async function coarseToFine() {
       div { overflow: hidden; height: ${height}px; } figcaption { text-align: center; }
       img { display: block; width: ${kDesktop.viewport.width * scale}px;
         margin: ${-kPart.y * scale}px 0 0 ${-kPart.x * scale}px; }
-    </style>${places.map(place).join('')}`);
+    </style>${places.map(figure).join('')}`);
   await page.waitForFunction(() => [...document.images].every((image) => image.complete));
   await page.screenshot({path: join(options.out, 'coarse-to-fine.png')});
   const list = places.map(({level}) => `${kilobytes(level.cumulativeBytes)} (${cells(level)})`);

@@ -42,15 +42,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   };
   const auto values = [&](std::uint32_t chunk, std::uint32_t part) {
     return qtet::decodeValueBlock(block(chunk, part), index->components(part),
-                                  index->tuples(chunk, part), index->chunks[chunk].valueCodec);
+                                  index->tuples(chunk, part), index->blockCodec(chunk, part));
+  };
+  const auto isApplied = [&](std::uint32_t chunk, std::uint32_t f) {
+    const std::uint32_t part = qtet::kFirstFieldPart + f;
+    if (index->blockCodec(chunk, part) == qtet::CodecId::kLifted)
+      return refiner.applyField(f, chunk, block(chunk, part)).has_value();
+    const auto field = values(chunk, part);
+    return field && refiner.applyField(f, chunk, *field);
   };
   for (std::uint32_t chunk = 0; chunk < index->chunks.size(); ++chunk) {
     const auto positions = values(chunk, qtet::kPositionsPart);
     if (!positions || !refiner.apply(chunk, block(chunk, qtet::kStructurePart), *positions)) break;
     for (std::uint32_t f = 0; f < index->fields.size(); ++f)
-      if (const auto field = values(chunk, qtet::kFirstFieldPart + f);
-          field && refiner.applyField(f, chunk, *field))
-        qtet::fuzz::abortUnlessWhole(refiner, f);
+      if (isApplied(chunk, f)) qtet::fuzz::abortUnlessWhole(refiner, f);
   }
   qtet::fuzz::abortUnlessSound(refiner);
   return 0;

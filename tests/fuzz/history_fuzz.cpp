@@ -87,6 +87,7 @@ Log logOf(const FusionHistory& history, Input& in) {
   LogWriterOptions options;
   options.generator = "history_fuzz";
   options.chunkBytes = 16u + in.next16() % 4096u;
+  options.valueCodec = CodecId::kDraco;  // values are damaged one by one below
   Result<EncodedLog> encoded = encodeLog(history, options);
   require(encoded.has_value(), encoded ? "" : "not encoded: " + encoded.error().text());
   Log log;
@@ -104,7 +105,7 @@ Log logOf(const FusionHistory& history, Input& in) {
     log.values.emplace_back(1);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
       auto values = decodeValueBlock(block(chunk, part), log.index.components(part),
-                                     log.index.tuples(chunk, part));
+                                     log.index.tuples(chunk, part), CodecId::kDraco);
       require(values.has_value(), "a value block does not decode");
       log.values.back().push_back(std::move(*values));
     }

@@ -11,7 +11,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   qtet::LogIndex index;
   index.positionBits = 16;
-  index.manifestMinor = qtet::LogIndex::kMinorOfSomeErrors;
   index.fields = {{2, qtet::Association::kPoint}, {1, qtet::Association::kCell}};
   index.chunks.resize(2);
   index.chunks[1].firstLevel = data[0] > 0;

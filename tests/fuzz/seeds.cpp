@@ -39,6 +39,7 @@ testing::TakenApart refinerLog(int n, std::uint32_t seed, std::uint32_t chunkByt
   mesh.values = {pairs, mesh.values[2]};
   LogWriterOptions options;
   options.chunkBytes = chunkBytes;
+  options.valueCodec = CodecId::kDraco;
   return testing::takeApart(encodeLog(simplify(mesh, {}).value(), options).value().bytes);
 }
 
@@ -62,7 +63,7 @@ Bytes refinerSeed(const testing::TakenApart& log, std::size_t chunks) {
     w.append(log.blocks[c][kStructurePart]);
     for (std::uint32_t part = kPositionsPart; part < log.index.parts(); ++part) {
       const auto values = decodeValueBlock(log.blocks[c][part], log.index.components(part),
-                                           log.index.tuples(c, part))
+                                           log.index.tuples(c, part), CodecId::kDraco)
                               .value();
       for (const std::int32_t value : values) w.write(static_cast<std::uint16_t>(value));
     }
@@ -78,7 +79,7 @@ Bytes dracoSeed(std::uint32_t components, std::uint32_t tuples, std::int32_t mag
   ByteWriter w;
   w.write(static_cast<std::uint8_t>(components - 1));
   w.write(static_cast<std::uint16_t>(tuples));
-  w.append(encodeValueBlock(values, components).value());
+  w.append(encodeValueBlock(values, components, CodecId::kDraco).value());
   return w.take();
 }
 

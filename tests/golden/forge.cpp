@@ -25,7 +25,7 @@ namespace qtet {
 namespace {
 
 Bytes logOf(const LatticeMesh& mesh, std::uint32_t chunkBytes, const FusionOptions& fusion = {},
-            CodecId values = CodecId::kDraco) {
+            CodecId values = CodecId::kLifted) {
   LogWriterOptions options;
   options.source = "golden.vtu";
   options.generator = "qtet golden";
@@ -108,7 +108,7 @@ Bytes logWithOriginalCells() {
   return logWithInput(mesh, kept);
 }
 
-/// With the closing blocks of version 2.0, and one of a kind that is not known yet.
+/// With all closing blocks, and one of a kind that is not known yet.
 Bytes keptLog() {
   const LatticeMesh mesh = testing::gridMesh(2, 7);
   testing::TakenApart parts =
@@ -141,45 +141,36 @@ void write(const std::filesystem::path& path, const Bytes& bytes) {
 constexpr Focus kSomeFocus{1, 2, 3, 0x8001, 0x8002, 0xffff};
 constexpr Opening kSomeOpening{1, 2};
 
-/// `inHeader`: the header says so, too.
-Bytes withFirstView(const Bytes& log, const Focus& focus, const Opening& opening,
-                    bool inHeader = true) {
+Bytes withFirstView(const Bytes& log, const Focus& focus, const Opening& opening) {
   testing::TakenApart parts = testing::takeApart(log);
   Manifest m = manifestOf(parts.index).value();
   m.focus = focus;
   m.opening = opening;
   parts.index.manifest = manifestBlock(m).value();
-  parts.index.manifestMinor = inHeader ? minorOf(m) : std::uint16_t{0};
   return parts.together();
 }
 
 /// With a unit of the first field and one of times.
-Bytes withUnits(const Bytes& log, const std::string& unit,
-                std::uint16_t minor = LogIndex::kMinorOfUnits) {
+Bytes withUnits(const Bytes& log, const std::string& unit) {
   testing::TakenApart parts = testing::takeApart(log);
   Manifest m = manifestOf(parts.index).value();
   m.units = {{"", "s"}, {m.fields[0].name, unit}};
   parts.index.manifest = manifestBlock(m).value();
-  parts.index.manifestMinor = minor;
   return parts.together();
 }
 
 /// With the field as a label that has names of its values.
-Bytes withLabel(const Bytes& log, const std::string& field, const LabelNames& names,
-                std::uint16_t minor = LogIndex::kMinorOfLabels) {
+Bytes withLabel(const Bytes& log, const std::string& field, const LabelNames& names) {
   testing::TakenApart parts = testing::takeApart(log);
   Manifest m = manifestOf(parts.index).value();
   m.labels = {{field, names}};
   parts.index.manifest = manifestBlock(m).value();
-  parts.index.manifestMinor = minor;
   return parts.together();
 }
 
 const LabelNames kSomeNames{{-7, "air"}, {1, "steel"}, {4, "oil"}};
 
 void writeBadLabels(const std::filesystem::path& folder, const Bytes& good) {
-  write(folder / "bad-value.manifest-labels-of-an-older-version.qtet",
-        withLabel(good, "Region", kSomeNames, LogIndex::kMinorOfUnits));
   write(folder / "bad-value.manifest-label-without-a-name.qtet",
         withLabel(good, "Region", {{1, ""}}));
   LabelNames many;
@@ -204,7 +195,6 @@ Bytes withSomeErrors(const Bytes& log) {
                    std::vector<FieldError>(m.fields.size(), FieldError{e / 11, e / 2})};
   }
   parts.index.manifest = manifestBlock(m).value();
-  parts.index.manifestMinor = minorOf(m);
   return parts.together();
 }
 
@@ -253,9 +243,6 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
         withFirstView(good, kSomeFocus, Opening{1, 4}));
   write(folder / "bad-value.manifest-empty-unit.qtet", withUnits(good, ""));
   write(folder / "bad-value.manifest-unit-length.qtet", withUnits(good, std::string(65, 'K')));
-  write(folder / "bad-value.manifest-units-of-an-older-version.qtet", withUnits(good, "K", 3));
-  write(folder / "bad-value.first-view-in-the-manifest-alone.qtet",
-        withFirstView(good, kSomeFocus, kSomeOpening, false));
   // The figures of all levels in the bytes of none.
   const Manifest m = manifestOf(testing::takeApart(good).index).value();
   LevelColumns columns;
@@ -267,10 +254,10 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
           .size();
   write(folder / "limit-exceeded.manifest-bomb.qtet",
         manifest([size](Bytes& b) { b.resize(b.size() - size); }));
-  // Errors of some levels: the last one's alone, or without the header's version, or twice.
+  // The errors of the last level alone, and flags that are not known.
   columns.resize(m.levels.size() * levelColumnCount(2, KnownErrors::kSome));
   const std::size_t known = kKnownColumn * m.levels.size();
-  const auto errors = [&](std::uint8_t flags, std::uint32_t ofFirst, std::uint16_t minor) {
+  const auto errors = [&](std::uint8_t flags, std::uint32_t ofFirst) {
     columns[known] = ofFirst;
     columns[known + m.levels.size() - 1] = 1;
     testing::TakenApart parts = testing::takeApart(good);
@@ -280,12 +267,10 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
     const Bytes told = encodeLevelColumns(columns, static_cast<std::uint32_t>(m.levels.size()),
                                           KnownErrors::kSome);
     b.insert(b.end(), told.begin(), told.end());
-    parts.index.manifestMinor = minor;
     return parts.together();
   };
-  write(folder / "bad-value.manifest-base-without-error.qtet", errors(8, 0, 3));
-  write(folder / "bad-value.manifest-errors-of-an-older-version.qtet", errors(8, 1, 2));
-  write(folder / "bad-value.manifest-errors-twice.qtet", errors(9, 1, 3));
+  write(folder / "bad-value.manifest-base-without-error.qtet", errors(1, 0));
+  write(folder / "bad-value.manifest-unknown-flag.qtet", errors(33, 1));
 }
 
 /// Breaks the part of later instants, and what the table says of it.
@@ -374,8 +359,8 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
   Bytes dependencies = patched(48, static_cast<std::uint8_t>(good[48] + 1));
   testing::mendChecksums(dependencies);
   write(folder / "bad-magic.text-mode-copy.qtet", patched(5, 0x0A));
-  write(folder / "bad-version.major-1.qtet", patched(8, 1));
-  write(folder / "bad-version.major-4.qtet", patched(8, 4));
+  write(folder / "bad-version.major-3.qtet", patched(8, 3));
+  write(folder / "bad-version.major-5.qtet", patched(8, 5));
   Bytes regions = patched(12, 1);
   testing::mendChecksums(regions);
   write(folder / "bad-version.layout-1.qtet", regions);
@@ -420,6 +405,20 @@ void writeMustFail(const std::filesystem::path& folder, const Bytes& good) {
         entry(1, [](ChunkEntry& e) { e.records = 0x40000000; }));
   write(folder / "bad-codec.unknown-id.qtet",
         entry(1, [](ChunkEntry& e) { e.valueCodec = static_cast<CodecId>(77); }));
+  write(folder / "bad-codec.two-of-values.qtet",
+        entry(1, [](ChunkEntry& e) { e.valueCodec = CodecId::kAdaptive; }));
+  write(folder / "truncated.lifted.qtet", forged(good, {}, [](auto& blocks) {
+          Bytes& block = blocks[1][kFirstFieldPart];
+          block.erase(block.begin() + 6, block.end() - 1);
+        }));
+  write(folder / "bad-value.lifted-too-long.qtet", forged(good, {}, [](auto& blocks) {
+          Bytes& block = blocks[1][kFirstFieldPart];
+          block.insert(block.begin() + static_cast<std::ptrdiff_t>(block.size() / 2), 9, 0x5A);
+        }));
+  write(folder / "bad-value.lifted-lengths.qtet", forged(good, {}, [](auto& blocks) {
+          Bytes& block = blocks[1][kFirstFieldPart];
+          std::ranges::fill(block, 0);
+        }));
   write(folder / "bad-codec.not-draco.qtet", forged(good, {}, [](auto& blocks) {
           blocks[1][kPositionsPart] = Bytes(50, 0x5A),
           std::fill_n(blocks[1][kPositionsPart].end() - 4, 4, 0);
@@ -465,6 +464,8 @@ int main(int argc, char** argv) {
   qtet::writeBadLabels(folder / "must-fail", withCells);
   qtet::write(folder / "valid" / "adaptive.qtet",
               qtet::logOf(gridMesh(3, 5), 400, {}, qtet::CodecId::kAdaptive));
+  qtet::write(folder / "valid" / "draco.qtet",
+              qtet::logOf(gridMesh(3, 5), 400, {}, qtet::CodecId::kDraco));
   const qtet::Bytes kept = qtet::keptLog();
   qtet::write(folder / "valid" / "gaps.qtet", qtet::logWithMissingValues());
   qtet::write(folder / "valid" / "kept-input.qtet", kept);

@@ -33,7 +33,7 @@ struct Row {
 constexpr Row kRows[] = {
     {"box", ""},
     {"box",
-     " --lossless --keep-order --geometry-codec adaptive --placement optimal "
+     " --lossless --keep-order --value-codec adaptive --placement optimal "
      "--envelope-tolerance 0.01",
      [](PipelineOptions& o) {
        o.keep = {.order = true, .exact = true};

@@ -85,9 +85,8 @@ struct TakenApart {
 /// Makes the checksums of header, manifest, table and later instants right, after bytes of them
 /// were changed.
 inline void mendChecksums(Bytes& log) {
-  constexpr std::size_t kMajorAt = 8, kManifestBytesAt = 24, kTableBytesAt = 28,
-                        kManifestCrcAt = 32, kTableCrcAt = 36, kLaterBytesAt = 56,
-                        kHeaderCrcAt = 60;
+  constexpr std::size_t kManifestBytesAt = 24, kTableBytesAt = 28, kManifestCrcAt = 32,
+                        kTableCrcAt = 36, kLaterBytesAt = 56, kHeaderCrcAt = 60;
   if (log.size() < LogIndex::kHeaderBytes) return;
   const auto get = [&](std::size_t at) {
     return std::uint64_t{ByteReader(ByteView(log).subspan(at, 4)).read<std::uint32_t>()};
@@ -97,8 +96,7 @@ inline void mendChecksums(Bytes& log) {
   };
   const std::uint64_t manifest = get(kManifestBytesAt), table = get(kTableBytesAt);
   const std::uint64_t tableAt = LogIndex::kHeaderBytes + manifest, later = get(kLaterBytesAt);
-  if (log[kMajorAt] == LogIndex::kVersionOfSeries && table > 6 && tableAt + table <= log.size() &&
-      later <= log.size()) {
+  if (later > 0 && table > 6 && tableAt + table <= log.size() && later <= log.size()) {
     std::size_t at = tableAt;  // of the number of later fields
     while (log[at] >= 0x80 && at < tableAt + 2) ++at;
     put(at + 1, crc32c(ByteView(log).last(later)));

@@ -58,7 +58,8 @@ describe.skipIf(kTestWasm === '')('a Draco stream', () => {
     const blocks = await goldenBlocks();
     const draco = await draco3d.createDecoderModule({});
     const schemes = new Set(blocks.map(({bytes}) => bytes[kSchemeAt]));
-    expect([blocks.length > 30, [...schemes].sort((a, b) => a! - b!)]).toEqual([true, [0, 1]]);
+    // 4: so many bytes has a symbol that is not compressed
+    expect([blocks.length > 30, [...schemes].sort((a, b) => a! - b!)]).toEqual([true, [0, 1, 4]]);
     for (const block of blocks)
       expect(kDraco.decode(block.bytes, block.count, block.components)).toEqual(
         stock(draco, block),

@@ -119,7 +119,8 @@ export function fakeHead({fields, cellFields = []}: FakeLog): Uint8Array {
     ...names.flatMap((name) => [...text(name), kFloat32, kBits, ...doubles(1, 0, 0, 255)]),
     0, // no known errors
   ];
-  const table = names.flatMap((_, f) => [1, f < fields.length ? 0 : 1]);
+  const kNoLaterFields = 0;
+  const table = [kNoLaterFields, ...names.flatMap((_, f) => [1, f < fields.length ? 0 : 1])];
   const head = new Uint8Array(64 + manifest.length + table.length);
   const view = new DataView(head.buffer);
   head.set([0x89, 0x51, 0x54, 0x45, 0x54, 0x0d, 0x0a, 0x1a]);

@@ -45,7 +45,7 @@ _TYPES = {
 _ALGORITHMS = {"qtet": 0, "paper": 1}
 _PLACEMENTS = {"auto": 0, "optimal": 1, "vertex": 2}
 _MEASURES = {"none": 0, "levels": 1, "all": 2}
-_CODECS = {"draco": 0, "adaptive": 1}
+_CODECS = {"lifted": 0, "draco": 1, "adaptive": 2}
 _STAGES = ("clean", "quantise", "simplify", "measure", "encode", "keep")
 _MAX_COMPONENTS = 16
 _INTEGERS = ("base_cells", "position_bits", "field_bits", "threads")
@@ -297,7 +297,7 @@ class _Work:
 
 def _tool_words(options: Mapping[str, Any]) -> list[str]:
     """The options of simplify() as words of `qtet simplify`."""
-    names = {"value_codec": "geometry-codec", "regions": "preserve-regions"}
+    names = {"regions": "preserve-regions"}
     words: list[str] = []
     for key, value in options.items():
         name = "--" + names.get(key, key.removesuffix("s") if isinstance(value, dict) else key)
@@ -354,7 +354,7 @@ def simplify(
     algorithm: str = "qtet",
     placement: str = "auto",
     measure: str = "levels",
-    value_codec: str = "draco",
+    value_codec: str = "lifted",
     keep_order: bool = False,
     lossless: bool = False,
     original_ids: bool = False,

@@ -83,7 +83,7 @@ TEST(FormatExample, isTheLogThatThePageDescribes) {
   ASSERT_EQ(log->index().chunks.size(), 2u);
   const auto values = [&](std::uint32_t chunk) {
     return *decodeValueBlock(log->block(chunk, kPositionsPart), 3,
-                             log->index().tuples(chunk, kPositionsPart));
+                             log->index().tuples(chunk, kPositionsPart), CodecId::kDraco);
   };
 
   const auto told = [&](const std::string& from, const std::string& to) {

@@ -6,8 +6,8 @@ namespace qtet {
 namespace {
 
 TEST(LogVersions, areThoseOfTheFormatsDocument) {
-  EXPECT_EQ(oldestLogVersion(), "2.0");
-  EXPECT_EQ(newestLogVersion(), "3.5");
+  EXPECT_EQ(oldestLogVersion(), "4.0");
+  EXPECT_EQ(newestLogVersion(), "4.0");
 }
 
 }  // namespace

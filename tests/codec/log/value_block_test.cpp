@@ -111,7 +111,7 @@ TEST(ValueBlock, noTuplesAreNoBytes) {
 TEST(ValueBlock, itsFirstPartIsAnOrdinaryDracoStream) {
   std::mt19937 random(2);
   const std::vector<std::int32_t> values = someValues(random, 900, 12);
-  const Bytes block = encodeValueBlock(values, 3).value();
+  const Bytes block = encodeValueBlock(values, 3, CodecId::kDraco).value();
   const std::size_t digitBytes = splitValues(values).digits.size();
   const auto symbols =
       decodeDracoBlock(ByteView(block).first(block.size() - 4 - digitBytes), 3, 300);

@@ -81,7 +81,8 @@ class Replay {
     return ByteView(bytes_).subspan(static_cast<std::size_t>(b.offset), b.size);
   }
   [[nodiscard]] std::vector<std::int32_t> positions(std::uint32_t chunk) const {
-    return decodeValueBlock(block(chunk, kPositionsPart), 3, index_.tuples(chunk, kPositionsPart))
+    return decodeValueBlock(block(chunk, kPositionsPart), 3, index_.tuples(chunk, kPositionsPart),
+                            CodecId::kDraco)
         .value();
   }
   void applyNext() {

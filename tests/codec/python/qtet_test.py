@@ -120,7 +120,7 @@ def logs_are_the_tools():
             },
         ),
         (
-            "--lossless --keep-order --geometry-codec adaptive --measure all "
+            "--lossless --keep-order --value-codec adaptive --measure all "
             "--max-boundary-error 0.1 --max-field-error Heat=0.1",
             {
                 "lossless": True,

@@ -68,7 +68,7 @@ class CellFieldLog : public ::testing::Test {
   std::vector<std::int32_t> values(std::uint32_t chunk, std::uint32_t part) const {
     const BlockEntry& b = index_.block(chunk, part);
     return decodeValueBlock(ByteView(bytes_).subspan(b.offset, b.size), index_.components(part),
-                            index_.tuples(chunk, part))
+                            index_.tuples(chunk, part), index_.blockCodec(chunk, part))
         .value();
   }
   Status apply(Refiner& refiner, std::uint32_t chunk) const {

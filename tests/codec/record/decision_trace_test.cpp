@@ -80,7 +80,7 @@ TEST(DecisionTrace, isThatOfTheGoldenFile) {
 
   const auto told =
       decodeValueBlock(log.block(1, kPositionsPart), 3, log.index().tuples(1, kPositionsPart),
-                       log.index().chunks[1].valueCodec);
+                       log.index().blockCodec(1, kPositionsPart));
   ASSERT_TRUE(told);
   TraceCoder coder(log.block(1, kStructurePart));
   RecordModels models;

@@ -1,4 +1,4 @@
-// Golden files: those of version 2.0 must decode to the same mesh and values for ever. Broken ones
+// Golden files: those of version 4.0 must decode to the same mesh and values for ever. Broken ones
 // must fail with the code in their names.
 #include <gtest/gtest.h>
 

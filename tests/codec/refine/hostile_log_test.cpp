@@ -76,9 +76,8 @@ TEST_F(HostileLog, theUntouchedLogIsFine) {
 TEST_F(HostileLog, aLogOfAnotherVersionIsRefusedWithWhatToDo) {
   constexpr std::size_t kMajorAt = 8;
   ASSERT_EQ(bytes_[kMajorAt], LogIndex::kVersionMajor);
-  for (const auto& [major, advice] :
-       {std::pair{LogIndex::kVersionMajor - 1, "make the log again"},
-        std::pair{LogIndex::kVersionOfSeries + 1, "use a newer qtet"}}) {
+  for (const auto& [major, advice] : {std::pair{LogIndex::kVersionMajor - 1, "make the log again"},
+                                      std::pair{LogIndex::kVersionMajor + 1, "use a newer qtet"}}) {
     Bytes other = bytes_;
     other[kMajorAt] = static_cast<std::uint8_t>(major);
     const auto log = open(other);
@@ -213,8 +212,8 @@ TEST_F(HostileLog, chunksGoInInTheirOrderAndOnce) {
   Refiner again(log->index());
   ASSERT_TRUE(applyChunk(*log, again, 0, {}));
   EXPECT_EQ(applyChunk(*log, again, 0, {}).error().code, ErrorCode::kBadOrder);
-  EXPECT_EQ(again.applyField(0, 1, {}).error().code, ErrorCode::kBadOrder);
-  EXPECT_EQ(again.applyField(7, 0, {}).error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(again.applyField(0, 1, ByteView{}).error().code, ErrorCode::kBadOrder);
+  EXPECT_EQ(again.applyField(7, 0, ByteView{}).error().code, ErrorCode::kNotFound);
 }
 
 TEST(Refiner, aLinkOfTwoSpheresIsRefused) {

@@ -132,13 +132,15 @@ struct Patch {
 
 Patch encoded(const Piece& piece) {
   Patch out{piece.coarse, {}, {}};
-  RecordWriter writer(piece.history, CodecId::kDraco, appendTo(out.body), {});
+  RecordWriter writer(piece.history, CodecId::kDraco, {});
   LogWriterOptions options;
   options.chunkBytes = 30;
   EXPECT_TRUE(writer.patch(piece.coarse, piece.cells, piece.vertices));
   const Status written = writeLevelRuns(writer, piece.history.levels, options);
   EXPECT_TRUE(written) << written.error().text();
   EXPECT_TRUE(writer.closeChunk(piece.history.levels, kLevelEnd));
+  for (const Bytes& blocks : writer.chunks().geometry())
+    out.body.insert(out.body.end(), blocks.begin(), blocks.end());
   out.rows = std::move(writer.chunks().rows());
   return out;
 }

@@ -35,7 +35,8 @@ TEST(Refiner, holdsLittleBesideTheMesh) {
   std::vector<std::vector<std::int32_t>> positions;
   for (std::uint32_t chunk = 0; chunk < file->index().chunks.size(); ++chunk)
     positions.push_back(*decodeValueBlock(file->block(chunk, kPositionsPart), 3,
-                                          file->index().tuples(chunk, kPositionsPart)));
+                                          file->index().tuples(chunk, kPositionsPart),
+                                          CodecId::kDraco));
   double mesh = 0, tetrahedra = 0;
   const std::size_t peak = testing::peakBytesOf([&] {
     Refiner refiner(file->index());
@@ -80,9 +81,9 @@ TEST(Refiner, takesInTheBeginningOfALogThatNoMemoryHolds) {
   ChunkEntry& last = index.chunks.back();
   last.newVertices = last.newTetrahedra = last.newBoundaryTriangles = kMaxElements / 2;
   ASSERT_GT(index.chunks.size(), 1u);
-  Refiner refiner(std::move(index));
-  const auto positions =
-      decodeValueBlock(file->block(0, kPositionsPart), 3, file->index().tuples(0, kPositionsPart));
+  Refiner refiner(index);
+  const auto positions = decodeValueBlock(file->block(0, kPositionsPart), 3,
+                                          file->index().tuples(0, kPositionsPart), CodecId::kDraco);
   // enough bytes to make such a log credible, though they contain nothing
   const Bytes credible(kMaxElements / kMaxElementsPerByte + 1);
   const AddressLimit limit(rlim_t{4} << 30);

@@ -2,8 +2,24 @@
 import math
 from collections import defaultdict
 
-from conventions import clamp, cross, dot
+from conventions import G, clamp, cross, dot
 from link import faces
+
+
+NO_EXIT = (0.0, None, None, False)
+
+
+class Slope:
+    """Corners with weights on both sides, and how far these reach."""
+
+    def __init__(self):
+        self.reaches, self.beyond, self.sides = [0, 0], [False, False], [[], []]
+
+    def complete(self):
+        self.corners = self.sides[0] + self.sides[1]
+        self.both = all(self.reaches)
+        whole = 256 * sum(self.reaches)
+        self.ratios = [min((whole + t // 2) // t, 32767) if t else 0 for t in self.reaches]
 
 
 class Ancestry:
@@ -23,7 +39,7 @@ class Ancestry:
         split.slopes = [self.slope(link, d) for d in steps]
 
     def slope(self, link, d):
-        exits = [(0.0, None, None), (0.0, None, None)]
+        exits = [NO_EXIT, NO_EXIT]
         turned = [cross(d, x) for x in link.offsets]
         for t in link.triangles:
             if link.is_ghost(t):
@@ -37,16 +53,46 @@ class Ancestry:
                 continue
             reach = dot(x[i], cross(x[j], x[k])) / total
             if abs(reach) > abs(exits[reach > 0][0]):
-                exits[reach > 0] = (reach, t, (a / total, b / total, c / total))
+                exits[reach > 0] = (reach, t, (a / total, b / total, c / total), False)
+        self.look_beyond(link, d, exits)
         whole = exits[1][0] - exits[0][0]
-        weights = []
+        out = Slope()
         if whole >= (1 if self.wrong == "R is at least 1" else 0.25):
-            for sign, (reach, t, shares) in zip((-1, 1), exits):
+            for side, (sign, (reach, t, shares, beyond)) in enumerate(zip((-1, 1), exits)):
                 if reach:
+                    out.reaches[side] = int(clamp(math.floor(256 * abs(reach) + 0.5), 1, 32767))
+                    out.beyond[side] = beyond
                     for corner, share in zip(t, shares):
                         weight = math.floor(4096 * (sign * share / whole) + 0.5)
-                        weights.append((link.vertices[corner], weight))
-        return weights
+                        out.sides[side].append((link.vertices[corner], weight))
+        out.complete()
+        return out
+
+    def look_beyond(self, link, d, exits):
+        """Exits beyond the mesh, for sides that have none or a short one."""
+        wanted = [abs(exit[0]) < 0.25 for exit in exits]
+        if not any(wanted) or self.wrong == "no exit lies beyond the mesh":
+            return
+        out = [0.0, 0.0, 0.0]
+        for offset in link.offsets:
+            for a in range(3):
+                out[a] -= offset[a]
+        for t in link.triangles:
+            if not link.is_ghost(t):
+                continue
+            edge = [v for v in t if link.vertices[v] != G]
+            x, y = (link.offsets[v] for v in edge)
+            e = tuple(a - b for a, b in zip(x, y))
+            n = cross(d, out)
+            total = dot(e, n)
+            if total == 0:
+                continue
+            m = cross(e, y)
+            share, reach, g = -dot(y, n) / total, dot(m, out) / total, dot(m, d) / total
+            if not (0 <= share <= 1 and g >= 0) or reach == 0:
+                continue
+            if wanted[reach > 0] and abs(reach) > abs(exits[reach > 0][0]):
+                exits[reach > 0] = (reach, edge, (share, 1 - share), True)
 
     def note_cells(self, split):
         """Of each new tetrahedron the earlier ones across its faces."""

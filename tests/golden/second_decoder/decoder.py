@@ -5,16 +5,17 @@ import struct
 from blocks import block_values
 from conventions import MISSING, clamp, quotient, refuse_unless
 from head import Log
+from lifted import Lifted
 from mesh import Mesh
 
 
-class Field:
+class Field(Lifted):
     def __init__(self, mesh, number):
         self.mesh, self.log, self.number = mesh, mesh.log, number
         self.wrong = mesh.wrong
         self.components, association = self.log.shapes[number]
         self.of_cells, self.gaps = association & 127 == 1, association >= 128
-        self.values = {}
+        self.values, self.sizes = {}, {}
 
     def decode(self):
         tetrahedra = 0
@@ -25,7 +26,12 @@ class Field:
                 tuples = row.tetrahedra
             else:
                 tuples = row.vertices + row.records
-            told = iter(block_values(row.blocks[2 + self.number], n, tuples, row.codec, self.wrong))
+            data, codec = row.blocks[2 + self.number], row.codec
+            if codec == 4 and not self.of_cells:
+                self.lifted_block(data, chunk, self.mesh.splits[first:end])
+                continue
+            codec = 3 if codec == 4 else codec
+            told = iter(block_values(data, n, tuples, codec, self.wrong))
             if self.of_cells:
                 for t in range(tetrahedra, tetrahedra + row.tetrahedra):
                     self.values[t] = [self.read(told, self.of_cell(t, c)) for c in range(n)]
@@ -82,11 +88,16 @@ class Field:
         f = self.values[split.v][c]
         if f == MISSING:
             return 0
-        change = 0
-        for v, weight in split.slopes[0 if split.k == 2 else i]:
-            x = self.values[v][c]
-            if x != MISSING:
-                change += weight * (x - f)
+        slope = split.slopes[0 if split.k == 2 else i]
+        sums = [0, 0]
+        for side, corners in enumerate(slope.sides):
+            for v, weight in corners:
+                x = self.values[v][c]
+                if x != MISSING:
+                    sums[side] += weight * (x - f)
+        change = sum(sums)
+        if any(slope.beyond) and self.wrong != "a prediction looks beyond the mesh":
+            change = sum(sums[s] * slope.ratios[s] >> 8 for s in range(2) if not slope.beyond[s])
         steps = 256
         if split.k == 2:
             steps = split.step + (256 if i else 0)

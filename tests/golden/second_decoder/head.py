@@ -13,25 +13,25 @@ class Log:
     def __init__(self, data, misreading=""):
         self.data, self.misreading = data, misreading
         header = struct.unpack("<8sHHBBHQIIIIIIIIII", data[:64])
-        (_, major, self.minor, layout, self.bits, _, size, manifest, table) = header[:9]
+        (_, major, _, layout, self.bits, _, size, manifest, table) = header[:9]
         self.chunks, self.fields = header[11], header[12]
         closing, later_bytes = header[14:16]
-        refuse_unless(major in (2, 3) and layout == 0, "another version")
+        refuse_unless(major == 4 and layout == 0, "another version")
         refuse_unless(size == len(data), "another length")
         self.manifest = data[64 : 64 + manifest]
         self.offset = 64 + manifest + table
         part = data[len(data) - later_bytes :]
         reader = Reader(data[64 + manifest : self.offset])
-        self.later = reader.varint() if major == 3 else 0
-        if major == 3:
+        self.later = reader.varint()
+        if self.later:
             reader.take(4)
         refuse_unless((self.later > 0) == (later_bytes > 0), "later fields without their part")
         self.shapes, self.parents = [], []
         for _ in range(self.fields - self.later):
-            self.read_shape(reader, major)
+            self.read_shape(reader)
         self.rows = []
         for _ in range(self.chunks):
-            self.rows.append(self.read_row(reader, major))
+            self.rows.append(self.read_row(reader))
         self.closing = {}
         for _ in range(closing):
             kind, field, count = reader.varint(), reader.varint(), reader.varint()
@@ -46,7 +46,7 @@ class Log:
     def read_later(self, reader, size):
         """The later fields: shapes, manifest, and their blocks of each chunk."""
         for _ in range(self.later):
-            self.read_shape(reader, 3)
+            self.read_shape(reader)
         self.read_later_manifest(Reader(reader.take(reader.varint())))
         for row in self.rows:
             sizes = [reader.varint() for _ in range(self.later)]
@@ -57,11 +57,11 @@ class Log:
                 row.end_of_blocks += size_of
         refuse_unless(reader.at == size, "bytes behind the later fields")
 
-    def read_shape(self, reader, major):
+    def read_shape(self, reader):
         """A field's components and association, and the fields that it is predicted from."""
         components, association = reader.unpack("BB")
         parents = []
-        if major == 3 and association & 64:
+        if association & 64:
             for _ in range(reader.u8()):
                 parent = reader.varint()
                 refuse_unless(parent < len(self.shapes), "a parent behind its child")
@@ -72,7 +72,7 @@ class Log:
         self.shapes.append((components, association & 191))
         self.parents.append(parents)
 
-    def read_row(self, reader, major):
+    def read_row(self, reader):
         row = Row()
         before = self.rows[-1] if self.rows else None
         row.first = before.last + (before.end is LEVEL_END) if before else 0
@@ -85,7 +85,7 @@ class Log:
         row.vertices, row.tetrahedra, row.triangles = (reader.varint() for _ in range(3))
         row.codec = reader.u8() >> 4
         sizes = [reader.varint() for _ in range(2 + self.fields - self.later)]
-        row.later = (reader.varint() << 32 | reader.varint()) if major == 3 else 0
+        row.later = (reader.varint() << 32 | reader.varint()) if self.later else 0
         reader.take(4 * len(sizes))
         row.blocks = []
         for size in sizes:
@@ -102,11 +102,7 @@ class Log:
         self.step, *self.origin = reader.unpack("4d")
         self.infos = [self.read_info(reader, shape) for shape in self.shapes]
         flags = self.flags = reader.u8()
-        refuse_unless(flags < 64 and flags & 9 != 9, "flags of the manifest")
-        refuse_unless(flags <= 1 or self.minor >= 2, "a first view in an older version")
-        refuse_unless(not flags & 8 or self.minor >= 3, "errors of some levels in an older version")
-        refuse_unless(not flags & 16 or self.minor >= 4, "units in an older version")
-        refuse_unless(flags < 32 or self.minor >= 5, "labels in an older version")
+        refuse_unless(flags < 32, "flags of the manifest")
         six = "6B" if self.misreading == "a focus has six bytes" else "6H"
         self.focus = reader.unpack(six) if flags & 2 else None
         if self.focus:
@@ -116,7 +112,7 @@ class Log:
         if flags & 4:
             field, cut = reader.unpack("BB")
             refuse_unless(field < len(self.shapes) and cut <= 3, "the opening's field or axis")
-        if flags & 16:
+        if flags & 8:
             names, pairs = [], reader.varint()
             if self.misreading == "units are as many texts as the varint says":
                 pairs //= 2
@@ -124,7 +120,7 @@ class Log:
                 names.append(reader.text())
                 refuse_unless(1 <= len(reader.text().encode()) <= 64, "a unit's length")
             refuse_unless(names == sorted(set(names)), "units in another order")
-        if flags & 32:
+        if flags & 16:
             self.labels = dict(self.read_label(reader) for _ in range(reader.varint()))
             refuse_unless(list(self.labels) == sorted(self.labels), "labels in another order")
         self.columns = self.columns_of(reader, flags, len(self.shapes))
@@ -151,10 +147,10 @@ class Log:
     def read_later_manifest(self, reader):
         """The columns are those of the manifest again, and 0 but for the later fields' own."""
         self.infos += [self.read_info(reader, shape) for shape in self.shapes[-self.later :]]
-        if not self.flags & 9:
+        if not self.flags & 1:
             refuse_unless(reader.at == len(reader.data), "bytes behind the last later field")
             return
-        columns = self.columns_of(reader, 8, self.later)
+        columns = self.columns_of(reader, 1, self.later)
         refuse_unless(columns[3] == self.columns[3], "errors of other levels")
         self.columns += columns[10:]
 
@@ -165,12 +161,13 @@ class Log:
         return columns
 
     def read_columns(self, stream, levels, flags, fields):
-        pairs = {0: 3, 1: 4, 8: 6}[flags & 9]  # the first column of a pair
-        columns = pairs + (2 * (2 + fields) if flags & 9 else 0)
+        errors = flags & 1
+        pairs = 6 if errors else 3  # the first column of a pair
+        columns = pairs + (2 * (2 + fields) if errors else 0)
         out = []
         known = [1] * levels
         for column in range(columns):
-            stays = column >= pairs and (column - pairs) % 2 == 1 or flags & 8 and column == 3
+            stays = column >= pairs and (column - pairs) % 2 == 1 or errors and column == 3
             if self.misreading == "a max is predicted like a mean":
                 stays = False
             told = []  # of the levels that are known
@@ -187,7 +184,7 @@ class Log:
                 code = stream.number(column)
                 difference = code // 2 if code % 2 == 0 else -(code + 1) // 2
                 told.append((predicted + difference) % 2**32)
-            if flags & 8 and column == 3:
+            if errors and column == 3:
                 known = told
                 refuse_unless(all(k < 2 for k in known), "an error is known or not")
                 refuse_unless(known[0] and known[-1], "an end without a known error")

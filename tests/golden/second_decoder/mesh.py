@@ -43,7 +43,8 @@ class Mesh(Labels, DeletedCells, Positions, Ancestry):
         return Stream(row.blocks[0], self.learnt, self.wrong, self.trace)
 
     def values(self, row):
-        return block_values(row.blocks[1], 3, row.vertices, row.codec, self.wrong)
+        codec = 2 if row.codec == 4 else row.codec
+        return block_values(row.blocks[1], 3, row.vertices, codec, self.wrong)
 
     def check_points(self, points):
         for p in points:
@@ -183,6 +184,7 @@ class Mesh(Labels, DeletedCells, Positions, Ancestry):
         deleted = self.derive(stream, link, k)
         points = self.read_points(stream, link, k, v, told)
         split = Split()
+        split.placement, split.near = self.placement, self.near
         split.v, split.k, split.level = v, k, level
         split.prey = [v] + list(range(self.next[0], self.next[0] + k - 1))
         self.note_fields(split, link, points)

@@ -40,6 +40,7 @@ class Positions:
                 if stream.bit("near", by_k, placement, r, rank):
                     near = order[rank]
                     break
+        self.placement, self.near = placement, near
 
         def predicted(*shares):
             half = 0 if self.wrong == "the quotient by 64 rounds down" else 32

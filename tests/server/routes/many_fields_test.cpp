@@ -36,7 +36,6 @@ Bytes logOfFields(const std::vector<std::string>& names) {
     parts.resize(kFirstFieldPart + names.size(), values);
   }
   log.index.manifest = manifestBlock(manifest).value();
-  log.index.manifestMinor = minorOf(manifest);
   return log.together();
 }
 

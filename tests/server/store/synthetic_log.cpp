@@ -59,7 +59,6 @@ Built build(const SyntheticLog& options) {
   Built out;
   out.index.positionBits = 16;
   out.index.manifest = manifestBlock(manifest).value();
-  out.index.manifestMinor = minorOf(manifest);
   for (const ManifestField& field : manifest.fields)
     out.index.fields.push_back({field.components, Association::kPoint});
   for (std::uint32_t k = 0; k < options.chunks; ++k) {

@@ -137,7 +137,7 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
                                  kBounds[] = {{"Scalar", 0.05}};
   for (const Case& c : {
            Case{"", [](qtet_simplify_options&) {}},
-           Case{"--lossless --keep-order --geometry-codec adaptive --placement vertex --threads 2",
+           Case{"--lossless --keep-order --value-codec adaptive --placement vertex --threads 2",
                 [](qtet_simplify_options& o) {
                   o.lossless = o.keepOrder = 1;
                   o.valueCodec = QTET_CODEC_ADAPTIVE;
@@ -413,7 +413,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refused(QTET_BAD_VALUE, "algorithm is 2", [](Arrays&, O& o) { o.algorithm = 2; });
   refused(QTET_BAD_VALUE, "placement is 3", [](Arrays&, O& o) { o.placement = 3; });
   refused(QTET_BAD_VALUE, "measure is 3", [](Arrays&, O& o) { o.measure = 3; });
-  refused(QTET_BAD_VALUE, "valueCodec is 2", [](Arrays&, O& o) { o.valueCodec = 2; });
+  refused(QTET_BAD_VALUE, "valueCodec is 3", [](Arrays&, O& o) { o.valueCodec = 3; });
   refused(QTET_BAD_VALUE, "keepOrder is 2", [](Arrays&, O& o) { o.keepOrder = 2; });
   refused(QTET_BAD_VALUE, "originalIds is 2", [](Arrays&, O& o) { o.originalIds = 2; });
   refused(QTET_BAD_VALUE, "lossless is 2", [](Arrays&, O& o) { o.lossless = 2; });

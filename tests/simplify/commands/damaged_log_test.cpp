@@ -356,11 +356,13 @@ TEST_F(DamagedLog, versionsAndFlagsOfTheFutureAreRefused) {
     testing::mendChecksums(bytes);
     return bytes;
   };
-  for (const std::uint8_t major : std::initializer_list<std::uint8_t>{0, 1, 4, 255})
+  for (const std::uint8_t major : std::initializer_list<std::uint8_t>{0, 1, 3, 5, 255})
     expectRefused(patched(8, major), "bad-version", "major " + std::to_string(major));
-  expectRefused(patched(9, 1), "bad-version", "major 258");
-  for (const std::size_t reserved : {14u, 15u, 56u, 57u, 58u, 59u})
+  expectRefused(patched(9, 1), "bad-version", "major 260");
+  for (const std::size_t reserved : {14u, 15u})
     expectRefused(patched(reserved, 1), "reserved", "byte " + std::to_string(reserved));
+  for (const std::size_t later : {56u, 57u, 58u, 59u})
+    expectRefused(patched(later, 1), "bad-value", "byte " + std::to_string(later));
   for (const std::uint8_t layout : std::initializer_list<std::uint8_t>{1, 2, 255})
     expectRefused(patched(12, layout), "bad-version", "layout");
   for (std::size_t chunk = 0; chunk < index_.chunks.size(); ++chunk) {
@@ -371,7 +373,7 @@ TEST_F(DamagedLog, versionsAndFlagsOfTheFutureAreRefused) {
     // A chunk in which nothing is split has no values: of that one, 0 is true.
     const ChunkEntry& entry = index_.chunks[chunk];
     const bool isWithoutValues = entry.size() == entry.blocks[kStructurePart].size;
-    for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 1, 4, 7, 15}) {
+    for (const std::uint8_t codec : std::initializer_list<std::uint8_t>{0, 1, 2, 3, 7, 15}) {
       if (codec == 0 && isWithoutValues) continue;
       expectTableRefused("codec", "value codec " + std::to_string(codec), [&](LogIndex& i) {
         i.chunks[chunk].valueCodec = static_cast<CodecId>(codec);

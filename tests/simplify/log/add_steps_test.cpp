@@ -8,6 +8,7 @@
 #include <numeric>
 #include <span>
 
+#include "codec/log/field_blocks.h"
 #include "codec/log/log_manifest.h"
 #include "codec/log/log_writer.h"
 #include "codec/log/manifest_field.h"
@@ -122,7 +123,8 @@ TEST_F(AddSteps, theHistorysValuesAreThoseOfTheWriter) {
     FieldInfo info;
     info.components = manifest.fields[f].components;
     info.association = manifest.fields[f].association;
-    const std::vector<Bytes> blocks = encodeFieldBlocks(history, info, coded).value();
+    const std::vector<Bytes> blocks =
+        encodeFieldBlocks(history.order, info, coded, history.valueCodec).value();
     for (std::uint32_t chunk = 0; chunk < blocks.size(); ++chunk)
       ASSERT_TRUE(std::ranges::equal(blocks[chunk], file.block(chunk, kFirstFieldPart + f)))
           << f << " " << chunk;

@@ -314,11 +314,6 @@ TEST_F(TimeDifferences, aTableThatLiesIsRefused) {
   refused([=](LogIndex& i) {  // a point field from a cell field
     i.fields[fields - 1].prediction = {{{{0, 16}}}, 1};
   });
-  Bytes version = bytes_;
-  version[8] = 2;
-  testing::mendChecksums(version);
-  EXPECT_EQ(LogFile::fromBytes(version).error().code, ErrorCode::kBadValue)
-      << "version 2 knows no predictions";
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ export interface Codec {
 
 /**
  * The two parts of a value block (FORMAT.md, "Value blocks"): what Draco decodes, and the digits
- * behind it. An adaptive block is all digits.
+ * behind it. An adaptive or a lifted block is all digits.
  */
 export interface BlockValues {
   symbols: Int32Array;
@@ -69,11 +69,12 @@ export interface BlockValues {
 /** CodecId of codec/log_index.h. */
 export const kDracoCodec = 2;
 export const kAdaptiveCodec = 3;
+export const kLiftedCodec = 4;
 /** Association of codec/log_index.h. */
 const kOfCells = 1;
 
 /** By the numbers of KnownErrors of codec/coding/level_columns.h. */
-const kKnownErrors: readonly KnownErrors[] = ['none', 'all', 'some'];
+const kKnownErrors: readonly KnownErrors[] = ['none', 'some'];
 
 interface Exports {
   memory: WebAssembly.Memory;

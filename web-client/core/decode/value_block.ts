@@ -2,7 +2,7 @@
 // behind it.
 
 import {QtetError} from '../protocol/errors';
-import {kAdaptiveCodec, kDracoCodec, type BlockValues, type Codec} from './codec';
+import {kAdaptiveCodec, kDracoCodec, kLiftedCodec, type BlockValues, type Codec} from './codec';
 import type {ValueDecoder} from './draco';
 
 /** The block's last bytes hold the number of digit bytes. */
@@ -28,7 +28,8 @@ export function readValueBlock(
   const count = codec.blockValues(chunk, part);
   if (count === 0 && bytes.length === 0) return {symbols: new Int32Array(0), digits: bytes};
   const id = codec.blockCodec(chunk, part);
-  if (id === kAdaptiveCodec) return {symbols: new Int32Array(0), digits: bytes};
+  if (id === kAdaptiveCodec || id === kLiftedCodec)
+    return {symbols: new Int32Array(0), digits: bytes};
   if (id !== kDracoCodec)
     throw new QtetError(
       'bad-codec',

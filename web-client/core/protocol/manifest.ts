@@ -25,8 +25,8 @@ export interface LevelError {
   fields: Spread[];
 }
 
-/** Which levels have a known error: none, all as before version 2.3, or some. */
-export type KnownErrors = 'none' | 'all' | 'some';
+/** Which levels have a known error. */
+export type KnownErrors = 'none' | 'some';
 
 export interface LevelInfo {
   level: number;
@@ -66,13 +66,6 @@ export interface Opening {
 
 /** Offsets in the front of a log (codec/FORMAT.md, "Header", "Chunk table"). */
 const kHeaderBytes = 64;
-const kMajorAt = 8;
-const kMajorOfSeries = 3;
-const kMinorAt = 10;
-const kMinorOfFirstView = 2;
-const kMinorOfSomeErrors = 3;
-const kMinorOfUnits = 4;
-const kMinorOfLabels = 5;
 const kPositionBitsAt = 13;
 const kManifestBytesAt = 24;
 const kFieldsAt = 44;
@@ -93,18 +86,19 @@ const kMaxNameBytes = 256;
 const kFieldTypes = 10;
 const kFirstWholeType = 2;
 const kMaxFieldBits = 28;
-const kAllErrorsFollow = 1;
+const kErrorsFollow = 1;
 const kFocusFollows = 2;
 const kOpeningFollows = 4;
-const kSomeErrorsFollow = 8;
-const kUnitsFollow = 16;
-const kLabelsFollow = 32;
+const kUnitsFollow = 8;
+const kLabelsFollow = 16;
 const kMaxUnitBytes = 64;
 const kMaxLabelNames = 4096;
 const kNoCut = 3;
 const kShareBytes = 2;
 const kCountColumns = 3;
 const kKnownColumn = 3;
+/** Behind the two columns of the volume. */
+const kFirstPairColumn = kKnownColumn + 3;
 const kVolumeFigure = 1e6;
 const kErrorFigureDigits = 14;
 
@@ -148,11 +142,8 @@ export function readManifest(
   const header = new DataView(head.buffer, head.byteOffset, head.byteLength);
   const tableAt = kHeaderBytes + header.getUint32(kManifestBytesAt, true);
   const table = new ManifestReader(head.subarray(tableAt));
-  let later = 0;
-  if (header.getUint16(kMajorAt, true) === kMajorOfSeries) {
-    later = table.varint();
-    table.bytes(kChecksumBytes);
-  }
+  const later = table.varint();
+  if (later > 0) table.bytes(kChecksumBytes);
   const shapes = readShapes(table, header.getUint32(kFieldsAt, true) - later);
   const reader = new ManifestReader(head.subarray(kHeaderBytes, tableAt));
   reader.text(); // the program that wrote it
@@ -165,8 +156,6 @@ export function readManifest(
   const fields = readFields(reader, shapes);
   const flags = reader.byte();
   const errors = knownErrorsOf(flags);
-  if (minorOf(flags) > header.getUint16(kMinorAt, true))
-    throw damaged('has flags that its version does not know');
   const focus = flags & kFocusFollows ? readFocus(reader, lattice.bits) : undefined;
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
   const units = flags & kUnitsFollow ? readUnits(reader) : undefined;
@@ -246,27 +235,13 @@ function readLevels(
   fields: number,
   levelColumns: LevelColumns,
 ): LevelInfo[] {
-  const columns = errors === 'none' ? kCountColumns : firstPairOf(errors) + 2 * (2 + fields);
+  const columns = errors === 'none' ? kCountColumns : kFirstPairColumn + 2 * (2 + fields);
   return levelsOf(levelColumns(bytes, errors, fields, columns), columns, errors);
 }
 
 function knownErrorsOf(flags: number): KnownErrors {
-  const both = kAllErrorsFollow | kSomeErrorsFollow;
-  if (flags >= 2 * kLabelsFollow || (flags & both) === both)
-    throw damaged('has flags that this viewer does not know');
-  return flags & kSomeErrorsFollow ? 'some' : flags & kAllErrorsFollow ? 'all' : 'none';
-}
-
-function minorOf(flags: number): number {
-  if (flags & kLabelsFollow) return kMinorOfLabels;
-  if (flags & kUnitsFollow) return kMinorOfUnits;
-  if (flags & kSomeErrorsFollow) return kMinorOfSomeErrors;
-  return flags > kAllErrorsFollow ? kMinorOfFirstView : 0;
-}
-
-/** The column behind those of the volume. */
-function firstPairOf(errors: KnownErrors): number {
-  return errors === 'some' ? kKnownColumn + 3 : kCountColumns + 1;
+  if (flags >= 2 * kLabelsFollow) throw damaged('has flags that this viewer does not know');
+  return flags & kErrorsFollow ? 'some' : 'none';
 }
 
 function readOpening(reader: ManifestReader, fields: number): Opening {
@@ -362,32 +337,20 @@ function levelsOf(numbers: Uint32Array, columns: number, errors: KnownErrors): L
   return Array.from({length: levels}, (_, level) => {
     const at = (column: number): number => numbers[column * levels + level]!;
     const info: LevelInfo = {level, tetrahedra: at(0), vertices: at(1), boundaryTriangles: at(2)};
-    if (errors === 'none' || (errors === 'some' && at(kKnownColumn) === 0)) return info;
+    if (errors === 'none' || at(kKnownColumn) === 0) return info;
     const pairs: Spread[] = [];
-    for (let column = firstPairOf(errors); column < columns; column += 2)
+    for (let column = kFirstPairColumn; column < columns; column += 2)
       pairs.push({mean: errorOf(at(column)), max: errorOf(at(column + 1))});
     const [toLevel, toOriginal, ...fields] = pairs;
     info.error = {
       toLevel: toLevel!,
       toOriginal: toOriginal!,
-      ...volumesOf(errors, at),
+      volumeLost: at(kKnownColumn + 1) / kVolumeFigure,
+      volumeGained: at(kKnownColumn + 2) / kVolumeFigure,
       fields,
     };
     return info;
   });
-}
-
-/** A log before version 2.3 has what is left of both after they have cancelled each other out. */
-function volumesOf(
-  errors: KnownErrors,
-  at: (column: number) => number,
-): {volumeLost: number; volumeGained: number} {
-  const net = at(kCountColumns) - kVolumeFigure;
-  const [lost, gained] =
-    errors === 'some'
-      ? [at(kKnownColumn + 1), at(kKnownColumn + 2)]
-      : [Math.max(-net, 0), Math.max(net, 0)];
-  return {volumeLost: lost / kVolumeFigure, volumeGained: gained / kVolumeFigure};
 }
 
 /** Decodes three significant digits (codec/error_figure.h). Parsing a decimal rounds only once. */

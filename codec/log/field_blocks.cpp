@@ -1,0 +1,345 @@
+#include "codec/log/field_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "codec/log/value_block.h"
+#include "codec/record/lifted_values.h"
+
+namespace qtet {
+namespace {
+
+/// The history's integers of a field, `components` a vertex or tetrahedron: an encoder reads them,
+/// a decoder writes them.
+template <bool kEncoding>
+struct HistoryField {
+  std::uint32_t components;
+  bool hasMissing;
+  std::span<std::conditional_t<kEncoding, const std::int32_t, std::int32_t>> values;
+
+  [[nodiscard]] std::span<const std::int32_t> of(std::size_t element) const {
+    return std::span<const std::int32_t>(values).subspan(element * components, components);
+  }
+};
+
+std::unexpected<Error> refuse(std::uint32_t chunk, const std::string& what) {
+  return fail(ErrorCode::kBadValue, "chunk " + std::to_string(chunk) + ": " + what);
+}
+constexpr const char* kBadValues = "field values out of range or left over";
+
+/// Runs over a point field's values as its blocks come: `now` holds them by slot. A decoder notes a
+/// fused vertex's just before it splits; those of the last level are left in `now`.
+template <bool kEncoding>
+void codePoints(const ValueOrder& order, std::uint32_t chunk, const HistoryField<kEncoding>& field,
+                std::vector<std::int32_t>& now, Values& coded) {
+  const std::size_t n = field.components;
+  const auto at = [&](VertexId v, std::uint32_t c) -> std::int32_t& { return now[v * n + c]; };
+  const auto truth = [&](VertexId v, std::uint32_t c) { return field.values[v * n + c]; };
+  if (chunk == 0)
+    for (VertexId v = 0; v < order.baseBirths.size(); ++v)
+      for (std::uint32_t c = 0; c < n; ++c)
+        at(v, c) = coded.codeField<kEncoding>(
+            field.hasMissing, predictBaseField(order.baseBirths[v], v, c, field.hasMissing, at),
+            truth(order.baseVertices[v], c));
+  for (std::uint32_t b = order.chunkBirths[chunk]; b < order.chunkBirths[chunk + 1]; ++b) {
+    const Birth& birth = order.points.births()[b];
+    if constexpr (!kEncoding)
+      for (std::uint32_t c = 0; c < n; ++c)
+        field.values[order.fused[b] * n + c] = at(birth.slot, c);
+    order.points.code<kEncoding>(
+        birth, coded, field.components, at,
+        [&](std::size_t i, std::uint32_t c) { return truth(order.prey[b][i], c); },
+        field.hasMissing);
+  }
+}
+
+template <bool kEncoding>
+void codeCells(const ValueOrder& order, std::uint32_t chunk, const HistoryField<kEncoding>& field,
+               Values& coded) {
+  const std::size_t n = field.components;
+  for (CellId t = order.chunkCells[chunk]; t < order.chunkCells[chunk + 1]; ++t)
+    for (std::uint32_t c = 0; c < n; ++c) {
+      const auto at = [&](CellId u) { return field.values[order.tetrahedra[u] * n + c]; };
+      const std::int32_t value =
+          coded.codeField<kEncoding>(field.hasMissing, order.cells.predict(t, at), at(t));
+      if constexpr (!kEncoding) field.values[order.tetrahedra[t] * n + c] = value;
+    }
+}
+
+/// The tuples of a Draco or an adaptive block: a record has one for each prey vertex.
+std::uint32_t tuplesOf(const ValueOrder& order, std::uint32_t chunk, Association association) {
+  if (association == Association::kCell)
+    return order.chunkCells[chunk + 1] - order.chunkCells[chunk];
+  auto tuples = static_cast<std::uint32_t>(chunk == 0 ? order.baseBirths.size() : 0);
+  for (std::uint32_t b = order.chunkBirths[chunk]; b < order.chunkBirths[chunk + 1]; ++b)
+    tuples += order.points.births()[b].k;
+  return tuples;
+}
+
+/// A level's records.
+struct LevelBirths {
+  std::uint32_t first, end;
+};
+LevelBirths levelFrom(const ValueOrder& order, std::uint32_t birth) {
+  const std::span<const std::uint32_t> starts = order.points.levelStarts();
+  const auto next = std::ranges::upper_bound(starts, birth);
+  return {*std::prev(next),
+          next == starts.end() ? static_cast<std::uint32_t>(order.points.births().size()) : *next};
+}
+
+/// Finds how much the curvature counts in a level. It fits the fused values' distances to their
+/// prey's means by those of the means to the links. Large distances count less.
+class CurveFit {
+ public:
+  CurveFit(const ValueOrder& order, const HistoryField<true>& field,
+           std::span<const std::int32_t> now)
+      : order_(order), field_(field), now_(now) {}
+
+  [[nodiscard]] LiftingRule ruleOf(const LevelBirths& level) {
+    constexpr LiftingRule kUsual{LiftingRule::kNoCorrection, LiftingRule::kUsualCurve};
+    if (!field_.hasMissing && follows(level, kUsual)) return kUsual;
+    return {0, curveOf(level)};
+  }
+
+ private:
+  struct Pair {
+    double off, bent;
+  };
+
+  // Whether all fused values are those that the rule gives.
+  [[nodiscard]] bool follows(const LevelBirths& level, const LiftingRule& rule) const {
+    for (std::uint32_t b = level.first; b < level.end; ++b) {
+      const Birth& birth = order_.points.births()[b];
+      const LiftedRecord record(birth, order_.points.slopesAt(birth));
+      for (std::uint32_t c = 0; c < field_.components; ++c) {
+        std::array<std::int64_t, LiftedRecord::kMaxPrey> prey{};
+        for (std::size_t i = 0; i < birth.k; ++i) prey[i] = field_.of(order_.prey[b][i])[c];
+        const auto at = [&](VertexId v) -> std::int64_t { return value(v, c); };
+        if (record.follows(rule, prey, at) != value(birth.slot, c)) return false;
+      }
+    }
+    return true;
+  }
+  [[nodiscard]] std::int32_t value(VertexId v, std::uint32_t c) const {
+    return now_[std::size_t{v} * field_.components + c];
+  }
+  [[nodiscard]] int curveOf(const LevelBirths& level) {
+    pairs_.clear();
+    double sum = 0;
+    for (std::uint32_t b = level.first; b < level.end; ++b) addRecord(b);
+    for (const Pair& pair : pairs_) sum += std::fabs(pair.off);
+    const double usual = sum / static_cast<double>(std::max<std::size_t>(pairs_.size(), 1)) + 0.1;
+    double up = 0, down = 1e-9;
+    for (const Pair& pair : pairs_) {
+      const double weight = 1 / (usual + std::fabs(pair.off));
+      up += weight * pair.off * pair.bent;
+      down += weight * pair.bent * pair.bent;
+    }
+    return static_cast<int>(
+        std::fmin(std::fmax(std::floor(256 * up / down + 0.5), 0), LiftingRule::kMaxCurve));
+  }
+
+  void addRecord(std::uint32_t b) {
+    const Birth& birth = order_.points.births()[b];
+    if (birth.k != 2) return;
+    const LiftedRecord record(birth, order_.points.slopesAt(birth));
+    const double share = 4.0 * record.along() * (256 - record.along()) / 65536;
+    if (share == 0 || record.curveWeight({0, LiftingRule::kMaxCurve}) == 0) return;
+    for (std::uint32_t c = 0; c < field_.components; ++c) {
+      const std::int32_t fused = value(birth.slot, c);
+      const std::int32_t first = field_.of(order_.prey[b][0])[c];
+      const std::int32_t second = field_.of(order_.prey[b][1])[c];
+      if (fused == kMissing || first == kMissing || second == kMissing) continue;
+      const auto at = [&](VertexId v) -> std::int64_t {
+        const std::int32_t x = value(v, c);
+        return x == kMissing ? fused : x;
+      };
+      const std::int64_t mean = first + record.mean({0, std::int64_t{second} - first});
+      pairs_.push_back(
+          {static_cast<double>(fused - mean), share * static_cast<double>(mean - record.link(at))});
+    }
+  }
+
+  const ValueOrder& order_;
+  const HistoryField<true>& field_;
+  const std::span<const std::int32_t> now_;
+  std::vector<Pair> pairs_;
+};
+
+/// Codes the records of a chunk's block.
+template <class Coder, class RuleOf, class TruthOf>
+void codeLifted(const ValueOrder& order, std::uint32_t chunk, LiftedBlock<Coder>& block,
+                const RuleOf& ruleOf, const TruthOf& truthOf) {
+  LiftingRule rule;
+  std::uint32_t levelEnd = 0;
+  for (std::uint32_t b = order.chunkBirths[chunk]; b < order.chunkBirths[chunk + 1]; ++b) {
+    if (b >= levelEnd) {
+      const LevelBirths level = levelFrom(order, b);
+      levelEnd = level.end;
+      rule = block.rule(ruleOf(level));
+    }
+    const Birth& birth = order.points.births()[b];
+    block.record(rule, birth, order.points.slopesAt(birth), truthOf(b));
+  }
+}
+
+class LiftedEncoder {
+ public:
+  LiftedEncoder(const ValueOrder& order, const HistoryField<true>& field)
+      : order_(order),
+        field_(field),
+        now_(order.vertices() * field.components),
+        sizes_(now_.size()),
+        fit_(order, field, now_) {}
+
+  Result<Bytes> block(std::uint32_t chunk) {
+    RangeEncoder encoder;
+    LiftedBlock<RangeEncoder> block(encoder, {now_, sizes_}, field_.components, field_.hasMissing);
+    if (chunk == 0)
+      for (VertexId v = 0; v < order_.baseBirths.size(); ++v) {
+        std::ranges::copy(field_.of(order_.baseVertices[v]),
+                          now_.begin() + static_cast<std::ptrdiff_t>(v) * field_.components);
+        block.base(v, order_.baseBirths[v]);
+      }
+    std::vector<std::int32_t> truth;
+    codeLifted(
+        order_, chunk, block,
+        [&](const LevelBirths& level) {
+          if (level.first != fitted_) {
+            fitted_ = level.first;
+            rule_ = fit_.ruleOf(level);
+          }
+          return rule_;
+        },
+        [&](std::uint32_t b) {
+          truth.clear();
+          for (std::size_t i = 0; i < order_.points.births()[b].k; ++i)
+            std::ranges::copy(field_.of(order_.prey[b][i]), std::back_inserter(truth));
+          return std::span<const std::int32_t>(truth);
+        });
+    if (block.bad())
+      return fail(ErrorCode::kLimitExceeded,
+                  "a difference of 2^31, which a value block cannot hold; use fewer bits");
+    const bool isEmpty = order_.chunkBirths[chunk] == order_.chunkBirths[chunk + 1] &&
+                         (chunk > 0 || order_.baseBirths.empty());
+    return isEmpty ? Bytes{} : encoder.finish();
+  }
+
+ private:
+  const ValueOrder& order_;
+  const HistoryField<true>& field_;
+  std::vector<std::int32_t> now_;
+  std::vector<std::uint8_t> sizes_;
+  CurveFit fit_;
+  LiftingRule rule_;
+  std::optional<std::uint32_t> fitted_;  // the first birth of the level that the rule is for
+};
+
+/// Decodes a block into `now`, and notes the fused vertices' values.
+Status decodeLifted(const ValueOrder& order, std::uint32_t chunk, ByteView bytes,
+                    const HistoryField<false>& field, const LiftedField& now) {
+  if (std::uint64_t{tuplesOf(order, chunk, Association::kPoint)} * field.components >
+      mostValuesIn(bytes))
+    return fail(
+        ErrorCode::kLimitExceeded,
+        "chunk " + std::to_string(chunk) + ": a value block promises more than its bytes can hold");
+  RangeDecoder decoder(bytes);
+  LiftedBlock<RangeDecoder> block(decoder, now, field.components, field.hasMissing);
+  if (chunk == 0)
+    for (VertexId v = 0; v < order.baseBirths.size(); ++v) block.base(v, order.baseBirths[v]);
+  codeLifted(
+      order, chunk, block, [](const LevelBirths&) { return LiftingRule{}; },
+      [&](std::uint32_t b) {
+        const std::size_t n = field.components;
+        std::copy_n(
+            now.values.begin() + static_cast<std::ptrdiff_t>(order.points.births()[b].slot * n), n,
+            field.values.begin() + static_cast<std::ptrdiff_t>(order.fused[b] * n));
+        return std::span<const std::int32_t>();
+      });
+  if (decoder.overrun())
+    return fail(ErrorCode::kTruncated,
+                "chunk " + std::to_string(chunk) + ": a value block ends before its values do");
+  if (block.bad() || !(bytes.empty() || decoder.atEnd())) return refuse(chunk, kBadValues);
+  return {};
+}
+
+Result<std::vector<std::int32_t>> decodeLiftedBlocks(const ValueOrder& order,
+                                                     const FieldShape& shape, std::size_t vertices,
+                                                     const BlockOf& blockOf) {
+  std::vector<std::int32_t> out(vertices * shape.components);
+  const HistoryField<false> field{shape.components, shape.hasMissing, out};
+  std::vector<std::int32_t> now(order.vertices() * shape.components);
+  std::vector<std::uint8_t> sizes(now.size());
+  for (std::uint32_t chunk = 0; chunk < order.chunks(); ++chunk) {
+    const Result<ByteView> bytes = blockOf(chunk);
+    if (!bytes) return std::unexpected(bytes.error());
+    if (Status s = decodeLifted(order, chunk, *bytes, field, {now, sizes}); !s)
+      return std::unexpected(s.error());
+  }
+  std::ranges::copy(now, out.begin());  // the last level's vertices come first
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<Bytes>> encodeFieldBlocks(const ValueOrder& order, const FieldInfo& field,
+                                             std::span<const std::int32_t> values, CodecId codec) {
+  std::vector<Bytes> out;
+  const HistoryField<true> truth{field.components, field.hasMissing, values};
+  const CodecId own =
+      blockCodec(codec, isCellField(field) ? Association::kCell : Association::kPoint);
+  if (own == CodecId::kLifted) {
+    LiftedEncoder encoder(order, truth);
+    for (std::uint32_t chunk = 0; chunk < order.chunks(); ++chunk) {
+      Result<Bytes> block = encoder.block(chunk);
+      if (!block) return std::unexpected(block.error());
+      out.push_back(std::move(*block));
+    }
+    return out;
+  }
+  std::vector<std::int32_t> now(isCellField(field) ? 0 : order.vertices() * field.components);
+  for (std::uint32_t chunk = 0; chunk < order.chunks(); ++chunk) {
+    Values coded;
+    if (isCellField(field))
+      codeCells(order, chunk, truth, coded);
+    else
+      codePoints(order, chunk, truth, now, coded);
+    Result<Bytes> block = encodeValueBlock(coded.written(), field.components, own);
+    if (!block) return std::unexpected(block.error());
+    out.push_back(std::move(*block));
+  }
+  return out;
+}
+
+Result<std::vector<std::int32_t>> decodeFieldBlocks(const ValueOrder& order,
+                                                    const FieldShape& shape, std::size_t vertices,
+                                                    CodecId codec, const BlockOf& blockOf) {
+  const CodecId own = blockCodec(codec, shape.association);
+  if (own == CodecId::kLifted) return decodeLiftedBlocks(order, shape, vertices, blockOf);
+  const bool ofCells = shape.association == Association::kCell;
+  std::vector<std::int32_t> out((ofCells ? order.tetrahedra.size() : vertices) * shape.components);
+  const HistoryField<false> field{shape.components, shape.hasMissing, out};
+  std::vector<std::int32_t> now(ofCells ? 0 : order.vertices() * shape.components);
+  for (std::uint32_t chunk = 0; chunk < order.chunks(); ++chunk) {
+    const Result<ByteView> bytes = blockOf(chunk);
+    if (!bytes) return std::unexpected(bytes.error());
+    const auto block =
+        decodeValueBlock(*bytes, shape.components, tuplesOf(order, chunk, shape.association), own);
+    if (!block) return std::unexpected(block.error());
+    Values in(*block);
+    if (ofCells)
+      codeCells(order, chunk, field, in);
+    else
+      codePoints(order, chunk, field, now, in);
+    if (in.bad() || !in.atEnd()) return refuse(chunk, kBadValues);
+  }
+  std::ranges::copy(now, out.begin());  // the last level's vertices come first
+  return out;
+}
+
+}  // namespace qtet
