@@ -81,6 +81,11 @@ std::uint32_t tuplesOf(const ValueOrder& order, std::uint32_t chunk, Association
   return tuples;
 }
 
+/// Whether a chunk has values of point fields: a block of none has no bytes.
+bool hasPointValues(const ValueOrder& order, std::uint32_t chunk) {
+  return tuplesOf(order, chunk, Association::kPoint) > 0;
+}
+
 /// A level's records.
 struct LevelBirths {
   std::uint32_t first, end;
@@ -198,6 +203,7 @@ class LiftedEncoder {
         fit_(order, field, now_) {}
 
   Result<Bytes> block(std::uint32_t chunk) {
+    if (!hasPointValues(order_, chunk)) return Bytes{};
     RangeEncoder encoder;
     LiftedBlock<RangeEncoder> block(encoder, {now_, sizes_}, field_.components, field_.hasMissing);
     if (chunk == 0)
@@ -225,9 +231,7 @@ class LiftedEncoder {
     if (block.bad())
       return fail(ErrorCode::kLimitExceeded,
                   "a difference of 2^31, which a value block cannot hold; use fewer bits");
-    const bool isEmpty = order_.chunkBirths[chunk] == order_.chunkBirths[chunk + 1] &&
-                         (chunk > 0 || order_.baseBirths.empty());
-    return isEmpty ? Bytes{} : encoder.finish();
+    return encoder.finish();
   }
 
  private:
@@ -243,6 +247,8 @@ class LiftedEncoder {
 /// Decodes a block into `now`, and notes the fused vertices' values.
 Status decodeLifted(const ValueOrder& order, std::uint32_t chunk, ByteView bytes,
                     const HistoryField<false>& field, const LiftedField& now) {
+  if (!hasPointValues(order, chunk))
+    return bytes.empty() ? Status{} : refuse(chunk, "a value block of no values has bytes");
   if (std::uint64_t{tuplesOf(order, chunk, Association::kPoint)} * field.components >
       mostValuesIn(bytes))
     return fail(
@@ -264,7 +270,7 @@ Status decodeLifted(const ValueOrder& order, std::uint32_t chunk, ByteView bytes
   if (decoder.overrun())
     return fail(ErrorCode::kTruncated,
                 "chunk " + std::to_string(chunk) + ": a value block ends before its values do");
-  if (block.bad() || !(bytes.empty() || decoder.atEnd())) return refuse(chunk, kBadValues);
+  if (block.bad() || !decoder.atEnd()) return refuse(chunk, kBadValues);
   return {};
 }
 

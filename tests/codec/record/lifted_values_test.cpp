@@ -81,6 +81,21 @@ struct Scene {
 constexpr std::array kPlacements{Placement::kAtPrey, Placement::kMiddle, Placement::kQuarter,
                                  Placement::kFree};
 
+/// Codes the scene's record, and decodes it again.
+void expectBack(Scene& scene, const LiftingRule& rule, bool hasMissing) {
+  Scene again = scene;
+  std::ranges::fill(again.prey, 0);
+  RangeEncoder encoder;
+  ASSERT_TRUE(scene.code(encoder, rule, hasMissing));
+  ASSERT_EQ(scene.preyNow(), scene.prey);
+  const Bytes bytes = encoder.finish();
+  RangeDecoder decoder(bytes);
+  ASSERT_TRUE(again.code(decoder, {}, hasMissing));
+  ASSERT_TRUE(decoder.atEnd());
+  ASSERT_EQ(again.values, scene.values);
+  ASSERT_EQ(again.sizes, scene.sizes);
+}
+
 TEST(LiftedValues, comeBackByAnyRule) {
   std::mt19937 random(7);
   for (int round = 0; round < 120; ++round) {
@@ -88,18 +103,7 @@ TEST(LiftedValues, comeBackByAnyRule) {
                 kPlacements[random() % 4], round % 3 == 0 ? 1 << kMaxFieldBits : 4096);
     const LiftingRule rule{static_cast<int>(random() % 8) - 1, static_cast<int>(random() % 128)};
     scene.fit(rule);
-    const Scene before = scene;
-    RangeEncoder encoder;
-    ASSERT_TRUE(scene.code(encoder, rule, false)) << round;
-    ASSERT_EQ(scene.preyNow(), scene.prey) << round;
-    const Bytes bytes = encoder.finish();
-    Scene again = before;
-    std::ranges::fill(again.prey, 0);
-    RangeDecoder decoder(bytes);
-    ASSERT_TRUE(again.code(decoder, {}, false)) << round;
-    ASSERT_TRUE(decoder.atEnd());
-    ASSERT_EQ(again.values, scene.values) << round;
-    ASSERT_EQ(again.sizes, scene.sizes) << round;
+    ASSERT_NO_FATAL_FAILURE(expectBack(scene, rule, false)) << round;
   }
 }
 
@@ -119,15 +123,7 @@ TEST(LiftedValues, comeBackBesideMissingOnes) {
       rims += missing > 0 && missing < scene.birth().k;
     }
     const LiftingRule rule{0, static_cast<int>(random() % 128)};
-    const Scene before = scene;
-    RangeEncoder encoder;
-    ASSERT_TRUE(scene.code(encoder, rule, true)) << round;
-    ASSERT_EQ(scene.preyNow(), scene.prey) << round;
-    const Bytes bytes = encoder.finish();
-    Scene again = before;
-    RangeDecoder decoder(bytes);
-    ASSERT_TRUE(again.code(decoder, {}, true)) << round;
-    ASSERT_EQ(again.values, scene.values) << round;
+    ASSERT_NO_FATAL_FAILURE(expectBack(scene, rule, true)) << round;
   }
   EXPECT_GT(rims, 20);
 }

@@ -102,6 +102,22 @@ TEST(LogHistory, holdsEveryLevelOfTheLog) {
   }
 }
 
+TEST(LogHistory, hasTheValuesOfALogWhoseLastChunkBringsNone) {
+  LatticeMesh mesh = testing::gridMesh(3, 1);
+  mesh.fields.pop_back(), mesh.values.pop_back();
+  testing::addCellFields(mesh);
+  LogWriterOptions options;
+  options.chunkBytes = 40;
+  const FusionHistory made = simplify(mesh, {}).value();
+  const LogFile file = LogFile::fromBytes(encodeLog(made, options).value().bytes).value();
+  ASSERT_EQ(file.chunks().back().records, 0u);
+  const LogHistory history = historyOf(file).value();
+  const auto values = historyValues(file, history, 0);
+  ASSERT_TRUE(values) << values.error().text();
+  const LatticeMesh last = meshAtLevel(file, made.levels).value();
+  EXPECT_TRUE(std::equal(last.values[0].begin(), last.values[0].end(), values->begin()));
+}
+
 TEST(LogHistory, isWrittenAsALogOfTheSameLevelsAgain) {
   const Sample sample(2, 0);
   const LogFile log = sample.log();
