@@ -1,9 +1,7 @@
 #include "codec/log/field_blocks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -86,107 +84,17 @@ bool hasPointValues(const ValueOrder& order, std::uint32_t chunk) {
   return tuplesOf(order, chunk, Association::kPoint) > 0;
 }
 
-/// A level's records.
-struct LevelBirths {
-  std::uint32_t first, end;
-};
-LevelBirths levelFrom(const ValueOrder& order, std::uint32_t birth) {
-  const std::span<const std::uint32_t> starts = order.points.levelStarts();
-  const auto next = std::ranges::upper_bound(starts, birth);
-  return {*std::prev(next),
-          next == starts.end() ? static_cast<std::uint32_t>(order.points.births().size()) : *next};
-}
-
-/// Finds how much the curvature counts in a level. It fits the fused values' distances to their
-/// prey's means by those of the means to the links. Large distances count less.
-class CurveFit {
- public:
-  CurveFit(const ValueOrder& order, const HistoryField<true>& field,
-           std::span<const std::int32_t> now)
-      : order_(order), field_(field), now_(now) {}
-
-  [[nodiscard]] LiftingRule ruleOf(const LevelBirths& level) {
-    constexpr LiftingRule kUsual{LiftingRule::kNoCorrection, LiftingRule::kUsualCurve};
-    if (!field_.hasMissing && follows(level, kUsual)) return kUsual;
-    return {0, curveOf(level)};
-  }
-
- private:
-  struct Pair {
-    double off, bent;
-  };
-
-  // Whether all fused values are those that the rule gives.
-  [[nodiscard]] bool follows(const LevelBirths& level, const LiftingRule& rule) const {
-    for (std::uint32_t b = level.first; b < level.end; ++b) {
-      const Birth& birth = order_.points.births()[b];
-      const LiftedRecord record(birth, order_.points.slopesAt(birth));
-      for (std::uint32_t c = 0; c < field_.components; ++c) {
-        std::array<std::int64_t, LiftedRecord::kMaxPrey> prey{};
-        for (std::size_t i = 0; i < birth.k; ++i) prey[i] = field_.of(order_.prey[b][i])[c];
-        const auto at = [&](VertexId v) -> std::int64_t { return value(v, c); };
-        if (record.follows(rule, prey, at) != value(birth.slot, c)) return false;
-      }
-    }
-    return true;
-  }
-  [[nodiscard]] std::int32_t value(VertexId v, std::uint32_t c) const {
-    return now_[std::size_t{v} * field_.components + c];
-  }
-  [[nodiscard]] int curveOf(const LevelBirths& level) {
-    pairs_.clear();
-    double sum = 0;
-    for (std::uint32_t b = level.first; b < level.end; ++b) addRecord(b);
-    for (const Pair& pair : pairs_) sum += std::fabs(pair.off);
-    const double usual = sum / static_cast<double>(std::max<std::size_t>(pairs_.size(), 1)) + 0.1;
-    double up = 0, down = 1e-9;
-    for (const Pair& pair : pairs_) {
-      const double weight = 1 / (usual + std::fabs(pair.off));
-      up += weight * pair.off * pair.bent;
-      down += weight * pair.bent * pair.bent;
-    }
-    return static_cast<int>(
-        std::fmin(std::fmax(std::floor(256 * up / down + 0.5), 0), LiftingRule::kMaxCurve));
-  }
-
-  void addRecord(std::uint32_t b) {
-    const Birth& birth = order_.points.births()[b];
-    if (birth.k != 2) return;
-    const LiftedRecord record(birth, order_.points.slopesAt(birth));
-    const double share = 4.0 * record.along() * (256 - record.along()) / 65536;
-    if (share == 0 || record.curveWeight({0, LiftingRule::kMaxCurve}) == 0) return;
-    for (std::uint32_t c = 0; c < field_.components; ++c) {
-      const std::int32_t fused = value(birth.slot, c);
-      const std::int32_t first = field_.of(order_.prey[b][0])[c];
-      const std::int32_t second = field_.of(order_.prey[b][1])[c];
-      if (fused == kMissing || first == kMissing || second == kMissing) continue;
-      const auto at = [&](VertexId v) -> std::int64_t {
-        const std::int32_t x = value(v, c);
-        return x == kMissing ? fused : x;
-      };
-      const std::int64_t mean = first + record.mean({0, std::int64_t{second} - first});
-      pairs_.push_back(
-          {static_cast<double>(fused - mean), share * static_cast<double>(mean - record.link(at))});
-    }
-  }
-
-  const ValueOrder& order_;
-  const HistoryField<true>& field_;
-  const std::span<const std::int32_t> now_;
-  std::vector<Pair> pairs_;
-};
-
 /// Codes the records of a chunk's block.
 template <class Coder, class RuleOf, class TruthOf>
 void codeLifted(const ValueOrder& order, std::uint32_t chunk, LiftedBlock<Coder>& block,
                 const RuleOf& ruleOf, const TruthOf& truthOf) {
+  const std::span<const std::uint32_t> starts = order.points.levelStarts();
+  auto next = std::ranges::upper_bound(starts, order.chunkBirths[chunk]);
   LiftingRule rule;
-  std::uint32_t levelEnd = 0;
   for (std::uint32_t b = order.chunkBirths[chunk]; b < order.chunkBirths[chunk + 1]; ++b) {
-    if (b >= levelEnd) {
-      const LevelBirths level = levelFrom(order, b);
-      levelEnd = level.end;
-      rule = block.rule(ruleOf(level));
+    if (b == order.chunkBirths[chunk] || (next != starts.end() && b == *next)) {
+      if (next != starts.end() && b == *next) ++next;
+      rule = block.rule(ruleOf(static_cast<std::size_t>(next - starts.begin()) - 1));
     }
     const Birth& birth = order.points.births()[b];
     block.record(rule, birth, order.points.slopesAt(birth), truthOf(b));
@@ -195,12 +103,12 @@ void codeLifted(const ValueOrder& order, std::uint32_t chunk, LiftedBlock<Coder>
 
 class LiftedEncoder {
  public:
-  LiftedEncoder(const ValueOrder& order, const HistoryField<true>& field)
+  LiftedEncoder(const ValueOrder& order, const HistoryField<true>& field, LiftingRules rules)
       : order_(order),
         field_(field),
         now_(order.vertices() * field.components),
         sizes_(now_.size()),
-        fit_(order, field, now_) {}
+        rules_(std::move(rules)) {}
 
   Result<Bytes> block(std::uint32_t chunk) {
     if (!hasPointValues(order_, chunk)) return Bytes{};
@@ -214,14 +122,7 @@ class LiftedEncoder {
       }
     std::vector<std::int32_t> truth;
     codeLifted(
-        order_, chunk, block,
-        [&](const LevelBirths& level) {
-          if (level.first != fitted_) {
-            fitted_ = level.first;
-            rule_ = fit_.ruleOf(level);
-          }
-          return rule_;
-        },
+        order_, chunk, block, [&](std::size_t level) { return rules_[level]; },
         [&](std::uint32_t b) {
           truth.clear();
           for (std::size_t i = 0; i < order_.points.births()[b].k; ++i)
@@ -239,9 +140,7 @@ class LiftedEncoder {
   const HistoryField<true>& field_;
   std::vector<std::int32_t> now_;
   std::vector<std::uint8_t> sizes_;
-  CurveFit fit_;
-  LiftingRule rule_;
-  std::optional<std::uint32_t> fitted_;  // the first birth of the level that the rule is for
+  LiftingRules rules_;
 };
 
 /// Decodes a block into `now`, and notes the fused vertices' values.
@@ -259,7 +158,7 @@ Status decodeLifted(const ValueOrder& order, std::uint32_t chunk, ByteView bytes
   if (chunk == 0)
     for (VertexId v = 0; v < order.baseBirths.size(); ++v) block.base(v, order.baseBirths[v]);
   codeLifted(
-      order, chunk, block, [](const LevelBirths&) { return LiftingRule{}; },
+      order, chunk, block, [](std::size_t) { return LiftingRule{}; },
       [&](std::uint32_t b) {
         const std::size_t n = field.components;
         std::copy_n(
@@ -294,13 +193,15 @@ Result<std::vector<std::int32_t>> decodeLiftedBlocks(const ValueOrder& order,
 }  // namespace
 
 Result<std::vector<Bytes>> encodeFieldBlocks(const ValueOrder& order, const FieldInfo& field,
-                                             std::span<const std::int32_t> values, CodecId codec) {
+                                             std::span<const std::int32_t> values, CodecId codec,
+                                             LiftingRules rules) {
   std::vector<Bytes> out;
   const HistoryField<true> truth{field.components, field.hasMissing, values};
   const CodecId own =
       blockCodec(codec, isCellField(field) ? Association::kCell : Association::kPoint);
   if (own == CodecId::kLifted) {
-    LiftedEncoder encoder(order, truth);
+    if (rules.empty()) rules = exactRules(order, field, values);
+    LiftedEncoder encoder(order, truth, std::move(rules));
     for (std::uint32_t chunk = 0; chunk < order.chunks(); ++chunk) {
       Result<Bytes> block = encoder.block(chunk);
       if (!block) return std::unexpected(block.error());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codec/log/codec_id.h"
+#include "codec/log/field_lifting.h"
 #include "codec/log/field_shape.h"
 #include "codec/mesh/mesh.h"
 #include "codec/record/value_order.h"
@@ -16,11 +17,12 @@
 namespace qtet {
 
 /// One field's block of every chunk. `values` holds components integers for each of the history's
-/// vertices or, of a cell field, tetrahedra. Errors: limit-exceeded, bad-codec.
+/// vertices or, of a cell field, tetrahedra. `rules`: those of a lifted field's levels; exactRules
+/// if none. Errors: limit-exceeded, bad-codec.
 [[nodiscard]] Result<std::vector<Bytes>> encodeFieldBlocks(const ValueOrder& order,
                                                            const FieldInfo& field,
                                                            std::span<const std::int32_t> values,
-                                                           CodecId codec);
+                                                           CodecId codec, LiftingRules rules = {});
 
 /// The block of a chunk.
 using BlockOf = std::function<Result<ByteView>(std::uint32_t chunk)>;

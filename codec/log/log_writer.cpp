@@ -17,13 +17,15 @@
 namespace qtet {
 namespace {
 
-Status checkLimits(const FusionHistory& history, const LogWriterOptions& options) {
+Status checkErrors(const FusionHistory& history, const LevelErrors& errors) {
+  if (errors.empty() || errors.size() == history.levels + 1u) return {};
+  return fail(ErrorCode::kBadValue, "there are known errors of " + std::to_string(errors.size()) +
+                                        " levels, but " + std::to_string(history.levels + 1u) +
+                                        " levels; measure the history that is encoded");
+}
+
+Status checkLimits(const FusionHistory& history) {
   if (history.levels > kMaxLevels) return fail(ErrorCode::kLimitExceeded, "more than 4,096 levels");
-  if (!options.errors.empty() && options.errors.size() != history.levels + 1u)
-    return fail(ErrorCode::kBadValue, "there are known errors of " +
-                                          std::to_string(options.errors.size()) + " levels, but " +
-                                          std::to_string(history.levels + 1u) +
-                                          " levels; measure the history that is encoded");
   if (history.fields.size() > kMaxFields)
     return fail(ErrorCode::kLimitExceeded, "more than 8,192 fields; choose some with `fields`");
   if (history.points.size() > kMaxElements || history.cells.size() > kMaxElements)
@@ -59,7 +61,8 @@ Status writeChunks(RecordWriter& writer, const FusionHistory& history,
   for (std::size_t f = 0; f < history.fields.size(); ++f) {
     if (options.stop.stop_requested()) return cancelled();
     Result<std::vector<Bytes>> blocks =
-        encodeFieldBlocks(order, history.fields[f], history.values[f], options.valueCodec);
+        encodeFieldBlocks(order, history.fields[f], history.values[f], options.valueCodec,
+                          options.rules.empty() ? LiftingRules{} : options.rules[f]);
     if (!blocks) return std::unexpected(blocks.error());
     fields.push_back(std::move(*blocks));
   }
@@ -176,29 +179,36 @@ LogStatistics statisticsOf(const LogIndex& index, std::uint64_t laterBytes,
 
 }  // namespace
 
-Result<EncodedHead> encodeLog(const FusionHistory& history, const LogWriterOptions& options,
-                              const ByteSink& body) {
-  if (Status s = checkLimits(history, options); !s) return std::unexpected(s.error());
-  if (Status s = checkCellFields(history); !s) return std::unexpected(s.error());
+LogEncoder::LogEncoder(const FusionHistory& history, LogWriterOptions options)
+    : history_(history), options_(std::move(options)) {}
+LogEncoder::~LogEncoder() = default;
 
-  RecordWriter writer(history, options.valueCodec, options.stop);
-  if (Status s = writer.base(); !s) return std::unexpected(s.error());
-  if (Status s = writeStream(writer, history, options); !s) return std::unexpected(s.error());
-  if (Status s = checkRecords(history, writer.chunks().rows()); !s)
+const ValueOrder& LogEncoder::order() { return writer_->order(); }
+
+Status LogEncoder::writeGeometry() {
+  if (Status s = checkLimits(history_); !s) return s;
+  if (Status s = checkCellFields(history_); !s) return s;
+  writer_ = std::make_unique<RecordWriter>(history_, options_.valueCodec, options_.stop);
+  if (Status s = writer_->base(); !s) return s;
+  if (Status s = writeStream(*writer_, history_, options_); !s) return s;
+  return checkRecords(history_, writer_->chunks().rows());
+}
+
+Result<EncodedHead> LogEncoder::finish(const ByteSink& body) {
+  if (Status s = checkErrors(history_, options_.errors); !s) return std::unexpected(s.error());
+  if (Status s = writeChunks(*writer_, history_, options_, body); !s)
     return std::unexpected(s.error());
-  if (Status s = writeChunks(writer, history, options, body); !s) return std::unexpected(s.error());
-
-  Result<LogIndex> index = indexOf(history, options, writer);
+  Result<LogIndex> index = indexOf(history_, options_, *writer_);
   if (!index) return std::unexpected(index.error());
-  Result<std::vector<ClosingBlock>> closing = writeClosing(writer, options, body);
+  Result<std::vector<ClosingBlock>> closing = writeClosing(*writer_, options_, body);
   if (!closing) return std::unexpected(closing.error());
   index->closing = std::move(*closing);
   Result<Bytes> later = laterPart(*index);
   if (!later) return std::unexpected(later.error());
   EncodedHead log;
   log.later = std::move(*later);
-  log.statistics = statisticsOf(*index, log.later.size(), history, writer.positionCost());
-  log.statistics.steps = writer.meter().steps();
+  log.statistics = statisticsOf(*index, log.later.size(), history_, writer_->positionCost());
+  log.statistics.steps = writer_->meter().steps();
   index->fileBytes = log.statistics.fileBytes;
   log.head = index->encode();
   return log;
@@ -206,7 +216,9 @@ Result<EncodedHead> encodeLog(const FusionHistory& history, const LogWriterOptio
 
 Result<EncodedLog> encodeLog(const FusionHistory& history, const LogWriterOptions& options) {
   Bytes body;
-  Result<EncodedHead> head = encodeLog(history, options, appendTo(body));
+  LogEncoder encoder(history, options);
+  if (Status s = encoder.writeGeometry(); !s) return std::unexpected(s.error());
+  Result<EncodedHead> head = encoder.finish(appendTo(body));
   if (!head) return std::unexpected(head.error());
   EncodedLog log{std::move(head->head), std::move(head->statistics)};
   log.bytes.insert(log.bytes.end(), body.begin(), body.end());

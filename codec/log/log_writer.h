@@ -4,14 +4,17 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codec/log/closing_block.h"
 #include "codec/log/codec_id.h"
+#include "codec/log/field_lifting.h"
 #include "codec/record/fusion_history.h"
 #include "proto/byte_sink.h"
 #include "proto/error.h"
@@ -37,6 +40,8 @@ struct LogWriterOptions {
   /// A chunk ends at the record that takes it beyond; the first ones are smaller, from 4 KB on.
   std::uint32_t chunkBytes = 64 << 10;
   CodecId valueCodec = CodecId::kLifted;  ///< kLifted, kDraco or kAdaptive
+  /// Of each field, for kLifted; exactRules without. A cell field has none.
+  std::vector<LiftingRules> rules{};
   /// For the manifest: none, or one a level, coarse-first, the input's mesh included.
   LevelErrors errors;
   std::optional<Focus> focus = std::nullopt;      ///< for the manifest
@@ -69,19 +74,40 @@ struct EncodedHead {
   LogStatistics statistics;
 };
 
-/// Writes the history backwards, coarse-first. `body` takes the blocks in file order, once all are
-/// coded: the geometry first, then field after field. Errors: bad-value (the history contradicts
-/// itself or holds a fusion that no label coding describes), limit-exceeded, bad-codec, cancelled,
-/// the sink's.
-[[nodiscard]] Result<EncodedHead> encodeLog(const FusionHistory& history,
-                                            const LogWriterOptions& options, const ByteSink& body);
+class RecordWriter;
+
+/// Writes the history backwards, coarse-first: the geometry, then field after field.
+class LogEncoder {
+ public:
+  /// `history` must outlive it. Its values may change until finish().
+  LogEncoder(const FusionHistory& history, LogWriterOptions options);
+  ~LogEncoder();
+  LogEncoder(const LogEncoder&) = delete;
+  LogEncoder& operator=(const LogEncoder&) = delete;
+
+  /// Errors: bad-value (the history contradicts itself or holds a fusion that no label coding
+  /// describes), limit-exceeded, cancelled. REQUIRES: called once and first.
+  Status writeGeometry();
+  /// The order in which fields are coded.
+  [[nodiscard]] const ValueOrder& order();
+  /// Those that finish() reads: all that tell of fields, and of the manifest.
+  [[nodiscard]] LogWriterOptions& options() { return options_; }
+  /// `body` takes the blocks in file order, once all are coded. Errors: bad-value, limit-exceeded,
+  /// bad-codec, cancelled, the sink's. REQUIRES: called once and last.
+  [[nodiscard]] Result<EncodedHead> finish(const ByteSink& body);
+
+ private:
+  const FusionHistory& history_;
+  LogWriterOptions options_;
+  std::unique_ptr<RecordWriter> writer_;
+};
 
 struct EncodedLog {
   Bytes bytes;
   LogStatistics statistics;
 };
 
-/// The same in memory.
+/// All of it in memory. Errors: LogEncoder's.
 [[nodiscard]] Result<EncodedLog> encodeLog(const FusionHistory& history,
                                            const LogWriterOptions& options);
 

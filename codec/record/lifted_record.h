@@ -156,7 +156,16 @@ class LiftedRecord {
     for (std::size_t i = 1; i < birth_.k; ++i) sum += difference[i];
     return (birth_.k == 3 ? 85 : 64) * sum >> 8;
   }
-  /// The weight of the curvature.
+  /// Whether all corners of its slopes have a value.
+  template <class Has>
+  [[nodiscard]] bool isWhole(const Has& has) const {
+    return std::ranges::all_of(slopes_, [&](const Slope& slope) {
+      for (std::size_t i = 0; i < slope.vertex.size(); ++i)
+        if (slope.weight[i] != 0 && !has(slope.vertex[i])) return false;
+      return true;
+    });
+  }
+  /// The weight of the curvature, which counts where the record is whole.
   [[nodiscard]] std::int64_t curveWeight(const LiftingRule& rule) const {
     if (birth_.k != 2 || !sides_[0].showsCurve()) return 0;
     return std::int64_t{rule.curve} * 4 * along_ * (256 - along_) >> 16;
@@ -174,14 +183,14 @@ class LiftedRecord {
                             lifting::kChangeBits);
   }
   [[nodiscard]] int along() const { return along_; }
-  /// The fused value that follows from the prey's.
+  /// The fused value that follows from the prey's; the curvature counts where the record is whole.
   template <class At>
   [[nodiscard]] std::int64_t follows(const LiftingRule& rule,
-                                     const std::array<std::int64_t, kMaxPrey>& prey,
-                                     const At& at) const {
+                                     const std::array<std::int64_t, kMaxPrey>& prey, const At& at,
+                                     bool isWhole) const {
     std::array<std::int64_t, kMaxPrey> difference{};
     for (std::size_t i = 1; i < birth_.k; ++i) difference[i] = prey[i] - prey[0];
-    const std::int64_t weight = curveWeight(rule);
+    const std::int64_t weight = isWhole ? curveWeight(rule) : 0;
     return lifting::lifted(prey[0] + mean(difference), weight == 0 ? 0 : link(at), weight);
   }
 

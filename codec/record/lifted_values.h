@@ -314,7 +314,9 @@ void LiftedBlock<Coder>::component(const LiftingRule& rule, const LiftedRecord& 
   }
 
   const std::int64_t mean = record.mean(difference);
-  const std::int64_t weight = record.curveWeight(rule);
+  const bool isWhole =
+      !hasMissing_ || record.isWhole([&](VertexId v) { return at(v, c) != kMissing; });
+  const std::int64_t weight = isWhole ? record.curveWeight(rule) : 0;
   const std::int64_t link = weight == 0 ? 0 : record.link(value);
   std::int64_t base = fused;
   if (rule.isCorrected()) {

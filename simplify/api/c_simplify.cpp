@@ -76,7 +76,7 @@ Status checkChoices(const qtet_simplify_options& options) {
                                {options.lossless, 1, "lossless"},
                                {options.originalIds, 1, "originalIds"},
                                {options.timeStatistics, 1, "timeStatistics"},
-                               {options.reserved, 0, "reserved"}})
+                               {options.exactCoarse, 1, "exactCoarse"}})
     if (choice.number > choice.last)
       return fail(ErrorCode::kBadValue, std::string(choice.member) + " is " +
                                             std::to_string(choice.number) + "; the last is " +
@@ -164,6 +164,7 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
                                                          : qtet::CodecId::kAdaptive;
   out.keep = {from.keepOrder != 0, from.lossless != 0, from.originalIds != 0};
   out.timeStatistics = from.timeStatistics != 0;
+  out.exactCoarse = from.exactCoarse != 0;
   return out;
 }
 

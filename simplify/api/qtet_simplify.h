@@ -107,7 +107,7 @@ typedef struct {
   uint32_t valueCodec;      /* QTET_CODEC_LIFTED */
   uint32_t keepOrder;       /* 1: the log keeps the input's numbering; 0 */
   uint32_t lossless;        /* 1: it keeps the input's own numbers; 0 */
-  uint32_t reserved;        /* 0 */
+  uint32_t exactCoarse;     /* Since 0.4. 1: coarse levels keep the best values, for more bytes; 0 */
   uint32_t threads;         /* as many as there are processors at most; 1. The log is the same */
   double maxBoundaryError;  /* over the diagonal; NaN: no bound */
   const qtet_named_number* maxFieldErrors; /* rms over the field's range */

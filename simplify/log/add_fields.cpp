@@ -292,13 +292,14 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
   return out;
 }
 
-/// Gives each field its errors, where the log knows some of its levels. REQUIRES: the items' fields
-/// are the history's last ones.
-Status FieldAdder::measure(std::span<Item> items) {
+/// The errors of the items, where the log knows some of its levels. REQUIRES: the items' fields are
+/// the history's last ones.
+Result<LevelErrors> FieldAdder::measure(std::span<const Item> items, FieldReplay& replay) {
   MeasureOptions measure;
+  measure.replay = &replay;
   for (const ManifestLevel& level : manifest_.levels)
     measure.levels.push_back(level.error.has_value());
-  if (std::ranges::count(measure.levels, 1) == 0) return {};
+  if (std::ranges::count(measure.levels, 1) == 0) return LevelErrors{};
   measure.effort = options_.effort;
   measure.countsRounding = true;
   measure.threads = options_.threads;
@@ -313,15 +314,44 @@ Status FieldAdder::measure(std::span<Item> items) {
   std::move(h.values.begin(), h.values.begin() + others, std::back_inserter(values));
   h.fields.erase(h.fields.begin(), h.fields.begin() + others);
   h.values.erase(h.values.begin(), h.values.begin() + others);
-  const Result<LevelErrors> errors = measureLevels(h, measure);
-  if (!errors) return std::unexpected(errors.error());
+  Result<LevelErrors> errors = measureLevels(h, measure);
+  if (!errors) return errors;
   h.fields.insert(h.fields.begin(), fields.begin(), fields.end());
   h.values.insert(h.values.begin(), std::move_iterator(values.begin()),
                   std::move_iterator(values.end()));
+  return errors;
+}
+
+/// Measures the items and moves their fused values. The rules of all fields of the history, none of
+/// those that the log has. REQUIRES: as measure.
+Result<std::vector<LiftingRules>> FieldAdder::lift(std::span<Item> items) {
+  FusionHistory& h = history_->history;
+  FieldReplay replay;
+  Result<LevelErrors> errors = measure(items, replay);
+  if (!errors) return std::unexpected(errors.error());
+  Result<std::vector<LiftingRules>> rules = history_->valueCodec == CodecId::kLifted
+                                                ? liftMeasured(items, *errors, replay)
+                                                : std::vector<LiftingRules>(h.fields.size());
+  if (!rules) return rules;
   for (std::size_t f = 0; f < items.size(); ++f)
     for (const std::optional<LevelError>& level : *errors)
       items[f].errors.push_back(level ? level->fields[f] : FieldError());
-  return {};
+  return rules;
+}
+
+Result<std::vector<LiftingRules>> FieldAdder::liftMeasured(std::span<const Item> items,
+                                                           LevelErrors& errors,
+                                                           const FieldReplay& replay) {
+  FusionHistory& h = history_->history;
+  std::vector<std::vector<std::uint8_t>> missing;
+  for (const Item& item : items) missing.push_back(item.missing);
+  LiftOptions options;
+  options.firstField = h.fields.size() - items.size();
+  options.missing = missing;
+  options.unmeasuredShift = LiftingRule::kNoCorrection;
+  options.threads = options_.threads;
+  if (!errors.empty()) options.replay = &replay;
+  return liftFields(h, history_->order, errors, options);
 }
 
 /// The history gets the log's instants that the items may be predicted from. A long row of
@@ -464,7 +494,7 @@ AddedFields FieldAdder::take() {
 }
 
 /// The blocks of the history's fields that the log does not have.
-Status FieldAdder::encode(const Numbers& numbers) {
+Status FieldAdder::encode(const Numbers& numbers, std::span<const LiftingRules> rules) {
   const FusionHistory& h = history_->history;
   for (std::size_t i = numbers.rows.size(); i < numbers.all.size(); ++i) {
     TimePrediction prediction = h.fields[i].prediction;
@@ -474,8 +504,8 @@ Status FieldAdder::encode(const Numbers& numbers) {
     depths_.push_back(depthOf(prediction, depths_));
     NewField& field = added_.fields[numbers.all[i] - manifest_.fields.size()];
     field.prediction = prediction;
-    Result<std::vector<Bytes>> blocks =
-        encodeFieldBlocks(history_->order, h.fields[i], h.values[i], history_->valueCodec);
+    Result<std::vector<Bytes>> blocks = encodeFieldBlocks(history_->order, h.fields[i], h.values[i],
+                                                          history_->valueCodec, rules[i]);
     if (!blocks) return std::unexpected(blocks.error());
     field.blocks = std::move(*blocks);
   }
@@ -493,10 +523,11 @@ Status FieldAdder::code(std::vector<Item> items) {
     h.fields.push_back(item.info), h.values.push_back(std::move(item.values));
   const Result<std::size_t> predicted = predictInTime(h, {}, {}, numbers.rows);
   if (!predicted) return std::unexpected(predicted.error());
-  if (Status s = measure(ordered); !s) return s;
+  const Result<std::vector<LiftingRules>> rules = lift(ordered);
+  if (!rules) return std::unexpected(rules.error());
   complete(ordered, numbers);
   toTimeDifferences(h);
-  if (Status s = encode(numbers); !s) return s;
+  if (Status s = encode(numbers, *rules); !s) return s;
   h.fields.clear(), h.values.clear();
   return {};
 }

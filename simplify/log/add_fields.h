@@ -17,6 +17,7 @@
 #include "codec/refine/log_history.h"
 #include "simplify/clean/field_scales.h"
 #include "simplify/log/fused_values.h"
+#include "simplify/log/lift_fields.h"
 #include "simplify/log/match_mesh.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/mesh/tet_mesh.h"
@@ -110,9 +111,13 @@ class FieldAdder {
                              const std::vector<std::int32_t>& values) const;
   [[nodiscard]] Result<std::vector<Item>> itemsOf(const TetMesh& mesh);
   [[nodiscard]] Status addParents(const std::vector<Item>& items, Numbers& numbers);
-  [[nodiscard]] Status measure(std::span<Item> items);
+  [[nodiscard]] Result<LevelErrors> measure(std::span<const Item> items, FieldReplay& replay);
+  [[nodiscard]] Result<std::vector<LiftingRules>> lift(std::span<Item> items);
+  [[nodiscard]] Result<std::vector<LiftingRules>> liftMeasured(std::span<const Item> items,
+                                                               LevelErrors& errors,
+                                                               const FieldReplay& replay);
   void complete(std::vector<Item>& items, Numbers& numbers);
-  [[nodiscard]] Status encode(const Numbers& numbers);
+  [[nodiscard]] Status encode(const Numbers& numbers, std::span<const LiftingRules> rules);
   [[nodiscard]] Status code(std::vector<Item> items);
   [[nodiscard]] SeriesState* seriesOf(std::string_view association, std::string_view name);
   void keepScale(FieldInfo info, bool stays);

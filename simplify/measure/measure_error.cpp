@@ -88,10 +88,11 @@ class ErrorMeter {
     fields_.follow();
   }
 
-  [[nodiscard]] LevelError measure() {
+  [[nodiscard]] LevelError measure(FieldReplay* replay) {
     mesh_.fitTree();
     boundary_.search();
     fields_.measure();
+    if (replay != nullptr) fields_.keepIn(*replay);
     LevelError out{boundary_.toLevel(), boundary_.toOriginal(), 0, 0, fields_.errors()};
     findVolumes(out);
     if (countsRounding_) addRounding(out);
@@ -271,14 +272,14 @@ Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& optio
   LevelRow row(options, levels.finest());
   LevelErrors out(levels.finest() + std::size_t{1});
   std::uint32_t coarsest = levels.finest();
-  out[coarsest] = meter.measure();
+  out[coarsest] = meter.measure(options.replay);
   while (levels.level() > 0) {
     meter.coarsen();
     size.coarsenBy(history, levels.fusionsInto(levels.level()));
     if (options.progress)
       options.progress(1 - static_cast<double>(levels.level()) / levels.finest());
     if (!row.isNext(levels.level())) continue;
-    MeasuredLevel level{meter.measure(), labels.worst()};
+    MeasuredLevel level{meter.measure(options.replay), labels.worst()};
     if (!bounds.hold(level, base)) break;
     if (!bounds.hold(level, size, kNearTheEnd)) row.takeAllFromNowOn();
     out[levels.level()] = std::move(level.error);
@@ -298,6 +299,16 @@ std::size_t baseBytesOf(std::size_t vertices, std::size_t components) {
   return static_cast<std::size_t>(
       static_cast<double>(vertices) *
       (kBytesAVertex + kBytesAComponent * static_cast<double>(components)));
+}
+
+void setFieldErrors(const FieldReplay& replay, std::span<const FieldError> figures,
+                    std::size_t field, LevelErrors& errors) {
+  for (std::size_t level = 0; level < replay.levels.size(); ++level) {
+    const std::uint32_t coarser = replay.levels[level].coarser;
+    if (coarser >= errors.size()) break;  // the history has forgotten it
+    if (std::optional<LevelError>& error = errors[errors.size() - 1 - coarser])
+      error->fields[field] = {roundedUp(figures[level].rms), roundedUp(figures[level].max)};
+  }
 }
 
 Result<LevelErrors> measureLevels(FusionHistory& history, const MeasureOptions& options) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "codec/record/fusion_history.h"
 #include "proto/error.h"
 #include "proto/level_error.h"
+#include "simplify/measure/field_replay.h"
 
 namespace qtet {
 
@@ -71,7 +73,8 @@ struct MeasureOptions {
   /// Whether what the lattice and the fields' steps have moved counts too: the original is then the
   /// input, not the input on the lattice. A bound below what they may move is taken as that.
   bool countsRounding = false;
-  int threads = 1;  ///< the result does not depend on it
+  FieldReplay* replay = nullptr;  ///< takes where the places lay
+  int threads = 1;                ///< the result does not depend on it
   std::uint64_t seed = 1;
   std::function<void(double fraction)> progress;  ///< 0..1, called once a level
   std::stop_token stop{};                         ///< asked many times a second
@@ -87,5 +90,10 @@ struct MeasureOptions {
 /// level 0 before and after.
 [[nodiscard]] Result<LevelErrors> measureLevels(FusionHistory& history,
                                                 const MeasureOptions& options);
+
+/// Puts a field's errors by level, as FieldReplay::errors gives them, in place of the known ones,
+/// rounded as those are. `field`: its place in `errors`.
+void setFieldErrors(const FieldReplay& replay, std::span<const FieldError> figures,
+                    std::size_t field, LevelErrors& errors);
 
 }  // namespace qtet

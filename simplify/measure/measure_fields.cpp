@@ -112,12 +112,8 @@ double FieldMeter::valueAt(const Place& place, std::size_t field, std::size_t co
   const std::size_t components = history.fields[field].components;
   if (isCellField(history.fields[field]))
     return history.values[field][place.tetrahedron * components + component];
-  const auto& cell = history.cells[place.sample.cell];
-  const std::size_t corners = cell[3] == kGhost ? 3 : 4;
-  double value = 0;
-  for (std::size_t i = 0; i < corners; ++i)
-    value += place.sample.weights[i] * history.values[field][cell[i] * components + component];
-  return value;
+  return valueIn(history.cells[place.sample.cell], place.sample.weights, history.values[field],
+                 components, component);
 }
 
 void FieldMeter::follow() {
@@ -139,7 +135,7 @@ void FieldMeter::measure() {
 void FieldMeter::follow(Place& place) const {
   const Fusion* fusion = mesh_.fusionOf(place.sample.cell);
   if (fusion == nullptr) return;
-  place.isMeasured = false;
+  place.isMeasured = place.isKept = false;
   if (findIn(*fusion, place)) {
     place.tetrahedron = place.sample.cell;
   } else {
@@ -207,27 +203,37 @@ FieldMeter::Uncovered FieldMeter::uncovered() const {
   return {static_cast<std::size_t>(std::ranges::count_if(uniform, isUncovered)), uniform_};
 }
 
+void FieldMeter::keepIn(FieldReplay& replay) {
+  const FusionHistory& history = mesh_.history();
+  if (replay.levels.empty()) {
+    replay.uniform = uniform_;
+    replay.ranges = ranges_;
+    replay.roundings = roundings();
+  }
+  FieldReplay::Level& level = replay.levels.emplace_back();
+  level.coarser = history.levels - mesh_.level();
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (std::exchange(places_[i].isKept, true)) continue;
+    const ErrorSample& sample = places_[i].sample;
+    level.moved.push_back({static_cast<std::uint32_t>(i), mesh_.isOriginal(sample.cell),
+                           history.cells[sample.cell], sample.weights});
+  }
+}
+
 bool FieldMeter::isOriginal(const Place& place, std::size_t field) const {
   return isCellField(mesh_.history().fields[field])
              ? squaredErrors_[field][static_cast<std::size_t>(&place - places_.data())] == 0
              : mesh_.isOriginal(place.sample.cell);
 }
 
-// Where a level has other values than the original's, these do not know how those were rounded. The
-// difference that was measured then has the error of rounding in it.
 std::vector<FieldError> FieldMeter::errors() const {
   const std::vector<FieldError> rounding = roundings();
   std::vector<FieldError> out;
   for (std::size_t f = 0; f < squaredErrors_.size(); ++f) {
-    const std::vector<double>& squared = squaredErrors_[f];
-    const double added = rounding[f].rms * rounding[f].rms;
-    double sum = 0, worst = 0;
-    for (std::size_t i = 0; i < squared.size(); ++i) {
-      if (i < uniform_) sum += squared[i] + (isOriginal(places_[i], f) ? added : 0);
-      worst = std::max(worst, squared[i]);
-    }
-    const double mean = uniform_ == 0 ? 0 : sum / static_cast<double>(uniform_);
-    out.push_back({isLabel(f) ? mean : std::sqrt(mean), std::sqrt(worst) + rounding[f].max});
+    FieldError error = errorOf(squaredErrors_[f], uniform_, rounding[f],
+                               [&](std::size_t i) { return isOriginal(places_[i], f); });
+    if (isLabel(f)) error.rms *= error.rms;  // a share of places
+    out.push_back(error);
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proto/level_error.h"
+#include "simplify/measure/field_replay.h"
 #include "simplify/measure/measure_samples.h"
 #include "simplify/measure/measured_mesh.h"
 
@@ -42,6 +43,8 @@ class FieldMeter {
   void follow();
   /// After follow(), before the figures are asked for. REQUIRES: the mesh's tree fits.
   void measure();
+  /// Adds the level to `replay`. REQUIRES: it is measured.
+  void keepIn(FieldReplay& replay);
   /// One a field of the history, in its order.
   [[nodiscard]] std::vector<FieldError> errors() const;
   /// How many of the uniform places the level does not cover, and how many there are.
@@ -58,7 +61,7 @@ class FieldMeter {
     ErrorSample sample;
     NearestTriangle nearest;  // of a place that is not covered
     CellId tetrahedron = 0;   // the last that covered it
-    bool isMeasured = true;
+    bool isMeasured = true, isKept = false;
   };
 
   [[nodiscard]] bool isLabel(std::size_t field) const {

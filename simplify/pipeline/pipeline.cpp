@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "codec/log/log_manifest.h"
+#include "proto/field_key.h"
 #include "proto/version.h"
 #include "simplify/cost/cost_parts.h"
 #include "simplify/cost/label_fields.h"
+#include "simplify/log/lift_fields.h"
 #include "simplify/measure/focus.h"
 #include "simplify/measure/opening.h"
 #include "simplify/mesh/missing_values.h"
@@ -74,6 +76,7 @@ struct Run {
   double wallThickness = 0;          ///< of the mesh before the first fusion
   std::optional<Focus> focus{};      ///< the same
   std::optional<Opening> opening{};  ///< the same
+  FieldReplay replay{};              ///< where the levels were measured
   MovedFlips flips{};                ///< of the base mesh
   Units units{};
   Labels labels{};  ///< for the manifest
@@ -182,7 +185,6 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   }
   Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
   if (!history) return history;
-  // before measuring, since it moves values
   const Result<std::size_t> predicted =
       predictInTime(*history, run.options.stop, run.stages.progress(kFusingShare, 1));
   if (!predicted) return std::unexpected(predicted.error());
@@ -204,6 +206,7 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   if (Status s = run.stages.begin(Stage::kMeasure); !s) return std::unexpected(s.error());
   MeasureOptions options = *run.options.measure;
   options.countsRounding = true;
+  options.replay = &run.replay;
   options.labels = run.labelFields;
   options.base = baseRuleOf(run.options);
   options.threads = run.options.fusion.threads;
@@ -212,7 +215,40 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   return measureLevels(history, options);
 }
 
-Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& run) {
+/// Says whether cells of the base mesh are inside out at some instant.
+void lookForFlips(const FusionHistory& history, Run& run) {
+  run.flips = movedFlips(history);
+  if (run.flips.instants > 1 && run.flips.flipped == 0)
+    run.note({"no cell of the base mesh is inside out at the " +
+              std::to_string(run.flips.instants) + " instants of " + std::string(kDisplacement)});
+}
+
+/// The rules of the fields' levels; their values become what is coded.
+Result<std::vector<LiftingRules>> toCodedValues(FusionHistory& history, const ValueOrder& order,
+                                                const QuantisedMesh& quantised, LevelErrors& errors,
+                                                Run& run) {
+  std::vector<LiftingRules> rules;
+  if (run.options.valueCodec == CodecId::kLifted) {
+    LiftOptions options;
+    options.missing = quantised.missing;
+    options.threads = run.options.fusion.threads;
+    options.stop = run.options.stop;
+    if (run.options.measure)  // a bound was measured with the values that are there
+      for (const auto& [name, bound] : run.options.measure->bounds.fields)
+        if (const auto field = fieldOfKey(history.fields, name)) options.exact.push_back(*field);
+    if (!errors.empty() && !run.options.exactCoarse) options.replay = &run.replay;
+    Result<std::vector<LiftingRules>> lifted = liftFields(history, order, errors, options);
+    if (!lifted) return std::unexpected(lifted.error());
+    rules = std::move(*lifted);
+  }
+  lookForFlips(history, run);
+  restoreMissing(history, quantised.missing);
+  toTimeDifferences(history);
+  return rules;
+}
+
+Result<MadeLog> encode(FusionHistory& history, const QuantisedMesh& quantised, LevelErrors errors,
+                       Run& run) {
   if (Status s = run.stages.begin(Stage::kEncode); !s) return std::unexpected(s.error());
   Result<std::unique_ptr<ByteSpool>> spool =
       run.options.spool ? run.options.spool() : std::make_unique<MemorySpool>();
@@ -222,7 +258,6 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& ru
   options.generator = "qtet " + version();
   options.progress = run.stages.progress();
   options.stop = run.options.stop;
-  options.errors = std::move(errors);
   options.focus = run.focus;
   options.opening = run.opening;
   options.units = run.units;
@@ -233,8 +268,15 @@ Result<MadeLog> encode(const FusionHistory& history, LevelErrors errors, Run& ru
       if (Status s = run.stages.begin(Stage::kKeep); !s) return s;
       return giveInput(history, finest, run.kept, run.options.stop, give);
     };
+  LogEncoder encoder(history, std::move(options));
+  if (Status s = encoder.writeGeometry(); !s) return std::unexpected(s.error());
+  Result<std::vector<LiftingRules>> rules =
+      toCodedValues(history, encoder.order(), quantised, errors, run);
+  if (!rules) return std::unexpected(rules.error());
+  encoder.options().rules = std::move(*rules);
+  encoder.options().errors = std::move(errors);
   Result<EncodedHead> encoded =
-      encodeLog(history, options, [&](ByteView block) { return (*spool)->append(block); });
+      encoder.finish([&](ByteView block) { return (*spool)->append(block); });
   if (!encoded) return std::unexpected(encoded.error());
   run.report.statistics = std::move(encoded->statistics);
   return MadeLog{std::move(encoded->head), std::move(*spool), std::move(encoded->later)};
@@ -298,13 +340,7 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   if (!history) return std::unexpected(history.error());
   Result<LevelErrors> errors = measure(*history, run);
   if (!errors) return std::unexpected(errors.error());
-  run.flips = movedFlips(*history);
-  if (run.flips.instants > 1 && run.flips.flipped == 0)
-    run.note({"no cell of the base mesh is inside out at the " +
-              std::to_string(run.flips.instants) + " instants of " + std::string(kDisplacement)});
-  restoreMissing(*history, quantised->missing);
-  toTimeDifferences(*history);
-  Result<MadeLog> log = encode(*history, std::move(*errors), run);
+  Result<MadeLog> log = encode(*history, *quantised, std::move(*errors), run);
   if (!log) return std::unexpected(log.error());
   run.stages.end();
   if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());

@@ -48,6 +48,8 @@ struct PipelineOptions {
   /// no rule chooses the base mesh.
   std::optional<MeasureOptions> measure{std::in_place};
   CodecId valueCodec = CodecId::kLifted;
+  /// Coarse levels keep the values that are best for them, whatever bits these take (liftFields).
+  bool exactCoarse = false;
   KeepOptions keep{};
   Units units{};
   /// Each series gives four more fields, its statistics over all instants (time_statistics.h).

@@ -19,14 +19,17 @@
 namespace qtet {
 namespace {
 
+std::int32_t predictedAt(const FusionHistory& history, const TimePrediction& prediction,
+                         std::size_t i) {
+  return static_cast<std::int32_t>(predictInTime(
+      prediction, [&](std::uint16_t parent) { return history.values[parent][i]; }, kMissing));
+}
+
 std::int32_t differenceOf(const FusionHistory& history, std::size_t f,
                           const TimePrediction& prediction, std::size_t i) {
   const std::int32_t value = history.values[f][i];
   if (value == kMissing || prediction.isNone()) return value;
-  return static_cast<std::int32_t>(
-      value -
-      predictInTime(
-          prediction, [&](std::uint16_t parent) { return history.values[parent][i]; }, kMissing));
+  return value - predictedAt(history, prediction, i);
 }
 
 // A choice looks at so many fusions or cells, evenly spread. So its time does not grow with the
@@ -52,20 +55,10 @@ void eachPair(const FusionHistory& history, std::size_t f, const Visit& visit) {
   }
 }
 
-/// A fused vertex's value is an estimate that may be another by a little.
-bool maySettle(const FieldInfo& field) {
-  const auto name = instantName(field.name);
-  return !isCellField(field) && isFloatType(field.type) && !field.hasMissing &&
-         !(name && name->series == kDisplacement);
-}
-
 class Chooser {
  public:
   Chooser(FusionHistory& history, const Series& series, std::span<const std::size_t> rows)
-      : history_(history), series_(series), rows_(rows) {
-    if (!history.fusions.empty())
-      firstFused_ = std::ranges::min_element(history.fusions, {}, &Fusion::fused)->fused;
-  }
+      : history_(history), series_(series), rows_(rows) {}
 
   void choose(const InstantStep& step) {
     f_ = series_.fields[step.instant];
@@ -76,13 +69,12 @@ class Chooser {
     // with more a difference could leave what a value block holds
     if (history_.fields[f_].bits > kMaxScaleBits) return;
     best_ = {};
-    least_ = bitsOf(best_, 0);
+    least_ = bitsOf(best_);
     if (step.isAnchor)
       tryBefore(step);
     else
       tryAround(step);
     history_.fields[f_].prediction = best_;
-    if (!best_.isNone() && maySettle(history_.fields[f_])) settle(bestTolerance());
   }
 
  private:
@@ -130,7 +122,7 @@ class Chooser {
       if (rounded[i] != 0)
         prediction.parents[prediction.count++] = {parents[i], static_cast<std::int8_t>(rounded[i])};
     if (prediction.isNone()) return;
-    if (const std::uint64_t bits = bitsOf(prediction, 0); bits < least_)
+    if (const std::uint64_t bits = bitsOf(prediction); bits < least_)
       least_ = bits, best_ = prediction;
   }
 
@@ -151,17 +143,12 @@ class Chooser {
     return fit.solve();
   }
 
-  /// About the bits that the field takes, if it settles within the tolerance.
-  [[nodiscard]] std::uint64_t bitsOf(const TimePrediction& prediction,
-                                     std::int32_t tolerance) const {
-    const std::size_t fixed = std::size_t{firstFused_} * history_.fields[f_].components;
-    const auto left = [&](std::size_t i) {
-      const std::int32_t out = differenceOf(history_, f_, prediction, i);
-      return tolerance > 0 && i >= fixed && std::abs(out) <= tolerance ? 0 : out;
-    };
+  /// About the bits that the field takes.
+  [[nodiscard]] std::uint64_t bitsOf(const TimePrediction& prediction) const {
     std::uint64_t bits = 0;
     eachPair(history_, f_, [&](std::size_t i, std::size_t j) {
-      const std::int32_t a = left(i), b = left(j);
+      const std::int32_t a = differenceOf(history_, f_, prediction, i),
+                         b = differenceOf(history_, f_, prediction, j);
       if (a == kMissing || b == kMissing) return;
       bits += static_cast<std::uint64_t>(
           std::bit_width(static_cast<std::uint32_t>(std::abs(std::int64_t{a} - b))));
@@ -169,32 +156,10 @@ class Chooser {
     return bits;
   }
 
-  [[nodiscard]] std::int32_t bestTolerance() {
-    std::int32_t out = 0;
-    for (std::int32_t tolerance = 1; tolerance <= kMaxSettled; ++tolerance)
-      if (const std::uint64_t bits = bitsOf(best_, tolerance); bits < least_)
-        least_ = bits, out = tolerance;
-    return out;
-  }
-
-  void settle(std::int32_t tolerance) {
-    const FieldInfo& field = history_.fields[f_];
-    const std::int64_t end = std::int64_t{1} << field.bits;
-    std::vector<std::int32_t>& values = history_.values[f_];
-    for (const Fusion& fusion : history_.fusions)
-      for (std::size_t c = 0; c < field.components; ++c) {
-        const std::size_t i = std::size_t{fusion.fused} * field.components + c;
-        const std::int64_t left = differenceOf(history_, f_, best_, i), to = values[i] - left;
-        if (std::abs(left) <= tolerance && to >= 0 && to < end)
-          values[i] = static_cast<std::int32_t>(to);
-      }
-  }
-
   FusionHistory& history_;
   const Series& series_;
   std::span<const std::size_t> rows_;
-  VertexId firstFused_ = 0;  // fused vertices come behind those of the last level
-  std::size_t f_ = 0;        // the field that is predicted
+  std::size_t f_ = 0;  // the field that is predicted
   TimePrediction best_;
   std::uint64_t least_ = 0;
   std::size_t anchorsInARow_ = 0;
@@ -218,6 +183,16 @@ Result<std::size_t> predictInTime(FusionHistory& history, const std::stop_token&
   }
   return std::ranges::count_if(history.fields,
                                [](const FieldInfo& f) { return !f.prediction.isNone(); });
+}
+
+std::vector<std::int32_t> predictedValues(const FusionHistory& history, std::size_t field) {
+  std::vector<std::int32_t> out;
+  const TimePrediction& prediction = history.fields[field].prediction;
+  if (prediction.isNone()) return out;
+  out.reserve(history.values[field].size());
+  for (std::size_t i = 0; i < history.values[field].size(); ++i)
+    out.push_back(predictedAt(history, prediction, i));
+  return out;
 }
 
 void toTimeDifferences(FusionHistory& history) {

@@ -68,7 +68,7 @@ def field_bytes(points, cells, fields):
     begun = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "series.qtet")
-        qtet.simplify(points, cells, fields, path=path, measure="none")
+        qtet.simplify(points, cells, fields, path=path)
         seconds = time.perf_counter() - begun
         with qtet.open(path) as log:
             return sum(info.bytes for info in log.fields), log.info.chunks, seconds

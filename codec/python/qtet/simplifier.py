@@ -103,7 +103,7 @@ class _Options(ctypes.Structure):
         ("valueCodec", _u32),
         ("keepOrder", _u32),
         ("lossless", _u32),
-        ("reserved", _u32),
+        ("exactCoarse", _u32),
         ("threads", _u32),
         ("maxBoundaryError", _f64),
         ("maxFieldErrors", ctypes.POINTER(_NamedNumber)),
@@ -355,6 +355,7 @@ def simplify(
     placement: str = "auto",
     measure: str = "levels",
     value_codec: str = "lifted",
+    exact_coarse: bool = False,
     keep_order: bool = False,
     lossless: bool = False,
     original_ids: bool = False,
@@ -389,6 +390,7 @@ def simplify(
     envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0.005
     position_bits, field_bits   of the lattice an axis, 16; of a float field's values, 12
     algorithm, placement, measure, value_codec   the words of `qtet simplify --help`
+    exact_coarse          coarse levels keep the best values of their fields, for more bytes
     keep_order, lossless  keep the input's numbering; its own numbers
     original_ids          keep the cell field OriginalCellId (int32) for the last level alone
     threads               the log does not depend on it
@@ -452,6 +454,7 @@ def simplify(
     options.measure = _choice(_MEASURES, measure, "measure")
     options.valueCodec = _choice(_CODECS, value_codec, "value_codec")
     options.keepOrder, options.lossless = bool(keep_order), bool(lossless)
+    options.exactCoarse = bool(exact_coarse)
     options.originalIds = bool(original_ids)
     options.timeStatistics = bool(time_statistics)
     options.baseCells = int(base_cells or 0)

@@ -55,9 +55,18 @@ struct Scene {
     const LiftedRecord record(birth(), slopes());
     for (std::uint32_t c = 0; c < components; ++c) {
       std::array<std::int64_t, LiftedRecord::kMaxPrey> p{};
-      for (std::size_t i = 0; i < birth().k; ++i) p[i] = prey[i * components + c];
+      bool isWhole = true;
+      for (std::size_t i = birth().k; i-- > 0;) {
+        p[i] = prey[i * components + c];
+        if (p[i] == kMissing) isWhole = false;
+        // without a correction the first one's
+        else if (!rule.isCorrected())
+          values[c] = prey[i * components + c];
+      }
+      if (!isWhole) continue;
+      const auto at = [&](VertexId v) -> std::int64_t { return values[v * components + c]; };
       const std::int64_t follows = record.follows(
-          rule, p, [&](VertexId v) -> std::int64_t { return values[v * components + c]; });
+          rule, p, at, record.isWhole([&](VertexId v) { return at(v) != kMissing; }));
       const std::int64_t off =
           rule.isCorrected() ? (values[c] - follows) >> rule.shift << rule.shift : 0;
       values[c] = static_cast<std::int32_t>(follows + off);
@@ -122,7 +131,8 @@ TEST(LiftedValues, comeBackBesideMissingOnes) {
       if (missing == scene.birth().k) scene.values[c] = kMissing;
       rims += missing > 0 && missing < scene.birth().k;
     }
-    const LiftingRule rule{0, static_cast<int>(random() % 128)};
+    const LiftingRule rule{static_cast<int>(random() % 4) - 1, static_cast<int>(random() % 128)};
+    scene.fit(rule);
     ASSERT_NO_FATAL_FAILURE(expectBack(scene, rule, true)) << round;
   }
   EXPECT_GT(rims, 20);

@@ -419,7 +419,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refused(QTET_BAD_VALUE, "lossless is 2", [](Arrays&, O& o) { o.lossless = 2; });
   refused(QTET_BAD_VALUE, "position bits", [](Arrays&, O& o) { o.positionBits = ~0u; });
   refused(QTET_BAD_VALUE, "field bits", [](Arrays&, O& o) { o.fieldBits = 0; });
-  refused(QTET_BAD_VALUE, "reserved is 1", [](Arrays&, O& o) { o.reserved = 1; });
+  refused(QTET_BAD_VALUE, "exactCoarse is 2", [](Arrays&, O& o) { o.exactCoarse = 2; });
   refused(QTET_BAD_INPUT, "0..1", [](Arrays&, O& o) { o.targetRatio = INFINITY; });
   refused(QTET_BAD_INPUT, "weights", [](Arrays&, O& o) { o.shapeWeight = NAN; });
   refused(QTET_BAD_INPUT, "tolerance", [](Arrays&, O& o) { o.envelopeTolerance = -1; });

@@ -140,46 +140,6 @@ TEST_F(WithGaps, aFewElementsHaveTheValuesThatTheyHaveAmongAll) {
   expectSameAtFewElements(log(), history_.levels);
 }
 
-/// The most that a value of the field moves, of the last level's vertices and of fused ones.
-std::array<std::int32_t, 2> movedBy(const FusionHistory& before, const FusionHistory& after,
-                                    std::size_t f) {
-  std::array<std::int32_t, 2> out{};
-  const std::size_t fixed = std::size_t{before.fusions.front().fused} * before.fields[f].components;
-  for (std::size_t i = 0; i < before.values[f].size(); ++i)
-    out[i >= fixed] = std::max(out[i >= fixed], std::abs(after.values[f][i] - before.values[f][i]));
-  return out;
-}
-
-TEST(SettledValues, onlyFusedOnesOfFloatFieldsMoveAndByALittle) {
-  const FusionHistory before = simplify(testing::seriesMesh(5, 1, 11), {}).value();
-  FusionHistory after = before;
-  ASSERT_TRUE(predictInTime(after));
-  std::int32_t most = 0;
-  for (std::size_t f = 0; f < before.fields.size(); ++f) {
-    const auto [fixed, fused] = movedBy(before, after, f);
-    EXPECT_EQ(fixed, 0) << before.fields[f].name;
-    EXPECT_LE(fused, isCellField(before.fields[f]) ? 0 : kMaxSettled) << before.fields[f].name;
-    most = std::max(most, fused);
-  }
-  EXPECT_GT(most, 0) << "nothing settles";
-}
-
-TEST(SettledValues, labelsDisplacementsAndGapsStay) {
-  const FusionHistory settled = simplify(testing::seriesMesh(5, 1, 11), {}).value();
-  const auto expectStill = [&](const std::function<void(FieldInfo&)>& change) {
-    FusionHistory before = settled;
-    for (FieldInfo& field : before.fields) change(field);
-    FusionHistory after = before;
-    ASSERT_TRUE(predictInTime(after));
-    EXPECT_EQ(after.values, before.values);
-  };
-  expectStill([](FieldInfo& field) { field.type = "int32"; });
-  expectStill([](FieldInfo& field) { field.hasMissing = true; });
-  expectStill([](FieldInfo& field) {
-    field.name = "Displacement" + field.name.substr(field.name.find('@'));
-  });
-}
-
 TEST_F(TimeDifferences, instantsOfAnotherScaleDoNotPredict) {
   history_.fields[0].minimum = {-4};
   ASSERT_TRUE(predictInTime(history_));

@@ -1,0 +1,230 @@
+#include "simplify/log/lift_fields.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "proto/series.h"
+#include "simplify/measure/measure_error.h"
+#include "simplify/mesh/missing_values.h"
+#include "simplify/series/time_differences.h"
+
+namespace qtet {
+namespace {
+
+/// A level's corrections count so many times its known error, from the coarsest level to the one
+/// with so many of the finest's cells. Levels beyond the last one have none.
+struct Zone {
+  double cells, errors;
+};
+/// The widest first. A field takes the first that its rms allows.
+constexpr std::array<std::array<Zone, 3>, 4> kSchedules{{{{{0.25, 1}, {0.6, 2}, {0.8, 4}}},
+                                                         {{{0.25, 0.7}, {0.6, 1.4}, {0.9, 2.8}}},
+                                                         {{{0.25, 0.5}, {0.6, 1}, {1, 2}}},
+                                                         {{{0.25, 0.25}, {0.6, 0.5}, {1, 1}}}}};
+/// The same for the instants of a series, which are most of their log.
+constexpr std::array<double, 4> kSeriesErrors{1, 0.7, 0.5, 0.25};
+/// Shares of cells at which the growth of errors is looked at.
+constexpr double kHalf = 0.5, kQuarter = 0.25;
+static_assert(kSchedules.size() == kSeriesErrors.size());
+
+/// The cells of each level over those of the finest.
+std::vector<double> sharesOfCells(const FusionHistory& history) {
+  std::vector<double> out(history.levels + std::size_t{1});
+  const auto isTetrahedron = [&](std::uint32_t cell) { return history.cells[cell][3] != kGhost; };
+  std::vector<std::uint64_t> removed(out.size());
+  for (const Fusion& fusion : history.fusions)
+    for (std::uint32_t i = 0; i < fusion.deletedCount; ++i)
+      removed[history.levels - 1 - fusion.level] +=
+          isTetrahedron(history.deletedCells[fusion.firstDeleted + i]) ? 1 : 0;
+  const auto all = static_cast<double>(
+      std::ranges::count_if(history.cells, [](const Tetrahedron& t) { return t[3] != kGhost; }));
+  double left = all;
+  for (std::size_t level = out.size(); level-- > 0;) {
+    left -= static_cast<double>(removed[level]);
+    out[level] = left / all;
+  }
+  return out;
+}
+
+/// The known error of each level, `steps` times; between those that were measured it is a geometric
+/// row. Empty: no level has one.
+std::vector<double> errorsInSteps(const LevelErrors& errors, std::size_t field, double steps) {
+  std::vector<std::pair<std::size_t, double>> known;
+  for (std::size_t level = 0; level < errors.size(); ++level)
+    if (errors[level] && errors[level]->fields[field].rms > 0)
+      known.emplace_back(level, std::log(errors[level]->fields[field].rms * steps));
+  if (known.empty()) return {};
+  std::vector<double> out;
+  std::size_t next = 0;
+  for (std::size_t level = 0; level < errors.size(); ++level) {
+    while (next < known.size() && known[next].first < level) ++next;
+    const auto& finer = known[std::min(next, known.size() - 1)];
+    const auto& coarser = known[next == 0 ? 0 : std::min(next, known.size()) - 1];
+    const double share = finer.first <= coarser.first
+                             ? 0
+                             : std::clamp(static_cast<double>(level - coarser.first) /
+                                              static_cast<double>(finer.first - coarser.first),
+                                          0.0, 1.0);
+    out.push_back(std::exp(coarser.second + share * (finer.second - coarser.second)));
+  }
+  return out;
+}
+
+/// The power of two nearest to a number of steps.
+int shiftOf(double steps) {
+  return std::clamp(static_cast<int>(std::floor(std::log2(std::max(steps, 1.0)) + 0.5)), 0,
+                    LiftingRule::kMaxShift);
+}
+
+void fillFrom(const std::vector<std::int32_t>& filled, std::vector<std::int32_t>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (values[i] == kMissing) values[i] = filled[i];
+}
+
+class Lifter {
+ public:
+  Lifter(FusionHistory& history, const ValueOrder& order, LevelErrors& errors,
+         const LiftOptions& options)
+      : history_(history),
+        order_(order),
+        errors_(errors),
+        options_(options),
+        cells_(sharesOfCells(history)) {
+    std::vector<std::uint32_t> levelOf(history.points.size());
+    for (const Fusion& fusion : history.fusions) levelOf[fusion.fused] = fusion.level;
+    for (const std::uint32_t birth : order.points.levelStarts())
+      levels_.push_back(history.levels - 1 - levelOf[order.fused[birth]]);
+  }
+
+  /// Leaves the values as the log has them. `filled`: the same with a number everywhere.
+  LiftingRules lift(std::size_t f, const std::vector<std::int32_t>& filled) {
+    const std::vector<std::int32_t> predicted = predictedValues(history_, f);
+    const std::vector<std::int32_t> wanted = history_.values[f];
+    const bool isMeasured = movesMeasured(f);
+    const std::vector<FieldError> before = isMeasured ? errorsOf(f, filled) : Figures{};
+    for (std::size_t attempt = 0; isMeasured && attempt < kSchedules.size(); ++attempt) {
+      LiftingRules rules = lift(f, predicted, stepsOf(f, attempt));
+      const Figures after = errorsOf(f, filled);
+      if (isNear(f, before, after)) {
+        setFieldErrors(*options_.replay, after, f - options_.firstField, errors_);
+        return rules;
+      }
+      history_.values[f] = wanted;
+    }
+    const bool stays = options_.replay != nullptr || !isFloatType(history_.fields[f].type);
+    return lift(f, predicted,
+                std::vector<LevelStep>(levels_.size(), {stays ? 0 : options_.unmeasuredShift}));
+  }
+
+ private:
+  using Figures = std::vector<FieldError>;
+
+  [[nodiscard]] bool movesMeasured(std::size_t f) const {
+    return options_.replay != nullptr && isFloatType(history_.fields[f].type) &&
+           options_.replay->ranges[f - options_.firstField] > 0 &&
+           std::ranges::find(options_.exact, f) == options_.exact.end();
+  }
+  LiftingRules lift(std::size_t f, const std::vector<std::int32_t>& predicted,
+                    const std::vector<LevelStep>& steps) {
+    const FieldInfo& field = history_.fields[f];
+    std::vector<std::int32_t>& values = history_.values[f];
+    for (std::size_t i = 0; i < predicted.size(); ++i)
+      if (values[i] != kMissing) values[i] -= predicted[i];
+    LiftingRules rules =
+        liftField(order_, {field.components, field.hasMissing, values, predicted}, steps);
+    for (std::size_t i = 0; i < predicted.size(); ++i)
+      if (values[i] != kMissing) values[i] += predicted[i];
+    return rules;
+  }
+  /// With missing values filled in.
+  [[nodiscard]] Figures errorsOf(std::size_t f, const std::vector<std::int32_t>& filled) {
+    if (filled.empty()) return options_.replay->errors(history_, f, options_.firstField);
+    std::vector<std::int32_t> whole = history_.values[f];
+    fillFrom(filled, whole);
+    std::swap(whole, history_.values[f]);
+    Figures out = options_.replay->errors(history_, f, options_.firstField);
+    std::swap(whole, history_.values[f]);
+    return out;
+  }
+  /// Whether the rms has grown by as much as it may, or less, from half of the cells down.
+  [[nodiscard]] bool isNear(std::size_t f, const Figures& before, const Figures& after) const {
+    const double steps = stepsIn(f);
+    double finerCells = 1, finerGrowth = 1;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const std::uint32_t coarser = options_.replay->levels[i].coarser;
+      if (coarser >= cells_.size()) break;
+      double cells = cells_[cells_.size() - 1 - coarser];
+      double growth = before[i].rms > 0 ? after[i].rms / before[i].rms : 1;
+      const double ownCells = cells, ownGrowth = growth;
+      if (cells < kHalf && finerCells > kHalf) {  // at half itself, between the two levels
+        const double share = std::log(kHalf / finerCells) / std::log(cells / finerCells);
+        growth = std::max(growth, finerGrowth + share * (growth - finerGrowth));
+        cells = kHalf;
+      }
+      const double most = before[i].rms * steps < kSmallSteps ? kMostSmallGrowth
+                          : cells > kQuarter                  ? kMostFineGrowth
+                                                              : kMostGrowth;
+      if (cells <= kHalf && growth > most) return false;
+      finerCells = ownCells, finerGrowth = ownGrowth;
+    }
+    return true;
+  }
+  /// Of an error of 1, by component.
+  [[nodiscard]] double stepsIn(std::size_t f) const {
+    return options_.replay->ranges[f - options_.firstField] /
+           std::sqrt(static_cast<double>(history_.fields[f].components));
+  }
+
+  [[nodiscard]] std::vector<LevelStep> stepsOf(std::size_t f, std::size_t attempt) const {
+    std::vector<LevelStep> out(levels_.size());
+    const std::vector<double> errors = errorsInSteps(errors_, f - options_.firstField, stepsIn(f));
+    if (errors.empty()) return out;
+    const bool isInstant = instantName(history_.fields[f].name).has_value();
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double error = errors[levels_[i]];
+      if (isInstant) {
+        out[i].shift = shiftOf(kSeriesErrors[attempt] * error);
+        if (out[i].shift > 0) out[i].skips = Skips::kSmall;
+        continue;
+      }
+      const auto zone = std::ranges::find_if(
+          kSchedules[attempt], [&](const Zone& z) { return cells_[levels_[i]] < z.cells; });
+      out[i].shift = zone == kSchedules[attempt].end() ? LiftingRule::kNoCorrection
+                                                       : shiftOf(zone->errors * error);
+    }
+    return out;
+  }
+
+  FusionHistory& history_;
+  const ValueOrder& order_;
+  LevelErrors& errors_;
+  const LiftOptions& options_;
+  const std::vector<double> cells_;
+  std::vector<std::size_t> levels_;  // where the fused values of each level with records stand
+};
+
+}  // namespace
+
+Result<std::vector<LiftingRules>> liftFields(FusionHistory& history, const ValueOrder& order,
+                                             LevelErrors& errors, const LiftOptions& options) {
+  std::vector<LiftingRules> out(history.fields.size());
+  std::vector<std::vector<std::int32_t>> filled(out.size());
+  Lifter lifter(history, order, errors, options);
+  for (std::size_t f = options.firstField; f < out.size(); ++f) {
+    if (options.stop.stop_requested()) return cancelled();
+    const std::size_t number = f - options.firstField;
+    if (number < options.missing.size() && !options.missing[number].empty()) {
+      filled[f] = history.values[f];
+      history.values[f] = withMissing(history, history.fields[f], options.missing[number],
+                                      std::move(history.values[f]));
+    }
+    if (!isCellField(history.fields[f])) out[f] = lifter.lift(f, filled[f]);
+  }
+  for (std::size_t f = 0; f < out.size(); ++f)
+    if (!filled[f].empty()) fillFrom(filled[f], history.values[f]);
+  return out;
+}
+
+}  // namespace qtet
