@@ -209,6 +209,20 @@ std::optional<FieldInfo> FieldAdder::commonScale(const SeriesState& series,
   return std::ranges::any_of(components, isBelow) ? withRoomBelow(*scale, box) : *scale;
 }
 
+/// The largest extent of the instants that have the scale, and of those that come. Where there are
+/// components, the log does not say theirs, and only those that come count.
+double FieldAdder::rangeOfSeries(const MeshField& field, const FieldScale& own,
+                                 const FieldInfo& scale) {
+  if (field.components > 1) return own.extents.largest();
+  FieldExtents all = own.extents;
+  for (const Instant& instant : seriesOf(field.association, field.name)->instants) {
+    const std::array<double, 2>& range = instant.info.range;
+    const bool hasNone = instant.info.hasMissing && range[0] == range[1];
+    if (!hasNone && haveOneScale(instant.info, scale)) all.include({{range[0]}, {range[1]}});
+  }
+  return all.largest();
+}
+
 /// By `own` where there is no scale, or where that leaves the bound.
 Result<QuantisedField> FieldAdder::quantised(const MeshField& field, const FieldScale& own,
                                              const std::optional<FieldInfo>& scale,
@@ -216,11 +230,12 @@ Result<QuantisedField> FieldAdder::quantised(const MeshField& field, const Field
   if (!scale) return quantiseBy(own, field, options_.fieldBits, bound);
   Result<QuantisedField> there = quantisedBeside(field, own, *scale, bound);
   if (!there || !bound) return there;
-  const double most = bound->isOfRange()
-                          ? bound->value / 100 * bound->range.value_or(own.extents.largest())
-                          : bound->value;
+  const double most =
+      bound->isOfRange()
+          ? bound->value / 100 * bound->range.value_or(rangeOfSeries(field, own, *scale))
+          : bound->value;
   if (largestRoundingError(there->info) <= most) return there;
-  return quantiseBy({extentsOf(field)}, field, options_.fieldBits, bound);
+  return quantiseBy(own, field, options_.fieldBits, bound);
 }
 
 /// The field by the scale of its series, if its values are of that size; else by `own`.

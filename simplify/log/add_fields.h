@@ -129,6 +129,8 @@ class FieldAdder {
   [[nodiscard]] Result<QuantisedField> quantised(const MeshField& field, const FieldScale& own,
                                                  const std::optional<FieldInfo>& scale,
                                                  const std::optional<ValueBound>& bound);
+  [[nodiscard]] double rangeOfSeries(const MeshField& field, const FieldScale& own,
+                                     const FieldInfo& scale);
   [[nodiscard]] Result<QuantisedField> quantisedBeside(const MeshField& field,
                                                        const FieldScale& own,
                                                        const FieldInfo& scale,
