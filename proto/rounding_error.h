@@ -9,7 +9,7 @@
 
 namespace qtet {
 
-/// What the arithmetic and the type may add to half a step, for values of this magnitude at most.
+/// The arithmetic and the type may add this to half a step, for values of this magnitude at most.
 /// In double precision, placing a value takes 3 roundings, and decoding it 2. Each is within 2^-53
 /// of a number of twice the magnitude, so 2^-49 has room. A float32 is within 2^-24 of the
 /// magnitude, or half of the least float32. An integer is within a half.

@@ -92,9 +92,9 @@ typedef struct {
   double value;
 } qtet_named_number;
 
-/* A field's name, or that of a series for all its instants, and how far its values may be from the
- * input's: the decoded ones of the last level, each component by itself. "all" means every float
- * field that no other bound names. */
+/* How far the values of a field may be from the input's, at the last level, each component by
+ * itself. The name may be that of a series, for all its instants. "all" means every float field that
+ * no other bound names. */
 typedef struct {
   const char* name;
   double value;     /* above 0, finite */

@@ -7,7 +7,7 @@
 namespace qtet {
 
 void addErrorOption(boost::program_options::options_description& options);
-/// Of NAME=BOUND, "0.5", "0.5 K" or "0.1%", the last '=' counts. Throws UsageError.
+/// A BOUND is "0.5", "0.5 K" or "0.1%", behind the last '='. Throws UsageError.
 [[nodiscard]] ValueBounds valueBoundsOf(const ParsedWords& parsed);
 
 }  // namespace qtet
