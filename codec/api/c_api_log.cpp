@@ -12,6 +12,7 @@
 #include "proto/field_key.h"
 #include "proto/level_error_json.h"
 #include "proto/limits.h"
+#include "proto/rounding_error.h"
 
 using qtet::Bytes;
 using qtet::ByteView;
@@ -128,6 +129,7 @@ qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
   info.name = f.name.c_str();
   info.type = f.type.c_str();
   info.unit = log.units[field].c_str();
+  info.largestRoundingError = qtet::largestRoundingError(f);
   info.labels = "";
   if (qtet::labelNamesOf(log.manifest, field) != nullptr)
     info.labels = log.labels.find(qtet::nameWithoutStep(f.name).value_or(f.name))->second.c_str();

@@ -139,6 +139,9 @@ typedef struct {
   /* Since 0.4. "": no label. Else {"1": "steel", "2": "oil"}: the values that have names, as JSON
   */
   const char* labels;
+  /* Since 0.4. The most that a value of the last level, as a number of `type`, may differ from the
+   * input's: half a step and rounding. 0: none does */
+  double largestRoundingError;
 } qtet_field_info;
 
 typedef struct {

@@ -76,6 +76,7 @@ Status checkChoices(const qtet_simplify_options& options) {
                                {options.lossless, 1, "lossless"},
                                {options.originalIds, 1, "originalIds"},
                                {options.timeStatistics, 1, "timeStatistics"},
+                               {options.errorReserved, 0, "errorReserved"},
                                {options.exactCoarse, 1, "exactCoarse"}})
     if (choice.number > choice.last)
       return fail(ErrorCode::kBadValue, std::string(choice.member) + " is " +
@@ -96,6 +97,21 @@ Result<NamedNumbers> namedNumbers(const qtet_named_number* from, std::uint32_t c
                   member + "[" + std::to_string(i) +
                       "] has no name, or a value that is negative or not finite");
     out.emplace_back(from[i].name, from[i].value);
+  }
+  return out;
+}
+
+/// Values and units are checked with the fields (checkValueBounds).
+Result<qtet::ValueBounds> valueBoundsOf(const qtet_simplify_options& from) {
+  if (from.errorCount > 0 && from.errors == nullptr)
+    return fail(ErrorCode::kBadValue, "errors is null");
+  qtet::ValueBounds out;
+  for (std::uint32_t i = 0; i < from.errorCount; ++i) {
+    const qtet_error_bound& bound = from.errors[i];
+    if (bound.name == nullptr)
+      return fail(ErrorCode::kBadValue, "errors[" + std::to_string(i) + "] has no name");
+    out.emplace_back(bound.name,
+                     qtet::ValueBound{bound.value, bound.unit != nullptr ? bound.unit : ""});
   }
   return out;
 }
@@ -145,6 +161,8 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
   Result<NamedNumbers> labels =
       namedNumbers(from.labelWeights, from.labelWeightCount, "labelWeights");
   if (!labels) return std::unexpected(labels.error());
+  Result<qtet::ValueBounds> errors = valueBoundsOf(from);
+  if (!errors) return std::unexpected(errors.error());
   Result<std::optional<qtet::MeasureOptions>> measure = measureOptionsOf(from);
   if (!measure) return std::unexpected(measure.error());
   PipelineOptions out;
@@ -153,7 +171,7 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
       from.algorithm == QTET_ALGORITHM_PAPER ? qtet::Algorithm::kPaper : qtet::Algorithm::kQtet;
   // beyond any limit as well as these numbers
   out.quantise = {static_cast<int>(std::min(from.positionBits, 1000u)),
-                  static_cast<int>(std::min(from.fieldBits, 1000u))};
+                  static_cast<int>(std::min(from.fieldBits, 1000u)), std::move(*errors)};
   out.fusion = fusionOptionsOf(from);
   out.fieldWeights = std::move(*weights);
   out.labelWeights = std::move(*labels);

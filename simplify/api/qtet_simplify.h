@@ -92,6 +92,15 @@ typedef struct {
   double value;
 } qtet_named_number;
 
+/* How far the values of a field may be from the input's, at the last level, each component by
+ * itself. The name may be that of a series, for all its instants. "all" means every float field that
+ * no other bound names. */
+typedef struct {
+  const char* name;
+  double value;     /* above 0, finite */
+  const char* unit; /* "%": per cent of the field's range; null or "": the field's unit */
+} qtet_error_bound;
+
 /* qtet_simplify_defaults sets all of them. `qtet simplify --help` says more of each. */
 typedef struct {
   double targetRatio;       /* the base mesh's tetrahedra over the input's; NaN: baseError chooses,
@@ -133,6 +142,10 @@ typedef struct {
    * interfaces count; 0 leaves them out. Others: a sixteenth of the boundary's weight */
   uint32_t labelWeightCount;
   const qtet_named_number* labelWeights;
+  /* Since 0.4. Fields that take the step and the bits of a bound instead of fieldBits */
+  const qtet_error_bound* errors;
+  uint32_t errorCount;
+  uint32_t errorReserved; /* 0 */
 } qtet_simplify_options;
 
 QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);

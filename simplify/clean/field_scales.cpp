@@ -143,9 +143,37 @@ FieldScales scalesOf(std::span<const MeshField> fields) {
   return out;
 }
 
-Result<QuantisedField> quantiseBy(const FieldScale& scale, const MeshField& field, int bits) {
-  return scale.isExceeded ? quantiseFiner(field, scale.extents, bits)
-                          : quantiseField(field, scale.extents, bits);
+ValueBounds withRanges(std::span<const MeshField> fields, const ValueBounds& bounds) {
+  const FieldScales all = scalesOf(fields);
+  const std::vector<std::optional<ValueBound>> known = valueBoundsOf(fields, bounds);
+  std::map<std::string, ValueBound> least;  // by a key of the series
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const auto name = instantName(fields[f].name);
+    if (!name || !known[f] || !known[f]->isOfRange()) continue;
+    ValueBound bound = *known[f];
+    bound.range = all.scales[f].extents.largest();
+    const auto at =
+        least.try_emplace(fields[f].association + ":" + std::string(name->series), bound);
+    if (*bound.range < *at.first->second.range) at.first->second = bound;
+  }
+  ValueBounds out = bounds;
+  out.insert(out.end(), least.begin(), least.end());
+  return out;
+}
+
+Result<QuantisedField> quantiseBy(const FieldScale& scale, const MeshField& field, int bits,
+                                  const std::optional<ValueBound>& bound) {
+  const auto precisionIn = [&](const FieldExtents& extents) {
+    FieldPrecision out{.bits = bits};
+    if (bound)
+      out.largestError = bound->isOfRange() ? bound->value / 100 * extents.largest() : bound->value;
+    return out;
+  };
+  if (!scale.isExceeded) return quantiseField(field, scale.extents, precisionIn(scale.extents));
+  Result<QuantisedField> out = quantiseFiner(field, scale.extents, precisionIn(scale.extents));
+  if (out || !bound || !bound->isOfRange()) return out;
+  const FieldExtents own = extentsOf(field);
+  return quantiseField(field, own, precisionIn(own));
 }
 
 }  // namespace qtet

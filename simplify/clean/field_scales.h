@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "simplify/clean/quantise_field.h"
+#include "simplify/clean/value_bounds.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -57,8 +59,14 @@ struct FieldScales {
 /// series' box is too large for keep their own where that stores them exactly.
 [[nodiscard]] FieldScales scalesOf(std::span<const MeshField> fields);
 
-/// quantiseField by a scale. Errors: quantiseField's.
+/// The bounds with the ranges of these fields, for further instants of their series.
+[[nodiscard]] ValueBounds withRanges(std::span<const MeshField> fields, const ValueBounds& bounds);
+
+/// quantiseField by a scale. A share of the range is one of the largest extent of the scale,
+/// or where values outside cannot hold that, of the field's own.
+/// Errors: quantiseField's.
 [[nodiscard]] Result<QuantisedField> quantiseBy(const FieldScale& scale, const MeshField& field,
-                                                int bits);
+                                                int bits,
+                                                const std::optional<ValueBound>& bound = {});
 
 }  // namespace qtet

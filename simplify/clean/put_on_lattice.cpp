@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "codec/mesh/boundary.h"
+#include "proto/number_text.h"
+#include "proto/rounding_error.h"
 #include "simplify/clean/verify.h"
 
 namespace qtet {
@@ -43,6 +45,19 @@ Status putPoints(const TetMesh& mesh, OnLattice& out) {
   return {};
 }
 
+/// The number that a reader of the field's type gets.
+double asDecoded(const FieldInfo& info, std::size_t component, std::int32_t integer) {
+  const double value = info.value(component, integer);
+  if (info.type == "float32") return static_cast<float>(value);
+  return isFloatType(info.type) ? value : std::floor(value + 0.5);
+}
+
+/// "field T at point 7 of the cleaned input"
+std::string placeOf(const FieldInfo& info, std::size_t i) {
+  return "field " + info.name + " at " + info.association + " " +
+         std::to_string(i / info.components) + " of the cleaned input";
+}
+
 Status putField(const MeshField& field, const FieldInfo& info, OnLattice& out) {
   if (field.components != info.components) {
     return fail(ErrorCode::kBadValue, "field " + info.name + " has " +
@@ -52,24 +67,31 @@ Status putField(const MeshField& field, const FieldInfo& info, OnLattice& out) {
   }
   std::vector<std::int32_t> integers;
   integers.reserve(field.values.size());
-  double largest = 0;
+  const double bound = largestRoundingError(info);
+  double largest = 0, largestValue = 0;
   for (std::size_t i = 0; i < field.values.size(); ++i) {
     if (!std::isfinite(field.values[i]) && !info.hasMissing)
-      return fail(ErrorCode::kBadValue,
-                  "field " + info.name + " at " + info.association + " " +
-                      std::to_string(i / info.components) +
-                      " of the cleaned input is not finite, and the log's field has no missing "
-                      "values; the log was made from another mesh");
+      return fail(ErrorCode::kBadValue, placeOf(info, i) +
+                                            " is not finite, and the log's field has no missing "
+                                            "values; the log was made from another mesh");
     const Nearest found =
         std::isfinite(field.values[i])
             ? nearest((field.values[i] - info.minimum[i % info.components]) / info.step, info.bits)
             : Nearest{kMissing, 0};
     if (!(found.error <= kHalfAStep)) {
       return fail(ErrorCode::kBadValue,
-                  "field " + info.name + " at " + info.association + " " +
-                      std::to_string(i / info.components) + " of the cleaned input is " +
-                      std::to_string(found.error) +
+                  placeOf(info, i) + " is " + std::to_string(found.error) +
                       " field steps off what the log can hold; the log was made from another mesh");
+    }
+    if (found.integer != kMissing) {
+      const double error =
+          std::abs(asDecoded(info, i % info.components, found.integer) - field.values[i]);
+      if (!(error <= bound))
+        return fail(ErrorCode::kBadValue, placeOf(info, i) + " is " + shortestText(error) +
+                                              " off what the log holds, and the most is " +
+                                              shortestText(bound) +
+                                              "; the log was made from another mesh");
+      largestValue = std::max(largestValue, error);
     }
     integers.push_back(found.integer);
     largest = std::max(largest, found.error);
@@ -77,6 +99,7 @@ Status putField(const MeshField& field, const FieldInfo& info, OnLattice& out) {
   out.mesh.fields.push_back(info);
   out.mesh.values.push_back(std::move(integers));
   out.largestFieldErrors.push_back(largest);
+  out.largestValueErrors.push_back(largestValue);
   return {};
 }
 

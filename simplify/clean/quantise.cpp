@@ -140,14 +140,17 @@ void placePoints(const TetMesh& mesh, const Bounds& box, const std::stop_token& 
   }
 }
 
-Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, QuantisedMesh& out) {
+Status placeFields(const TetMesh& mesh, const QuantiseOptions& options, const std::stop_token& stop,
+                   QuantisedMesh& out) {
+  const int bits = options.fieldBits;
+  const std::vector<std::optional<ValueBound>> bounds = valueBoundsOf(mesh.fields, options.errors);
   const FieldScales all = scalesOf(mesh.fields);
   out.report.warnings = all.outlying.warnings();
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const MeshField& field = mesh.fields[f];
     throwIfStopped(stop);
     const std::string name = (isCellField(field) ? "cell field " : "field ") + field.name;
-    Result<QuantisedField> quantised = quantiseBy(all.scales[f], field, bits);
+    Result<QuantisedField> quantised = quantiseBy(all.scales[f], field, bits, bounds[f]);
     if (!quantised) return std::unexpected(quantised.error());
     out.report.nonFiniteOf.push_back(quantised->nonFinite);
     if (quantised->nonFinite > 0) {
@@ -158,7 +161,7 @@ Status placeFields(const TetMesh& mesh, int bits, const std::stop_token& stop, Q
     if (!quantised->exact && !isFloatType(field.type)) {
       out.report.notes.push_back(name + ": its integers span more than " +
                                  std::to_string(kMaxFieldBits) + " bits and are rounded to " +
-                                 std::to_string(bits) + " bits");
+                                 std::to_string(quantised->info.bits) + " bits");
     }
     out.mesh.fields.push_back(std::move(quantised->info));
     if (quantised->nonFinite > 0)
@@ -182,7 +185,7 @@ Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
   out.mesh.boundary =
       boundary.empty() ? boundaryOf(mesh.tetrahedra, StopFlag(stop).get()) : std::move(boundary);
   throwIfStopped(stop);
-  if (Status placed = placeFields(mesh, options.fieldBits, stop, out); !placed)
+  if (Status placed = placeFields(mesh, options, stop, out); !placed)
     return std::unexpected(placed.error());
   return out;
 }

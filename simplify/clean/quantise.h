@@ -9,6 +9,7 @@
 
 #include "proto/error.h"
 #include "simplify/clean/clean_mesh.h"
+#include "simplify/clean/value_bounds.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -16,7 +17,8 @@ namespace qtet {
 struct QuantiseOptions {
   /// KMinPositionBits..kMaxPositionBits; raised when cells would be flattened or inverted.
   int positionBits = 16;
-  int fieldBits = 12;  ///< kMinFieldBits..kMaxFieldBits, of fields that are not stored exactly
+  int fieldBits = 12;    ///< kMinFieldBits..kMaxFieldBits, of fields that are not stored exactly
+  ValueBounds errors{};  ///< of fields that take the bits of a bound instead
 };
 
 struct QuantiseReport {
@@ -42,11 +44,13 @@ struct QuantisedMesh {
 /// Puts `mesh` on a lattice whose step is the largest extent / (2^bits - 1) and whose origin is the
 /// lowest corner. It takes as many bits above `positionBits` as it needs for no cell to become
 /// worse: positive volume to zero or less, zero to less. Float fields take `fieldBits`: step =
-/// largest component's extent / (2^bits - 1) and a minimum a component. Integer fields take step 1
-/// and lose nothing where kMaxFieldBits bits hold their range. Points and cells keep their order;
+/// largest component's extent / (2^bits - 1) and a minimum a component. A field with a bound takes
+/// the largest step that holds it and divides that extent, and the fewest bits for it
+/// (FieldPrecision). Integer fields take step 1 and lose nothing where kMaxFieldBits bits hold their
+/// range. Points and cells keep their order;
 /// the boundary is `boundary` where that is known, else boundaryOf's. Errors: bad-value (bits
-/// outside their limits), bad-input (extents that a double cannot hold or divide), cancelled.
-/// REQUIRES: a mesh that cleanMesh has passed.
+/// outside their limits), quantiseField's, bad-input (extents that a double cannot hold or divide), cancelled.
+/// REQUIRES: a mesh that cleanMesh has passed, errors that checkValueBounds has passed.
 [[nodiscard]] Result<QuantisedMesh> quantise(const TetMesh& mesh,
                                              const QuantiseOptions& options = {},
                                              const std::stop_token& stop = {},

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "proto/field_key.h"
 #include "proto/limits.h"
+#include "proto/number_text.h"
+#include "proto/rounding_error.h"
 
 namespace qtet {
 namespace {
@@ -48,6 +51,55 @@ int bitsFor(double extent) {
 std::uint64_t nonFiniteOf(const MeshField& field) {
   return static_cast<std::uint64_t>(
       std::ranges::count_if(field.values, [](double value) { return !std::isfinite(value); }));
+}
+
+/// The rounding to keep room for beside half a step. Later instants of a series may take more bits
+/// for larger values (quantiseAs), and so more rounding; that has room where it costs little.
+double roomForRounding(const FieldInfo& info, double extent, double bound) {
+  constexpr double kLaterExtents = 64;
+  double magnitude = 0;
+  for (const double low : info.minimum) magnitude = std::max(magnitude, std::abs(low));
+  const double later = typeRounding(info.type, magnitude + kLaterExtents * extent);
+  if (instantName(info.name) && later < bound / 8) return later;
+  return typeRounding(info.type, magnitude + 2 * extent);  // bits hold less than two extents
+}
+
+std::unexpected<Error> tooFine(const FieldInfo& info, double extent, double bound,
+                               double rounding) {
+  const double finest = extent / (2 * (std::ldexp(1.0, kMaxFieldBits) - 1)) + rounding;
+  return fail(ErrorCode::kBadValue,
+              "field " + info.name + " cannot be within " + roundedText(bound) + ": " +
+                  std::to_string(kMaxFieldBits) + " bits of its " + info.type +
+                  " values allow an error of " + roundedText(1.001 * finest) +
+                  "; give that or more by `errors`, or keep its own values by `lossless`");
+}
+
+/// One value takes any step. That of an instant stays 1, by which others do not take it for theirs.
+void takeBoundOfConstant(double bound, FieldInfo& info) {
+  info.bits = kMinFieldBits;
+  if (const double rounding = roomForRounding(info, 1, bound);
+      bound > rounding && !instantName(info.name))
+    info.step = std::min(1.0, 2 * (bound - rounding));
+}
+
+/// Step and bits of a box of this largest extent.
+Status takeBound(double extent, double bound, FieldInfo& info) {
+  if (extent <= 0) {
+    takeBoundOfConstant(bound, info);
+    return {};
+  }
+  const double rounding = roomForRounding(info, extent, bound);
+  const double most = std::ldexp(1.0, kMaxFieldBits) - 1;
+  if (!(bound > rounding)) return tooFine(info, extent, bound, rounding);
+  // one more where the quotient itself was rounded down
+  for (double steps = std::max(1.0, std::ceil(extent / (2 * (bound - rounding)))); steps <= most;
+       ++steps) {
+    info.step = std::max(extent / steps, std::numeric_limits<double>::min());
+    info.bits = bitsFor(steps);
+    if (largestRoundingError(info) <= bound) return {};
+    if (info.step == std::numeric_limits<double>::min()) break;
+  }
+  return tooFine(info, extent, bound, rounding);
 }
 
 /// The integers of `out.info`, and which are missing. REQUIRES: out.nonFinite.
@@ -112,7 +164,7 @@ std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double
 }
 
 Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents& extents,
-                                     int bits) {
+                                     const FieldPrecision& precision) {
   const double largest = extents.largest();
   if (!std::isfinite(largest)) {
     return fail(
@@ -126,38 +178,45 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
                        .components = field.components,
                        .type = field.type,
                        .association = field.association,
-                       .bits = out.exact ? bitsFor(largest) : bits,
+                       .bits = out.exact ? bitsFor(largest) : precision.bits,
                        .step = 1,
                        .minimum = minimumOf(extents),
                        .range = rangeOf(field),
                        .hasMissing = out.nonFinite > 0,
                        .labelNames = field.labelNames};
-  if (!out.exact && largest > 0) {
+  if (!out.exact && precision.largestError) {
+    if (Status s = takeBound(largest, *precision.largestError, out.info); !s)
+      return std::unexpected(s.error());
+  } else if (!out.exact && largest > 0) {
     // A step of no normal number would lose its own digits; such a field is constant for every
     // purpose.
-    out.info.step =
-        std::max(largest / (std::ldexp(1.0, bits) - 1), std::numeric_limits<double>::min());
+    out.info.step = std::max(largest / (std::ldexp(1.0, precision.bits) - 1),
+                             std::numeric_limits<double>::min());
   }
   place(field, out);
   return out;
 }
 
 Result<QuantisedField> quantiseFiner(const MeshField& field, const FieldExtents& extents,
-                                     int bits) {
+                                     const FieldPrecision& precision) {
   Result<QuantisedField> others = quantiseField({.name = field.name,
                                                  .components = field.components,
                                                  .type = field.type,
                                                  .values = {},
                                                  .association = field.association},
-                                                extents, bits);
+                                                extents, precision);
   if (!others) return others;
-  if (std::optional<QuantisedField> there = quantiseAs(others->info, field)) return *there;
+  const double mostError = precision.largestError.value_or(std::numeric_limits<double>::infinity());
+  if (std::optional<QuantisedField> there = quantiseAs(others->info, field);
+      there && largestRoundingError(there->info) <= mostError)
+    return *there;
   const FieldExtents own = extentsOf(field);
-  int needed = bits;
+  if (precision.largestError) return quantiseField(field, own, precision);
+  int needed = precision.bits;
   while (needed < kMaxFieldBits &&
          own.largest() > others->info.step * (std::ldexp(1.0, needed) - 1))
     ++needed;
-  return quantiseField(field, own, needed);
+  return quantiseField(field, own, FieldPrecision{.bits = needed});
 }
 
 std::optional<QuantisedField> quantiseAs(const FieldInfo& scale, const MeshField& field) {

@@ -43,15 +43,25 @@ struct FieldExtents {
 };
 [[nodiscard]] FieldExtents extentsOf(const MeshField& field);
 
+/// How fine the values of a field are that is not stored exactly.
+struct FieldPrecision {
+  int bits = 12;
+  /// Then the bits follow: largestRoundingError is within this, which is finite and not negative.
+  std::optional<double> largestError{};
+};
+
 /// See quantise(). The integers are those of `extents`, the field's own or those of its series.
-/// Errors: bad-input (an extent above the largest double).
+/// Errors: bad-input (an extent above the largest double), bad-value (an error that kMaxFieldBits
+/// bits or the field's type cannot hold).
 [[nodiscard]] Result<QuantisedField> quantiseField(const MeshField& field,
-                                                   const FieldExtents& extents, int bits);
-/// For a field with values outside of the box `extents`, to which `bits` give a step. The field
-/// gets as many bits as it needs for a step no larger, at most kMaxFieldBits. Errors:
-/// quantiseField's. REQUIRES: a field of floats.
+                                                   const FieldExtents& extents,
+                                                   const FieldPrecision& precision);
+/// For a field with values outside of the box `extents`, for which `precision` gives a step. The
+/// field gets as many bits as it needs for a step no larger. Where the bits were given, they are
+/// kMaxFieldBits at most, whatever the step. Errors: quantiseField's. REQUIRES: a field of floats.
 [[nodiscard]] Result<QuantisedField> quantiseFiner(const MeshField& field,
-                                                   const FieldExtents& extents, int bits);
+                                                   const FieldExtents& extents,
+                                                   const FieldPrecision& precision);
 /// With step and minimum of `scale`, and its bits or as many more as values above it need. Nullopt
 /// where a value lies below it or needs more than kMaxScaleBits, or where the fields differ in
 /// components or type.
@@ -62,7 +72,7 @@ struct FieldExtents {
 /// The box of the values that the scale holds in its bits.
 [[nodiscard]] FieldExtents extentsOf(const FieldInfo& scale);
 [[nodiscard]] inline Result<QuantisedField> quantiseField(const MeshField& field, int bits) {
-  return quantiseField(field, extentsOf(field), bits);
+  return quantiseField(field, extentsOf(field), FieldPrecision{.bits = bits});
 }
 
 }  // namespace qtet

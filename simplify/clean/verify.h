@@ -34,13 +34,16 @@ struct OnLattice {
   LatticeMesh mesh;
   double largestPositionError = 0;         ///< in lattice steps, 0.5 at most
   std::vector<double> largestFieldErrors;  ///< in field steps, one a field
+  /// One a field, in its unit: from the input's values to those that an integer decodes to, in the
+  /// field's type. Each is within largestRoundingError.
+  std::vector<double> largestValueErrors;
 };
 
 /// Puts `mesh` on the lattice and the field scales that a log states, by the nearest integers, and
 /// measures every error on the way. The result is what the log must hold, worked out without the
 /// encoder's own quantiser. `fields` name those of `mesh` by name and association, in any order.
 /// Errors: bad-value (a position or value further than half a step, and a billionth, from its
-/// integer, or outside the bits), not-found.
+/// integer, or outside the bits; a value beyond largestRoundingError), not-found.
 [[nodiscard]] Result<OnLattice> putOnLattice(const TetMesh& mesh, const Lattice& lattice,
                                              const std::vector<FieldInfo>& fields);
 

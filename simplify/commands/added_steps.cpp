@@ -164,7 +164,8 @@ std::string listOf(const std::set<std::string>& names) {
 class Adding {
  public:
   Adding(const OpenedLog& log, const StepsRequest& request, Progress& progress)
-      : request_(request),
+      : units_(log.manifest.units),
+        request_(request),
         progress_(progress),
         reading_(request.reading),
         known_(log.manifest),
@@ -254,6 +255,7 @@ class Adding {
   Status take(ReadMesh&& read, const std::string& file, const std::optional<double>& time) {
     eraseLabelFields(read.report, read.mesh.fields);  // they have no time
     if (Status s = nameInstants(read.mesh, file, time); !s) return s;
+    if (Status s = checkValueBounds(read.mesh.fields, request_.adding.errors, units_); !s) return s;
     if (Status s = keepInstants(read.mesh, file); !s) return s;
     if (read.mesh.fields.empty()) return {};
     if (const auto cleaned = cleanMesh(read.mesh); !cleaned)
@@ -295,6 +297,7 @@ class Adding {
     return {};
   }
 
+  const Units& units_;
   const StepsRequest& request_;
   Progress& progress_;
   ReadOptions reading_;

@@ -6,6 +6,7 @@
 #include "proto/level_error_json.h"
 #include "proto/limits.h"
 #include "simplify/clean/clean_mesh.h"
+#include "simplify/commands/command_errors.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
 #include "simplify/commands/command_read.h"
@@ -84,6 +85,9 @@ Status addField(const ParsedWords& parsed, Progress& progress, Console& console)
   progress.stage("adding fields");
   AddFieldsOptions options;
   options.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  options.errors = valueBoundsOf(parsed);
+  if (Status s = checkValueBounds(read->mesh.fields, options.errors, log->manifest.units); !s)
+    return s;
   options.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
   options.kept = *kept;
   options.progress = [&](double fraction) { progress.update(fraction); };
@@ -135,6 +139,7 @@ int runAddField(const Words& words, Console& console) {
       "threads", po::value<int>()->default_value(1),
       "threads for measuring, as many as there are processors at most; the result does not depend "
       "on it")("json", "print one JSON object");
+  addErrorOption(options);
   addNoClobber(options);
   addReadOptions(options);
   const ParsedWords parsed(

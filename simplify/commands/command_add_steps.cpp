@@ -8,6 +8,7 @@
 #include "proto/field_key.h"
 #include "proto/limits.h"
 #include "simplify/commands/added_steps.h"
+#include "simplify/commands/command_errors.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_read.h"
 #include "simplify/commands/edited_log_report.h"
@@ -77,6 +78,7 @@ StepsRequest requestOf(const ParsedWords& parsed, Progress& progress) {
   takeTimes(timesOf(parsed), out);
   out.reading.fields = parseFieldNames(parsed.get<std::string>("fields"));
   out.adding.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  out.adding.errors = valueBoundsOf(parsed);
   out.adding.threads = threadsAtOnce(parsed.integer("threads", 1, kMaxAddingThreads));
   out.adding.progress = [&](double fraction) { progress.update(fraction); };
   return out;
@@ -216,6 +218,7 @@ int runAddSteps(const Words& words, Console& console) {
       "sends the log to this URL, as qtet push does, whenever it has changed")(
       "json",
       "print one JSON object, and one of qtet push; with --follow whenever steps were added");
+  addErrorOption(options);
   addPushOptions(options);
   addNoClobber(options);
   addReadOptions(options, "all");

@@ -5,6 +5,7 @@
 
 #include "codec/log/log_levels.h"
 #include "proto/level_error_json.h"
+#include "proto/rounding_error.h"
 #include "simplify/commands/closing_report.h"
 #include "simplify/commands/columns.h"
 #include "simplify/commands/command_line.h"
@@ -31,6 +32,7 @@ OrderedJson infoJson(const OpenedLog& log) {
                       {"association", field.association},
                       {"bits", field.bits},
                       {"step", field.step},
+                      {"largestRoundingError", largestRoundingError(field)},
                       {"minimum", field.minimum},
                       {"range", field.range},
                       {"missingValues", field.hasMissing},
@@ -67,6 +69,16 @@ std::string brief(double number) {
   std::ostringstream out;
   out << std::setprecision(kBriefDigits) << number;
   return out.str();
+}
+
+/// How far values of the last level may be from the input's. Those of a closing block are its own.
+std::string withinText(const OpenedLog& log, std::size_t field) {
+  const bool isKept =
+      std::ranges::any_of(log.file.closingBlocks(), [&](const ClosingBlock& closing) {
+        return closing.kind == ClosingKind::kExactField && closing.field == field;
+      });
+  const double error = largestRoundingError(log.manifest.fields[field]);
+  return isKept || error == 0 ? "exact" : brief(error);
 }
 
 /// A coordinate with all digits that a lattice of this step has, six at least.
@@ -138,7 +150,7 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
   if (info["fields"].empty()) return;
   console.out << "\n";
   std::vector<std::vector<std::string>> rows{
-      {"field", "of", "type", "least", "most", "bits", "step", "bytes"}};
+      {"field", "of", "type", "least", "most", "bits", "step", "within", "bytes"}};
   for (const OrderedJson& field : info["fields"]) {
     if (rows.size() > mostFields) break;
     const auto components = field["components"].get<std::uint32_t>();
@@ -148,7 +160,7 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
                         (components > 1 ? " x " + std::to_string(components) : ""),
                     brief(field["range"][0]), brief(field["range"][1]),
                     std::to_string(field["bits"].get<int>()), brief(field["step"]),
-                    grouped(field["bytes"])});
+                    withinText(log, rows.size() - 1), grouped(field["bytes"])});
   }
   if (std::ranges::any_of(info["fields"],
                           [](const OrderedJson& f) { return f.contains("unit"); })) {
@@ -200,10 +212,12 @@ int runInfo(const Words& words, Console& console) {
        "the errors against the original follow: of the boundary in per cent of the diagonal (the "
        "worse one of both ways), the volume that is\n"
        "lost and gained in per cent of the original's, and of each field in per cent of its range: "
-       "its max is sampled.\n"
+       "its max is sampled. Of fields, `within` is how far a value of the last level may be from "
+       "the input's, in the field's unit.\n"
        "--json: digest, generator, source, bytes, headBytes, chunks, lattice {bits, step, "
        "origin}, timeUnit, fields [{name, components, type, association, bits,\n"
-       "step, minimum, range, missingValues, bytes, unit}], kept, and levels [{level, tetrahedra, "
+       "step, largestRoundingError (0: exact), minimum, range, missingValues, bytes, unit}], kept, "
+       "and levels [{level, tetrahedra, "
        "vertices, boundaryTriangles, bytes, cumulativeBytes, error}]; error, as\n"
        "fractions and of some levels only: boundary {toLevel {mean, max}, toOriginal {mean, max}}, "
        "volumeLost, volumeGained, fields [{rms, max}] in the order of the fields above.\n"

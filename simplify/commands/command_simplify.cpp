@@ -2,6 +2,7 @@
 
 #include "proto/limits.h"
 #include "proto/utf8.h"
+#include "simplify/commands/command_errors.h"
 #include "simplify/commands/command_fusion.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/commands/command_measure.h"
@@ -70,6 +71,7 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   options.quantise.positionBits =
       parsed.integer("position-bits", kMinPositionBits, kMaxPositionBits);
   options.quantise.fieldBits = parsed.integer("field-bits", kMinFieldBits, kMaxFieldBits);
+  options.quantise.errors = valueBoundsOf(parsed);
   takeFusionOptions(parsed, options);
   if (Status checked = checkOptions(options); !checked)
     throw UsageError(withOptionNames(checked.error().message));
@@ -128,6 +130,7 @@ int runSimplify(const Words& words, Console& console) {
   addNoClobber(options);
   addReadOptions(options);
   addTimesOption(options);
+  addErrorOption(options);
   addFusionOptions(options);
   addMeasureOptions(options);
   const ParsedWords parsed(
@@ -143,13 +146,14 @@ int runSimplify(const Words& words, Console& console) {
        "A series whose cells change becomes a list of logs, NAME.json with NAME.0.DIGEST.qtet and "
        "so on.",
        "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields "
-       "Density,Velocity --field-bits 10 --json\n"
+       "Density,Velocity --error all=0.1% --json\n"
        "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "
        "--time all -o run.qtet\n  qtet simplify step_*.vtu --time all -o run.qtet\n"
        "  qtet simplify remeshed.pvd --time all -o remeshed.json\n",
        {{"input", {"format", "times", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
         {"fields",
-         {"field-bits", "field-weight", "label-weight", "time-statistics", "unit", "time-unit"}},
+         {"error", "field-bits", "field-weight", "label-weight", "time-statistics", "unit",
+          "time-unit"}},
         {"quality and base mesh",
          {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
           "placement", "shape-weight", "preserve-regions", "position-bits"}},

@@ -4,6 +4,8 @@
 
 #include "codec/refine/verify_log.h"
 #include "proto/checksum.h"
+#include "proto/number_text.h"
+#include "proto/rounding_error.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/clean/verify.h"
 #include "simplify/commands/closing_report.h"
@@ -53,13 +55,20 @@ Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const Inpu
   const Result<OrderedJson> kept =
       compareKept(log.file, decoded, expected->mesh, asRead(read->mesh, asStored, *cleaned), cells);
   if (!kept) return std::unexpected(kept.error());
-  OrderedJson fieldErrors = OrderedJson::object();
-  for (std::size_t f = 0; f < names.size(); ++f)
+  OrderedJson fieldErrors = OrderedJson::object(), valueErrors = OrderedJson::object();
+  for (std::size_t f = 0; f < names.size(); ++f) {
     fieldErrors[fieldKey(log.manifest, f)] = expected->largestFieldErrors[f];
+    OrderedJson& values = valueErrors[fieldKey(log.manifest, f)];
+    values = {{"largest", expected->largestValueErrors[f]},
+              {"bound", largestRoundingError(log.manifest.fields[f])}};
+    if (const auto unit = unitOf(log.manifest, log.manifest.fields[f].name); !unit.empty())
+      values["unit"] = unit;
+  }
   out = {{"input", input.path},
          {"sameMesh", true},
          {"largestPositionErrorSteps", expected->largestPositionError},
          {"largestFieldErrorSteps", fieldErrors},
+         {"valueErrors", valueErrors},
          {"interchangeableVertices", same->interchangeable},
          {"droppedPoints", cleaned->unusedPoints.count},
          {"droppedCells", cleaned->repeatedVertexCells.count + cleaned->duplicateCells.count},
@@ -160,6 +169,20 @@ std::string orderSentence(const OrderedJson& against) {
          " of the file that were dropped; a cell that was turned stays turned\n";
 }
 
+/// "each value of T is within 0.5 K of the input's; the largest difference is 0.499 K"
+void printValueError(const std::string& name, const OrderedJson& error, std::ostream& out) {
+  const std::string unit = printable(error.value("unit", ""));
+  const auto measure = [&](const char* which) {
+    return roundedText(error[which].get<double>()) + (unit.empty() ? "" : " " + unit);
+  };
+  out << "each value of " << printable(name);
+  if (error["bound"] == 0)
+    out << " is the input's\n";
+  else
+    out << " is within " << measure("bound") << " of the input's; the largest difference is "
+        << measure("largest") << "\n";
+}
+
 void printReport(const OrderedJson& report, std::ostream& out) {
   out << "digest      " << report["digest"].get<std::string>() << "\nmeshDigest  "
       << report["meshDigest"].get<std::string>()
@@ -176,6 +199,8 @@ void printReport(const OrderedJson& report, std::ostream& out) {
   for (const auto& [name, error] : against["largestFieldErrorSteps"].items())
     out << ", " << printable(name) << " within " << error.get<double>() << " field steps";
   out << "\n";
+  for (const auto& [name, error] : against["valueErrors"].items())
+    printValueError(name, error, out);
   if (against["kept"]["order"].get<bool>()) out << orderSentence(against);
   if (against["kept"].value("originalCells", false))
     out << "its cells know which cell of the file they come from\n";
@@ -208,7 +233,8 @@ int runVerify(const Words& words, Console& console) {
        "Checks every checksum, decodes every chunk and compares every level and field with what "
        "the manifest says. With --against the finest level\n"
        "must be the input's mesh cell for cell, positions within half a lattice step, fields "
-       "within half a field step. A mesh that was read with options\n"
+       "within half a field step, and each value within the error that info states. A mesh that "
+       "was read with options\n"
        "(--weld, --curved, ...) has to be read with the same ones. Where the log was made with "
        "--keep-order or\n"
        "--lossless, the numbering and the numbers themselves must be those of the file too, and "

@@ -13,6 +13,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`boundaryWeight`", "--boundary-weight"},
     {"`curved`", "--curved"},
     {"`envelopeTolerance`", "--envelope-tolerance"},
+    {"`errors`", "--error"},
     {"`fieldBits`", "--field-bits"},
     {"`fields`", "--fields"},
     {"`fieldWeights`", "--field-weight"},

@@ -13,6 +13,7 @@
 #include "codec/log/log_manifest.h"
 #include "codec/log/manifest_field.h"
 #include "codec/refine/log_file.h"
+#include "proto/rounding_error.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
 #include "simplify/cost/label_fields.h"
@@ -208,29 +209,58 @@ std::optional<FieldInfo> FieldAdder::commonScale(const SeriesState& series,
   return std::ranges::any_of(components, isBelow) ? withRoomBelow(*scale, box) : *scale;
 }
 
-/// The field by the scale of its series, if its values are of that size; else by `own`.
+/// The largest extent of the instants that have the scale, and of those that come. Where there are
+/// components, the log does not say theirs, and only those that come count.
+double FieldAdder::rangeOfSeries(const MeshField& field, const FieldScale& own,
+                                 const FieldInfo& scale) {
+  if (field.components > 1) return own.extents.largest();
+  FieldExtents all = own.extents;
+  for (const Instant& instant : seriesOf(field.association, field.name)->instants) {
+    const std::array<double, 2>& range = instant.info.range;
+    const bool hasNone = instant.info.hasMissing && range[0] == range[1];
+    if (!hasNone && haveOneScale(instant.info, scale)) all.include({{range[0]}, {range[1]}});
+  }
+  return all.largest();
+}
+
+/// By `own` where there is no scale, or where that leaves the bound.
 Result<QuantisedField> FieldAdder::quantised(const MeshField& field, const FieldScale& own,
-                                             const std::optional<FieldInfo>& scale) {
-  if (!scale) return quantiseBy(own, field, options_.fieldBits);
+                                             const std::optional<FieldInfo>& scale,
+                                             const std::optional<ValueBound>& bound) {
+  if (!scale) return quantiseBy(own, field, options_.fieldBits, bound);
+  Result<QuantisedField> there = quantisedBeside(field, own, *scale, bound);
+  if (!there || !bound) return there;
+  const double most =
+      bound->isOfRange()
+          ? bound->value / 100 * bound->range.value_or(rangeOfSeries(field, own, *scale))
+          : bound->value;
+  if (largestRoundingError(there->info) <= most) return there;
+  return quantiseBy(own, field, options_.fieldBits, bound);
+}
+
+/// The field by the scale of its series, if its values are of that size; else by `own`.
+Result<QuantisedField> FieldAdder::quantisedBeside(const MeshField& field, const FieldScale& own,
+                                                   const FieldInfo& scale,
+                                                   const std::optional<ValueBound>& bound) {
   const bool isComparable =
-      isFloatType(field.type) && scale->components == field.components && scale->type == field.type;
-  const FieldExtents extents = extentsOf(field), others = extentsOf(*scale);
+      isFloatType(field.type) && scale.components == field.components && scale.type == field.type;
+  const FieldExtents extents = extentsOf(field), others = extentsOf(scale);
   const bool isFar = isComparable && isOutlying(extents, others);
   const bool areFew = isFar && areFewOutlying(field, others);
   if (isFar) outlying_.add(field, extents, others);
   // integers that lose nothing by themselves do not take a step of more than 1
-  const bool isCoarse = !isFloatType(field.type) && scale->step != 1 && extents.fitsExactly();
+  const bool isCoarse = !isFloatType(field.type) && scale.step != 1 && extents.fitsExactly();
   if ((!isFar || areFew) && !isCoarse)
-    if (std::optional<QuantisedField> there = quantiseAs(*scale, field)) return std::move(*there);
-  if (areFew) return quantiseFiner(field, others, scale->bits);
-  if (!isFar) return quantiseBy(own, field, options_.fieldBits);
+    if (std::optional<QuantisedField> there = quantiseAs(scale, field)) return std::move(*there);
+  if (areFew) return quantiseFiner(field, others, FieldPrecision{.bits = scale.bits});
+  if (!isFar) return quantiseBy(own, field, options_.fieldBits, bound);
   for (const Scale& other : seriesOf(field.association, field.name)->scales) {
     const FieldExtents box = extentsOf(other.info);
     if (isOutlying(extents, box) || isOutlying(box, extents)) continue;
     if (std::optional<QuantisedField> there = quantiseAs(other.info, field))
       return std::move(*there);
   }
-  return quantiseBy({extents}, field, options_.fieldBits);
+  return quantiseBy({extents}, field, options_.fieldBits, bound);
 }
 
 /// The scales of the mesh's series.
@@ -265,12 +295,13 @@ bool FieldAdder::isLabel(const std::vector<Tetrahedron>& tetrahedra, const Field
 Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
   const FieldScales all = scalesOf(mesh.fields);
   const auto common = commonScales(mesh);
+  const std::vector<std::optional<ValueBound>> bounds = valueBoundsOf(mesh.fields, options_.errors);
   std::vector<Item> out;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
     const MeshField& field = mesh.fields[f];
     const auto scale = common.find(seriesOf(field.association, field.name));
-    Result<QuantisedField> quantised =
-        this->quantised(field, all.scales[f], scale == common.end() ? std::nullopt : scale->second);
+    Result<QuantisedField> quantised = this->quantised(
+        field, all.scales[f], scale == common.end() ? std::nullopt : scale->second, bounds[f]);
     if (!quantised) return std::unexpected(quantised.error());
     const FieldInfo& info = quantised->info;
     if (quantised->nonFinite > 0) {

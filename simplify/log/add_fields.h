@@ -16,6 +16,7 @@
 #include "codec/refine/log_edit.h"
 #include "codec/refine/log_history.h"
 #include "simplify/clean/field_scales.h"
+#include "simplify/clean/value_bounds.h"
 #include "simplify/log/fused_values.h"
 #include "simplify/log/lift_fields.h"
 #include "simplify/log/match_mesh.h"
@@ -30,6 +31,7 @@ inline constexpr int kMaxAddingThreads = 256;
 
 struct AddFieldsOptions {
   int fieldBits = 12;
+  ValueBounds errors{};             ///< of fields that take the bits of a bound instead
   Effort effort = Effort::kLevels;  ///< for measuring, where the log knows the errors of its levels
   int threads = 1;
   /// The log's fields that stay, as withFields takes them; all without it. Nothing is predicted
@@ -60,9 +62,11 @@ class FieldAdder {
   /// geometry stays as it is. Instants NAME@TIME are coded as differences to each other, and to the
   /// last earlier instant of their scale. Where they fill the log's last window, that is coded as
   /// one. Only this mesh's values are held in memory, those of such a window, and those of such
-  /// earlier instants. Errors: matchMesh's, quantiseField's, bad-value (a position off the log's
+  /// earlier instants. A field takes the scale of its series as far as that holds its bound.
+  /// Errors: matchMesh's, quantiseField's, bad-value (a position off the log's
   /// lattice), limit-exceeded (too many fields), and all that decoding gives; after one the adder
-  /// is of no use. REQUIRES: a mesh that cleanMesh has passed.
+  /// is of no use. REQUIRES: a mesh that cleanMesh has passed,
+  /// bounds that are finite and above 0.
   [[nodiscard]] Status add(const TetMesh& mesh);
   /// Instants that fill the window of the longest series: add() does best with so many at first,
   /// and with kWindow each time thereafter. 1 to kWindow + 1.
@@ -128,7 +132,14 @@ class FieldAdder {
   [[nodiscard]] std::map<const SeriesState*, std::optional<FieldInfo>> commonScales(
       const TetMesh& mesh);
   [[nodiscard]] Result<QuantisedField> quantised(const MeshField& field, const FieldScale& own,
-                                                 const std::optional<FieldInfo>& scale);
+                                                 const std::optional<FieldInfo>& scale,
+                                                 const std::optional<ValueBound>& bound);
+  [[nodiscard]] double rangeOfSeries(const MeshField& field, const FieldScale& own,
+                                     const FieldInfo& scale);
+  [[nodiscard]] Result<QuantisedField> quantisedBeside(const MeshField& field,
+                                                       const FieldScale& own,
+                                                       const FieldInfo& scale,
+                                                       const std::optional<ValueBound>& bound);
   [[nodiscard]] const Instant* parentOf(const FieldInfo& info);
   [[nodiscard]] Status takeUnfinished(std::vector<Item>& items);
   [[nodiscard]] Status takeBack(std::span<const Instant> instants, std::vector<Item>& items);

@@ -122,6 +122,8 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
     if (Status added = addTimeStatistics(mesh.fields); !added)
       return std::unexpected(added.error());
   if (Status s = takeUnits(mesh.fields, run); !s) return std::unexpected(s.error());
+  if (Status s = checkValueBounds(mesh.fields, run.options.quantise.errors, run.units); !s)
+    return std::unexpected(s.error());
   putInOrder(seriesOrder(mesh.fields), mesh.fields);
   const bool keeps = run.options.keep.any();
   run.report.tetrahedraIn = mesh.tetrahedra.size();

@@ -109,7 +109,7 @@ struct PipelineOutput {
 /// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and
 /// options give the same bytes, whatever the number of threads. Errors: checkOptions's,
 /// addTimeStatistics's, cleanMesh's, quantise's, simplify's, measureLevels's, the spool's and
-/// encodeLog's; not-found (a weight, a unit or regions name no field); bad-input (a label
+/// encodeLog's; not-found (a weight, a unit, an error or regions name no field); bad-input (a label
 /// that cannot be one); cancelled. REQUIRES: a mesh
 /// that checkArrays or readMesh has passed.
 [[nodiscard]] Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options);

@@ -151,6 +151,7 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
   if (std::exchange(ofSample.timeStatistics, false))
     if (Status added = addStatistics(steps, read, options.stop, sample.fields); !added)
       return std::unexpected(added.error());
+  ValueBounds bounds = withRanges(sample.fields, options.quantise.errors);
   Result<PipelineOutput> out = simplifyToLog(std::move(sample), ofSample);
   if (!out) return out;
   const auto start = std::chrono::steady_clock::now();
@@ -160,6 +161,7 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
   const Result<LogFile> log = LogFile::fromBytes(std::move(*bytes));
   if (!log) return std::unexpected(log.error());
   AddFieldsOptions adding = addingOptions(options);
+  adding.errors = std::move(bounds);
   const std::optional<double> opening = laterOpening(out->report.manifest);
   adding.kept = fieldsThatStay(out->report.manifest, opening);
   Result<FieldAdder> adder = FieldAdder::make(*log, adding);

@@ -6,6 +6,7 @@ import {
   formatCount,
   formatTo,
   formatValue,
+  formatWithin,
   percentOf,
   resolutionOf,
   roundTo,
@@ -22,6 +23,15 @@ test('bytesHaveThreeDigitsAndNeverFour', () => {
   expect(
     [0, 999, 1000, 12345, 999499, 999500, 1.5e9].map((bytes) => plain(formatBytes(bytes))),
   ).toEqual(['0 B', '999 B', '1.00 kB', '12.3 kB', '999 kB', '1.00 MB', '1.50 GB']);
+});
+
+test('theErrorOfTheLastLevelIsRoundedUp', () => {
+  const field = {name: 'T@0.5', unit: 'K'} as FieldInfo;
+  const within = (error: number): string => plain(formatWithin(field, error));
+  expect(within(0.0412)).toBe('T is within 0.042 K at the last level');
+  expect(within(0.0996)).toBe('T is within 0.1 K at the last level');
+  expect(within(250)).toBe('T is within 250 K at the last level');
+  expect(within(0)).toBe('T is exact at the last level');
 });
 
 test('aHundredPercentMeansAllOfIt', () => {

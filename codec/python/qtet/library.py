@@ -48,6 +48,7 @@ class CFieldInfo(ctypes.Structure):
         ("type", _text),
         ("unit", _text),
         ("labels", _text),
+        ("largestRoundingError", _f64),
     ]
 
 
@@ -105,6 +106,8 @@ class FieldInfo:
     unit: str  # "" where it is unknown
     # names of values, as far as known; None: the field is no label
     labels: dict[int, str] | None = field(hash=False)
+    # the most that a value of the last level may differ from the input's; 0: none does
+    largestRoundingError: float
 
 
 @dataclass(frozen=True)

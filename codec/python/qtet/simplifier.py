@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
+import re
 import tempfile
 import threading
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
@@ -49,6 +50,8 @@ _CODECS = {"lifted": 0, "draco": 1, "adaptive": 2}
 _STAGES = ("clean", "quantise", "simplify", "measure", "encode", "keep")
 _MAX_COMPONENTS = 16
 _INTEGERS = ("base_cells", "position_bits", "field_bits", "threads")
+# A number, and what it is in.
+_BOUND = re.compile(r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?) *(.*)", re.DOTALL)
 # Between two checks of the progress and of Ctrl-C.
 _INTERVAL_S = 0.1
 
@@ -86,6 +89,10 @@ class _NamedNumber(ctypes.Structure):
     _fields_ = [("name", _text), ("value", _f64)]
 
 
+class _ErrorBound(ctypes.Structure):
+    _fields_ = [("name", _text), ("value", _f64), ("unit", _text)]
+
+
 _Progress = ctypes.CFUNCTYPE(ctypes.c_int, _address, _u32, _f64)
 
 
@@ -120,6 +127,9 @@ class _Options(ctypes.Structure):
         ("timeStatistics", _u32),
         ("labelWeightCount", _u32),
         ("labelWeights", ctypes.POINTER(_NamedNumber)),
+        ("errors", ctypes.POINTER(_ErrorBound)),
+        ("errorCount", _u32),
+        ("errorReserved", _u32),
     ]
 
 
@@ -207,7 +217,9 @@ def _check_numbers(numbers: Mapping[str, Any]) -> None:
     would take -3 for 4 thousand millions, and NaN stands for an option that is not given."""
     for name, value in numbers.items():
         if isinstance(value, Mapping):
-            _check_numbers({f"{name}[{key!r}]": x for key, x in value.items()})
+            _check_numbers(
+                {f"{name}[{key!r}]": x for key, x in value.items() if not isinstance(x, str)}
+            )
         elif value is not None and not value >= 0:
             raise ValueError(f"{name} is {value}; give a number of 0 or above")
         elif name in _INTEGERS and value is not None and not (value < 2**32 and value % 1 == 0):
@@ -217,6 +229,17 @@ def _check_numbers(numbers: Mapping[str, Any]) -> None:
 def _named(numbers: Mapping[str, float] | None) -> tuple[Any, int]:
     entries = [_NamedNumber(name.encode(), value) for name, value in (numbers or {}).items()]
     return (_NamedNumber * len(entries))(*entries), len(entries)
+
+
+def _bounds(errors: Mapping[str, float | str] | None) -> tuple[Any, int]:
+    """Bounds of fields: numbers, or texts such as "0.1%" and "0.5 K"."""
+    entries = []
+    for name, bound in (errors or {}).items():
+        match = _BOUND.fullmatch(bound if isinstance(bound, str) else repr(float(bound)))
+        if match is None:
+            raise ValueError(f"errors[{name!r}] is {bound!r}; give a number above 0, '0.1%' or '0.5K'")
+        entries.append(_ErrorBound(name.encode(), float(match[1]), match[2].encode()))
+    return (_ErrorBound * len(entries))(*entries), len(entries)
 
 
 def _choice(choices: Mapping[str, int], word: str, what: str) -> int:
@@ -307,7 +330,7 @@ def _tool_words(options: Mapping[str, Any]) -> list[str]:
         if value is True:
             words += [name]
         elif isinstance(value, dict):
-            words += [word for field, x in value.items() for word in (name, f"{field}={x!r}")]
+            words += [word for field, x in value.items() for word in (name, f"{field}={x if isinstance(x, str) else float(x)}")]
         else:
             words += [name, str(value)]
     return words
@@ -362,6 +385,7 @@ def simplify(
     threads: int = 1,
     max_boundary_error: float | None = None,
     max_field_errors: Mapping[str, float] | None = None,
+    errors: Mapping[str, float | str] | None = None,
     field_weights: Mapping[str, float] | None = None,
     label_weights: Mapping[str, float] | None = None,
     regions: str | None = None,
@@ -397,6 +421,9 @@ def simplify(
     max_boundary_error    coarsest level: the boundary's distance, over the diagonal
     max_field_errors      {name: rms error over the field's range; of a label a share of
                           the volume}
+    errors                {name: how far a value of the last level may be from the input's}: 0.5 in
+                          the field's unit, "0.5K", or "0.1%" of its range; the step and the bits
+                          follow. "all": every float field that is not named
     field_weights         {name: what a point field counts, 1 otherwise}
     label_weights         {name: what the interfaces of a cell field of integers count, such as
                           materials; 0 leaves them out}
@@ -460,6 +487,7 @@ def simplify(
     options.baseCells = int(base_cells or 0)
     options.threads = int(threads)
     options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
+    options.errors, options.errorCount = _bounds(errors)
     options.fieldWeights, options.fieldWeightCount = _named(field_weights)
     options.labelWeights, options.labelWeightCount = _named(label_weights)
     options.regions = regions.encode() if regions is not None else None

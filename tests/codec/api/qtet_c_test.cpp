@@ -7,6 +7,7 @@
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
 #include "proto/field_key.h"
+#include "proto/rounding_error.h"
 #include "tests/codec/api/c_log.h"
 
 namespace qtet {
@@ -51,6 +52,7 @@ TEST(QtetC, whatALogHoldsIsWhatItsManifestSays) {
       EXPECT_EQ(field.association, expected.association == "cell" ? QTET_CELL : QTET_POINT);
       EXPECT_EQ(field.bits, static_cast<std::uint32_t>(expected.bits));
       EXPECT_EQ(field.step, expected.step);
+      EXPECT_EQ(field.largestRoundingError, largestRoundingError(expected));
       EXPECT_TRUE(std::ranges::equal(field.range, expected.range));
       ASSERT_EQ(field.components, expected.minimum.size());
       EXPECT_TRUE(std::equal(expected.minimum.begin(), expected.minimum.end(), field.minimum));

@@ -134,6 +134,7 @@ def logs_are_the_tools():
         ("--algorithm paper", {"algorithm": "paper"}),
         ("--base-cells 300", {"base_cells": 300}),
         ("--base-error 0.02", {"base_error": 0.02}),
+        ("--error Heat=0.01 --error all=0.5%", {"errors": {"Heat": 0.01, "all": "0.5%"}}),
     ):
         subprocess.run([program, "simplify", vtu, "-o", log, "-q", *words.split()], check=True)
         made = qtet.simplify(points, cells, point_data, cell_data, source="grid.vtu", **options)
@@ -264,6 +265,8 @@ def what_a_log_holds_outlives_it():
     assert all(type(x) in (int, float, str, tuple) for x in vars(infos[0]).values())
     field, level = qtet.open(paths[0]).fields[1], qtet.open(paths[0]).level_info(0)
     assert (field.name, field.type, len(field.minimum)) == ("Swirl", "float64", 3), field
+    assert 0.5 * field.step < field.largestRoundingError < 0.501 * field.step, field
+    assert qtet.open(paths[0]).fields[2].largestRoundingError == 0
     assert type(level.boundaryDistance) is float and level.hasError is True
     for frozen in (infos[0], field, level):
         refused(dataclasses.FrozenInstanceError, "bytes", lambda: setattr(frozen, "bytes", 0))
@@ -387,7 +390,7 @@ def numbers_out_of_range_are_refused():
     for name in (
         *("target_ratio", "base_error", "base_cells", "boundary_weight", "shape_weight", "threads"),
         *("envelope_tolerance", "max_boundary_error", "position_bits", "field_bits"),
-        *("max_field_errors", "field_weights", "label_weights"),
+        *("errors", "max_field_errors", "field_weights", "label_weights"),
     ):
         for value in (numpy.nan, -3, -1e-9):
             option = {name: {"Heat": value} if name.endswith(("errors", "weights")) else value}

@@ -135,6 +135,7 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
   };
   static const qtet_named_number kWeights[] = {{"Swirl", 3}}, kLabels[] = {{"Label", 40}},
                                  kBounds[] = {{"Scalar", 0.05}};
+  static const qtet_error_bound kErrors[] = {{"Scalar", 0.01, nullptr}, {"all", 0.5, "%"}};
   for (const Case& c : {
            Case{"", [](qtet_simplify_options&) {}},
            Case{"--lossless --keep-order --value-codec adaptive --placement vertex --threads 2",
@@ -170,6 +171,8 @@ TEST(QtetSimplify, logsAreTheToolsByteForByte) {
                 }},
            Case{"--label-weight Label=40",
                 [](qtet_simplify_options& o) { o.labelWeights = kLabels, o.labelWeightCount = 1; }},
+           Case{"--error Scalar=0.01 --error all=0.5%",
+                [](qtet_simplify_options& o) { o.errors = kErrors, o.errorCount = 2; }},
            Case{"--field-weight Swirl=3 --max-boundary-error 0.05 --max-field-error Scalar=0.05",
                 [](qtet_simplify_options& o) {
                   o.fieldWeights = kWeights, o.fieldWeightCount = 1;
@@ -436,6 +439,18 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refused(QTET_BAD_VALUE, "labelWeights is null", [](Arrays&, O& o) { o.labelWeightCount = 1; });
   refused(QTET_NOT_FOUND, "'?'",
           [](Arrays&, O& o) { o.labelWeights = &kNoField, o.labelWeightCount = 1; });
+  refused(QTET_BAD_VALUE, "errors is null", [](Arrays&, O& o) { o.errorCount = 1; });
+  static const qtet_error_bound kUnnamed{nullptr, 1, ""}, kZero{"Swirl", 0, ""},
+      kOfNone{"?", 1, ""}, kInMetres{"Swirl", 1, "m"};
+  const auto refusedBound = [&](qtet_status status, const char* words,
+                                const qtet_error_bound& bound) {
+    refused(status, words, [&](Arrays&, O& o) { o.errors = &bound, o.errorCount = 1; });
+  };
+  refusedBound(QTET_BAD_VALUE, "errors[0] has no name", kUnnamed);
+  refusedBound(QTET_BAD_VALUE, "above 0", kZero);
+  refusedBound(QTET_NOT_FOUND, "'?'", kOfNone);
+  refusedBound(QTET_BAD_VALUE, "no unit that is known", kInMetres);
+  refused(QTET_BAD_VALUE, "errorReserved", [](Arrays&, O& o) { o.errorReserved = 1; });
   refused(QTET_NOT_FOUND, "'?'", [](Arrays&, O& o) { o.regions = "?"; });
 }
 

@@ -206,5 +206,21 @@ TEST(PutOnLattice, aValueOutsideTheScaleIsRefused) {
   EXPECT_FALSE(putOnLattice(mesh, quantised->mesh.lattice, quantised->mesh.fields));
 }
 
+TEST(PutOnLattice, aValueBeyondTheErrorThatTheLogStatesIsNamed) {
+  const TetMesh mesh = boxSample();
+  const Result<QuantisedMesh> quantised = quantise(mesh);
+  std::vector<FieldInfo> fields = quantised->mesh.fields;
+  // called one value, as by a log that states too little
+  fields[0].range = {fields[0].minimum[0], fields[0].minimum[0]};
+  const Result<OnLattice> put = putOnLattice(mesh, quantised->mesh.lattice, fields);
+  ASSERT_FALSE(put);
+  EXPECT_EQ(put.error().code, ErrorCode::kBadValue);
+  EXPECT_TRUE(put.error().message.starts_with("field " + fields[0].name + " at point "))
+      << put.error().text();
+  EXPECT_NE(put.error().message.find(" off what the log holds, and the most is 0;"),
+            std::string::npos)
+      << put.error().text();
+}
+
 }  // namespace
 }  // namespace qtet

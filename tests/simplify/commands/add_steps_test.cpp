@@ -239,6 +239,26 @@ TEST_F(AddStepsTool, statisticsThatDoNotCountTheNewInstantsAreNamed) {
 }
 
 // The instants that go must not be what the new ones rest on.
+TEST_F(AddStepsTool, aBoundKeepsTheScaleOfTheSeriesWhereThatHoldsIt) {
+  const std::string make = "simplify run.pvd --time 0:1 -o log.qtet --measure none --error T=";
+  const auto within = [&](std::size_t f) {
+    return run("info log.qtet --json").json()["fields"][f]["largestRoundingError"].get<double>();
+  };
+  for (const std::string bound : {"0.5%", "0.004"}) {
+    ASSERT_EQ(run(make + bound).code, 0);
+    const double first = within(0);
+    ASSERT_EQ(run("add-steps log.qtet run.pvd --time 0:2 --error T=" + bound).code, 0);
+    EXPECT_EQ(within(3), first) << "though the values of these steps span less";
+    EXPECT_EQ(within(4), first);
+    const Ran finer = run("add-steps log.qtet run.pvd --time 0:3 --error all=0.001");
+    ASSERT_EQ(finer.code, 0) << finer.err;
+    EXPECT_LE(within(5), 0.001);
+    EXPECT_EQ(within(5), within(6)) << "they share a scale of their own";
+    EXPECT_EQ(run("verify log.qtet --against run.pvd").code, 0);
+  }
+  expectFailure("add-steps log.qtet run.pvd --error S=1", 1, "--error: the mesh carries no field");
+}
+
 TEST_F(AddStepsTool, addFieldReplacesInstantsThatLaterOnesCouldRestOn) {
   const Ran ran = run("add-field log.qtet --from run.pvd --time 0:3 --replace -o new.qtet");
   ASSERT_EQ(ran.code, 0) << ran.err;

@@ -48,6 +48,40 @@ TEST_F(Tool, helpAndVersionSucceed) {
     EXPECT_NE(all.find(words), std::string::npos) << words;
 }
 
+TEST_F(Tool, valuesAreWithinTheErrorThatWasAskedForAndVerifyProvesIt) {
+  const TetMesh mesh = boxWithT();
+  write("t.vtu", mesh);
+  const std::string make = "simplify t.vtu -o t.qtet --measure none --unit T=K ";
+  ASSERT_EQ(run(make + "--error T=0.01K").code, 0);
+  const nlohmann::json field = run("info t.qtet --json").json()["fields"][0];
+  EXPECT_LE(field["largestRoundingError"], 0.01) << field;
+  EXPECT_GT(field["largestRoundingError"], 0.0095) << field;
+  const Ran proof = run("verify t.qtet --against t.vtu");
+  EXPECT_EQ(proof.code, 0) << proof.err;
+  EXPECT_NE(proof.out.find("\neach value of T is within 0.009"), std::string::npos) << proof.out;
+  const nlohmann::json errors =
+      run("verify t.qtet --against t.vtu --json").json()["against"]["valueErrors"]["T"];
+  EXPECT_EQ(errors["bound"], field["largestRoundingError"]);
+  EXPECT_LE(errors["largest"], errors["bound"]);
+  EXPECT_EQ(errors["unit"], "K");
+  TetMesh other = mesh;
+  other.fields[0].values[5] += 0.02;
+  write("other.vtu", other);
+  expectFailure("verify t.qtet --against other.vtu", 1, "");
+
+  expectFailure(make + "--error T=0.01C", 1, "--error of T is in C, and the field is in K");
+  expectFailure(make + "--error p=1", 1, "not-found: --error: the mesh carries no field 'p'");
+  expectFailure(make + "--error T=1e-12", 1, "field T cannot be within 1e-12: 28 bits");
+  for (const char* wrong : {"T", "=1", "T=", "T=K", "T=0", "T=-1", "T=nan"})
+    expectFailure(make + "--error " + wrong, 2, "write NAME=BOUND");
+
+  ASSERT_EQ(run("add-field t.qtet --from t.vtu --replace --error all=0.5% -o u.qtet").code, 0);
+  const nlohmann::json coarse = run("info u.qtet --json").json()["fields"][0];
+  EXPECT_EQ(coarse["bits"], 7);
+  EXPECT_NE(run("info u.qtet").out.find("  within  "), std::string::npos);
+  expectFailure("add-field t.qtet --from t.vtu --replace --error T=1m -o u.qtet", 1, "is in K");
+}
+
 TEST_F(Tool, completionsAndManualPagesSayWhatHelpSays) {
   for (const char* shell : {"bash", "zsh", "fish"}) {
     const Ran ran = run(std::string("completion ") + shell);

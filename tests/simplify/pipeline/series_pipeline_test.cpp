@@ -13,6 +13,7 @@
 #include "proto/field_key.h"
 #include "proto/limits.h"
 #include "proto/number_text.h"
+#include "proto/rounding_error.h"
 #include "simplify/read/options/time_steps.h"
 #include "tests/support/meshes.h"
 
@@ -129,6 +130,32 @@ TEST_F(SeriesPipeline, allInstantsOfASeriesHaveOneStepAndMostArePredicted) {
     alone += made.report.index.fields[f].prediction.isNone();
   }
   EXPECT_LE(alone, 3u);
+}
+
+TEST_F(SeriesPipeline, allInstantsOfASeriesAreWithinABoundByOneStep) {
+  jump_ = 5;
+  double low = 0, high = 0;  // of the sample, whose first values are 0
+  for (const MeshField& field : read(sampledSteps(kSteps)).value().fields)
+    if (!isCellField(field))
+      for (const double value : field.values)
+        low = std::min(low, value), high = std::max(high, value);
+  const double range = high - low;
+  for (const ValueBound& bound : {ValueBound{0.002}, {0.1, "%"}}) {
+    PipelineOptions options;
+    options.quantise.errors = {{"T", bound}};
+    const PipelineOutput made = make(options).value();
+    const double most = bound.isOfRange() ? bound.value / 100 * range : bound.value;
+    std::size_t alone = 0;
+    for (std::size_t f = 0; f < made.report.manifest.fields.size(); ++f) {
+      const ManifestField& field = made.report.manifest.fields[f];
+      if (field.association != "point") continue;
+      EXPECT_EQ(field.step, made.report.manifest.fields[0].step) << field.name;
+      EXPECT_LE(largestRoundingError(field), most) << field.name;
+      EXPECT_GT(largestRoundingError(field), 0.9 * most) << field.name;
+      alone += made.report.index.fields[f].prediction.isNone();
+    }
+    EXPECT_LE(alone, 3u);
+  }
 }
 
 TEST_F(SeriesPipeline, instantsBelowTheRoomOfTheSampleGetRoomForTheirWindow) {

@@ -52,6 +52,23 @@ export interface FieldInfo {
   instant?: Instant;
 }
 
+const kFloat32 = 0;
+
+/**
+ * The most that a value of the last level may differ from the original's, in the field's unit. It is
+ * half a step and the rounding of the type (proto/rounding_error.h). 0: it is the original's.
+ */
+export function largestRoundingError(info: FieldInfo): number {
+  const {bits = 0, components, instant, isWhole, minimum, step, type} = info;
+  const [low, high] = instant?.own.range ?? info.range;
+  const isOneValue = components === 1 && low === high && low === minimum[0];
+  if (isWhole ? step === 1 : isOneValue) return 0;
+  const span = step * (2 ** bits - 1);
+  const magnitude = Math.max(...minimum.flatMap((x) => [Math.abs(x), Math.abs(x + span)]));
+  const ofType = type === kFloat32 ? magnitude * 2 ** -24 + 2 ** -150 : isWhole ? 0.5 : 0;
+  return step / 2 + magnitude * 2 ** -49 + ofType;
+}
+
 /**
  * The server's key for each field: its name, or `cell:NAME` for the cell field if two fields share
  * a name (proto/PROTOCOL.md).

@@ -2,6 +2,7 @@
 // too early.
 
 import type {FieldInfo} from '../../core/protocol/fields';
+import {instantName} from '../../core/protocol/series';
 
 const kCounts = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
 const kByteUnits = ['B', 'kB', 'MB', 'GB', 'TB'];
@@ -34,6 +35,15 @@ export function formatError(error: number): string {
   const percent = 100 * error;
   if (percent >= 0.001) return `${Number(percent.toPrecision(2))}\u202f%`;
   return `${percent.toExponential(1).replaceAll('-', '\u2212')}\u202f%`;
+}
+
+/** "T is within 0.05 K at the last level", with two digits, rounded up. */
+export function formatWithin(info: FieldInfo, error: number): string {
+  const name = instantName(info.name)?.series ?? info.name;
+  if (error === 0) return `${name} is exact at the last level`;
+  const digit = 10 ** (Math.floor(Math.log10(error)) - 1);
+  const bound = `${Number((Math.ceil(error / digit) * digit).toPrecision(2))}`;
+  return `${name} is within ${bound}${info.unit ? `\u202f${info.unit}` : ''} at the last level`;
 }
 
 /** "4 s", "2 min", "1.5 h". */

@@ -3,12 +3,20 @@
 
 import type {LevelBytes} from '../../core/decode/plan';
 import type {Statistics} from '../../core/decode/statistics';
+import {largestRoundingError} from '../../core/protocol/fields';
 import {errorOfLevel, type Limit} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {StreamState} from '../../core/session/worker_messages';
 import {untilBeat} from '../page/beat';
 import {find, onClick, setAttribute, setText} from '../page/find';
-import {formatBytes, formatCount, formatDuration, formatError, percentOf} from '../page/format';
+import {
+  formatBytes,
+  formatCount,
+  formatDuration,
+  formatError,
+  formatWithin,
+  percentOf,
+} from '../page/format';
 import type {ErrorCurve} from './error_curve';
 import {labelName} from './panel';
 
@@ -151,13 +159,16 @@ export class ProgressPanel {
   }
 
   private showError(error: string): void {
-    const label = labelName(this.fields, this.manifest!.fields);
+    const all = this.manifest!.fields;
+    const label = labelName(this.fields, all);
     const left = this.part('.error-left');
     setText(left, label === null ? error : `${error} of the volume`);
     setAttribute(
       left,
       'title',
-      label === null ? '' : `${error} of the volume has another ${label}`,
+      label === null
+        ? this.fields.map((f) => formatWithin(all[f]!, largestRoundingError(all[f]!))).join('\n')
+        : `${error} of the volume has another ${label}`,
     );
   }
 
