@@ -8,6 +8,7 @@
 #include "simplify/read/text/mesh_scanner.h"
 #include "simplify/read/text/text_readers.h"
 #include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/vtu/old_hexahedra.h"
 
 namespace qtet {
 namespace {
@@ -59,6 +60,7 @@ class LegacyVtk {
     const std::string_view first = in_.line();  // # vtk DataFile Version 5.1
     const std::string_view version = first.substr(std::min(first.size(), first.rfind(' ') + 1));
     std::from_chars(version.data(), version.data() + version.size(), version_);
+    hasOldHexahedra_ = isOlderVersion(version, kNewLegacyHexahedra);
     in_.skipLine();  // the title
     const std::string form = lowered(in_.word());
     bytes_ = form == "binary";
@@ -202,6 +204,7 @@ class LegacyVtk {
     if (rows.size() != cellCount_) mesh.cellIds = rows;
     for (const bool ofCells : {false, true})
       if (Status done = addFields(ofCells, rows, mesh); !done) return done;
+    if (hasOldHexahedra_) renumberOldHexahedra(mesh);
     out_ = std::move(mesh);
     return {};
   }
@@ -290,6 +293,7 @@ class LegacyVtk {
   FieldChoice choice_;
   ReadReport& report_;
   int version_ = 0;
+  bool hasOldHexahedra_ = false;
   bool bytes_ = false;
   bool isUnderstood_ = true;
   Values points_;

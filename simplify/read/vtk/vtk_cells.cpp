@@ -68,8 +68,8 @@ std::vector<Position> pointsOf(vtkDataSet& data) {
   return points;
 }
 
-static_assert(kElsewhere ==
-              (vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
+static_assert(kElsewhere == (vtkDataSetAttributes::DUPLICATECELL |
+                             vtkDataSetAttributes::REFINEDCELL | vtkDataSetAttributes::HIDDENCELL));
 
 /// Cells that are another piece's, or blanked out.
 class Hidden {

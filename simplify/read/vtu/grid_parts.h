@@ -17,8 +17,9 @@ namespace qtet {
 /// how many layers away they lie.
 inline constexpr const char* kGhostTypes = "vtkGhostType";
 inline constexpr const char* kGhostLevels = "vtkGhostLevels";
-/// Bits of kGhostTypes of cells that another piece has, or that are blanked out.
-inline constexpr unsigned kElsewhere = 1u | 32u;
+/// Bits of kGhostTypes of cells that another piece has, that finer cells stand for, or that are
+/// blanked out.
+inline constexpr unsigned kElsewhere = 1u | 8u | 32u;
 /// Names of the point fields that hold for all pieces; the first that there is counts.
 inline constexpr const char* kGlobalIdNames[] = {"GlobalPointIds", "GlobalNodeIds", "GlobalNodeId"};
 

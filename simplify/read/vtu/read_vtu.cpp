@@ -7,6 +7,7 @@
 
 #include "proto/limits.h"
 #include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/vtu/old_hexahedra.h"
 #include "simplify/read/vtu/vtu_cells.h"
 #include "simplify/read/vtu/vtu_numbers.h"
 #include "simplify/split/higher_cells.h"
@@ -68,6 +69,7 @@ class VtuReader {
     for (const auto step : {&VtuReader::readPoints, &VtuReader::readGlobalIds,
                             &VtuReader::readCells, &VtuReader::readFields})
       if (Status done = (this->*step)(); !done) return std::unexpected(done.error());
+    if (document_.hasOldHexahedra) renumberOldHexahedra(out_);
     return std::move(out_);
   }
 

@@ -13,9 +13,18 @@
 
 #include "codec/files/vtu_writer.h"
 #include "simplify/read/options/xml_place.h"
+#include "simplify/read/vtu/old_hexahedra.h"
 
 namespace qtet {
 namespace {
+
+/// Some programs write "Ascii" or "Appended".
+bool isSameWord(std::string_view a, std::string_view b) {
+  const auto small = [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  };
+  return std::ranges::equal(a, b, {}, small, small);
+}
 
 /// Elements within elements. VTK's files have seven.
 constexpr std::size_t kMaxDepth = 64;
@@ -191,6 +200,7 @@ class DocumentParser {
     if (major > kMaxVersion)
       return refuse("the format's version is " + version + "; versions below " +
                     std::to_string(kMaxVersion + 1) + " are read: export it for an older VTK");
+    out_.hasOldHexahedra = isOlderVersion(version, kNewXmlHexahedra);
     out_.isBigEndian = choice(attributes, "byte_order",
                               std::array<std::string_view, 2>{"LittleEndian", "BigEndian"}) == 1;
     out_.wordBytes =
@@ -210,7 +220,8 @@ class DocumentParser {
                      const std::array<std::string_view, N>& values) {
     const auto value = attributes[name];
     if (!value) return 0;
-    const auto at = std::ranges::find(values, *value);
+    const auto at =
+        std::ranges::find_if(values, [&](std::string_view v) { return isSameWord(v, *value); });
     if (at != values.end()) return static_cast<std::size_t>(at - values.begin());
     std::string known;
     for (const std::string_view v : values) known += (known.empty() ? "" : ", ") + std::string(v);

@@ -69,6 +69,7 @@ struct VtuDocument {
   bool isBigEndian = false;
   std::uint32_t wordBytes = 4;  ///< of the numbers in front of binary data
   VtuCompressor compressor = VtuCompressor::kNone;
+  bool hasOldHexahedra = false;  ///< their nodes stand in the order of VTK 8 (old_hexahedra.h)
   bool hasTimeSteps = false;     ///< several steps in one file, of which arrays tell theirs
   std::optional<VtuArray> time;  ///< of <FieldData>: the time of this one step
   /// Arrays of <FieldData> such as "Material=steel" (vtu_label_names.h).

@@ -69,7 +69,11 @@ vtkNew<vtkUnstructuredGrid> manyKinds() {
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName("vtkGhostType");
   for (vtkIdType i = 0; i < cells; ++i)
-    ghosts->InsertNextValue(i % 11 == 0 ? 1 : i % 13 == 0 ? 32 : i % 17 == 0 ? 2 : 0);
+    ghosts->InsertNextValue(i % 11 == 0   ? 1
+                            : i % 13 == 0 ? 32
+                            : i % 17 == 0 ? 2
+                            : i % 19 == 0 ? 8
+                                          : 0);
   ofCells.AddArray(ghosts);
   vtkNew<vtkDoubleArray> time;
   time->SetName("TimeValue");
