@@ -42,9 +42,10 @@ int qtet_simplify_file(const char* name) {
   if (!log) return failed(log.error());
   logBytes = std::move(*log);
   nlohmann::ordered_json out = {{"notes", read->report.notes},
-                                {"warnings", made->report.warnings},
+                                {"warnings", read->report.warnings},
                                 {"tetrahedra", made->report.tetrahedraIn}};
   for (const std::string& note : made->report.notes) out["notes"].push_back(note);
+  for (const std::string& warning : made->report.warnings) out["warnings"].push_back(warning);
   report = out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return 0;
 }

@@ -222,6 +222,18 @@ void reportNonManifoldParts(Cleaning& cleaning) {
     cleaning.report.nonManifoldVertices.add(cleaning.pointNames[v]);
 }
 
+void reportExtent(Cleaning& cleaning) {
+  const TetMesh& mesh = cleaning.mesh;
+  CleanReport& report = cleaning.report;
+  for (const Tetrahedron& cell : mesh.tetrahedra) report.volume += volume6Of(mesh, cell) / 6;
+  report.box = {mesh.points.front(), mesh.points.front()};
+  for (const Position& p : mesh.points)
+    for (std::size_t a = 0; a < 3; ++a) {
+      report.box[0][a] = std::min(report.box[0][a], p[a]);
+      report.box[1][a] = std::max(report.box[1][a], p[a]);
+    }
+}
+
 Result<CleanReport> clean(TetMesh& mesh, const std::stop_token& stop) {
   Cleaning cleaning{
       mesh, {}, countedUp(mesh.tetrahedra.size()), countedUp(mesh.points.size()), stop};
@@ -240,6 +252,7 @@ Result<CleanReport> clean(TetMesh& mesh, const std::stop_token& stop) {
   cleaning.report.boundary = faces.boundaryOf(mesh.tetrahedra);
   reportCoincidentPoints(cleaning);
   reportNonManifoldParts(cleaning);
+  reportExtent(cleaning);
   return std::move(cleaning.report);
 }
 

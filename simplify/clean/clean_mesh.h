@@ -39,6 +39,8 @@ struct CleanReport {
   /// Boundary vertices whose triangles are not one closed fan: kept.
   Occurrences nonManifoldVertices;
   std::uint64_t components = 0;    ///< sets of cells that hang together by faces
+  double volume = 0;               ///< of the cleaned mesh; inverted cells count negative
+  std::array<Position, 2> box{};   ///< the cleaned mesh's lowest and highest coordinates
   std::vector<Triangle> boundary;  ///< the cleaned mesh's, as boundaryOf gives it
 
   /// Changes made and unusual findings, one sentence each; empty for a flawless mesh.

@@ -9,6 +9,7 @@
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/predicates.h"
 #include "proto/limits.h"
+#include "proto/number_text.h"
 #include "simplify/clean/field_scales.h"
 #include "simplify/clean/float_spacing.h"
 #include "simplify/mesh/missing_values.h"
@@ -140,6 +141,20 @@ void placePoints(const TetMesh& mesh, const Bounds& box, const std::stop_token& 
   }
 }
 
+/// A lattice has one step on all axes, so it holds no mesh that is much thinner than long.
+Status checkWorse(const TetMesh& mesh, const Bounds& box, const QuantiseReport& report) {
+  const auto cells = static_cast<double>(mesh.tetrahedra.size());
+  if (static_cast<double>(report.worseCells.count) <= kMostWorseCells * cells) return {};
+  const double step = box.extent() / std::ldexp(1.0, kMaxPositionBits);
+  return fail(ErrorCode::kBadInput,
+              std::to_string(report.worseCells.count) + " of its " +
+                  std::to_string(mesh.tetrahedra.size()) +
+                  " cells would be flattened: the finest lattice has a step of " +
+                  shortestText(step) +
+                  ", and they are thinner; scale the long axis down, or cut the mesh to where it "
+                  "has its cells");
+}
+
 Status placeFields(const TetMesh& mesh, const QuantiseOptions& options, const std::stop_token& stop,
                    QuantisedMesh& out) {
   const int bits = options.fieldBits;
@@ -181,6 +196,8 @@ Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
   QuantisedMesh out;
   out.report.requestedBits = options.positionBits;
   placePoints(mesh, box, stop, out);
+  if (Status checked = checkWorse(mesh, box, out.report); !checked)
+    return std::unexpected(checked.error());
   out.mesh.tetrahedra = mesh.tetrahedra;
   out.mesh.boundary =
       boundary.empty() ? boundaryOf(mesh.tetrahedra, StopFlag(stop).get()) : std::move(boundary);

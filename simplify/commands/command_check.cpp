@@ -27,8 +27,10 @@ OrderedJson toJson(const CheckReport& report, const std::string& input, const Co
           {"tetrahedra", report.tetrahedra},
           {"fields", report.fields},
           {"components", report.components},
+          {"mesh", report.clean.components > 0 ? soundnessReport(report.clean) : OrderedJson()},
           {"read", readReport(report.read)},
           {"notes", withOptionNames(report.read.notes)},
+          {"warnings", withOptionNames(report.read.warnings)},
           {"findings", findings}};
 }
 
@@ -39,6 +41,7 @@ void printReport(const CheckReport& report, const std::string& input, const Cons
         << counted(report.tetrahedra, "tetrahedron", "tetrahedra");
     if (!report.read.split.onlyTetrahedra()) out << " of cells that were split";
     out << ", " << counted(report.fields.size(), "field", "fields") << "\n";
+    if (report.clean.components > 0) out << soundnessText(soundnessReport(report.clean)) << "\n";
     for (const std::string& field : report.fields) out << "  " << printable(field) << "\n";
   }
   for (const Finding& finding : report.findings) {
@@ -87,6 +90,7 @@ int runCheck(const Words& words, Console& console) {
     printJson(toJson(report, input, console), console);
   } else {
     for (const std::string& note : report.read.notes) console.note(note);
+    for (const std::string& warning : report.read.warnings) console.warn(warning);
     printReport(report, input, console);
   }
   return report.refused() ? kExitFailed : kExitOk;

@@ -71,6 +71,7 @@ int runConvert(const Words& words, Console& console) {
   progress.clear();
   if (!read) return reportFailure(read.error(), asJson, console);
   for (const std::string& note : read->report.notes) console.note(note);
+  for (const std::string& warning : read->report.warnings) console.warn(warning);
   const Result<Bytes> bytes = meshFileBytes(read->mesh, "mesh" + output->ending, output->options);
   const Status written =
       writeMeshOutput(*output, *bytes, reportOf(input, *read, output->ending), console);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
 #include "simplify/read/options/time_steps.h"
 #include "simplify/read/options/time_text.h"
@@ -148,6 +150,32 @@ OrderedJson readReport(const ReadReport& report) {
           {"joinedPoints", report.joinedPoints},
           {"weldedPoints", report.weldedPoints},
           {"mendedFaces", report.mendedFaces}};
+}
+
+OrderedJson soundnessReport(const CleanReport& clean) {
+  return {{"volume", clean.volume},
+          {"box", clean.box},
+          {"invertedCells", clean.invertedCells.count},
+          {"components", clean.components}};
+}
+
+std::string soundnessText(const OrderedJson& mesh) {
+  const auto short6 = [](double number) {
+    std::ostringstream out;
+    out << std::setprecision(6) << number;
+    return out.str();
+  };
+  const auto corner = [&](const OrderedJson& place) {
+    std::string out;
+    for (const OrderedJson& x : place) out += (out.empty() ? "" : " ") + short6(x.get<double>());
+    return out;
+  };
+  const auto inverted = mesh["invertedCells"].get<std::uint64_t>();
+  return "volume " + short6(mesh["volume"].get<double>()) + ", box " + corner(mesh["box"][0]) +
+         " to " + corner(mesh["box"][1]) + ", " +
+         (inverted == 0 ? "no inverted cell"
+                        : counted(inverted, "inverted cell", "inverted cells")) +
+         ", " + counted(mesh["components"].get<std::uint64_t>(), "part", "parts");
 }
 
 }  // namespace qtet

@@ -3,6 +3,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "simplify/clean/clean_mesh.h"
 #include "simplify/commands/command_line.h"
 #include "simplify/read/options/read_options.h"
 
@@ -31,5 +32,11 @@ void addTimesOption(boost::program_options::options_description& options);
 
 /// How many cells of which kind were split, points welded and so on.
 [[nodiscard]] OrderedJson readReport(const ReadReport& report);
+
+/// Shows at once whether a mesh was read right: {volume, box, invertedCells, components}.
+[[nodiscard]] OrderedJson soundnessReport(const CleanReport& clean);
+
+/// "volume 1, box 0 0 0 to 1 1 1, no inverted cell, 1 part", of soundnessReport's members.
+[[nodiscard]] std::string soundnessText(const OrderedJson& mesh);
 
 }  // namespace qtet

@@ -85,6 +85,7 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
     throw UsageError(
         "--time-statistics needs values of all steps at the same points, which a list of logs does "
         "not have; give -o NAME.qtet, or leave it out");
+  request.read.keepsNumbers = parsed.has("lossless");
   options.keep = {parsed.has("keep-order"), parsed.has("lossless"), request.read.originalIds};
   return request;
 }

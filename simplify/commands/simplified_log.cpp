@@ -162,6 +162,7 @@ OrderedJson reportOf(const SimplifyRequest& request, const ReadReport& read,
                        {"origin", manifest.latticeOrigin},
                        {"worseCells", toJson(from.quantise.worseCells)}};
   report["clean"] = toJson(from.clean);
+  report["mesh"] = soundnessReport(from.clean);
   report["read"] = readReport(read);
   report["ignoredCells"] = read.ignoredCells;
   report["ignoredFields"] = read.ignoredFields;
@@ -169,7 +170,9 @@ OrderedJson reportOf(const SimplifyRequest& request, const ReadReport& read,
   report["seconds"] = watch.seconds();
   report["notes"] = withOptionNames(read.notes);
   for (const std::string& note : withOptionNames(from.notes)) report["notes"].push_back(note);
-  report["warnings"] = withOptionNames(from.warnings);
+  report["warnings"] = withOptionNames(read.warnings);
+  for (const std::string& warning : withOptionNames(from.warnings))
+    report["warnings"].push_back(warning);
   if (from.paper) report["paper"] = toJson(*from.paper);
   return report;
 }
@@ -282,6 +285,7 @@ void printMadeLog(const OrderedJson& report, std::ostream& out) {
     out << ", " << printable(bits["fields"].begin().key()) << " "
         << bits["fields"].begin()->get<double>();
   out << "\n";
+  out << soundnessText(report["mesh"]) << "\n";
   const OrderedJson& error = report["error"];
   if (const std::string measured = measureSentence(error); !measured.empty()) {
     out << measured;

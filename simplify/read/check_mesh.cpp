@@ -80,6 +80,8 @@ class Checking {
     if (clean) {
       addClean(*clean);
       report_.components = clean->components;
+      report_.clean = *clean;
+      report_.clean.boundary.clear();
     } else if (!isCrowded_) {
       refuse(clean.error());
     }

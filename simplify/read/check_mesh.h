@@ -34,6 +34,7 @@ struct CheckReport {
   ReadReport read;
   std::vector<std::string> fields;  ///< "point NAME (float32 x 3)"
   std::uint64_t components = 0;
+  CleanReport clean;              ///< empty where the mesh is refused
   std::vector<Finding> findings;  ///< the refused first
   [[nodiscard]] bool refused() const;
 };

@@ -10,6 +10,7 @@
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
+#include "simplify/read/parts/own_points.h"
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/parts/weld_points.h"
 #include "simplify/read/process/inflate_file.h"
@@ -292,6 +293,32 @@ void leaveOutIds(CellMesh& cells, std::vector<std::string>& notes) {
                     " joined the pieces and is left out; `fields` reads it, too");
 }
 
+/// Joins cells that have points of their own, or warns that they stay apart.
+void joinApartCells(CellMesh& cells, bool joins, ReadReport& report) {
+  const OwnPoints own = joinOwnPoints(cells, joins);
+  if (own.patches == 0) return;
+  report.joinedPoints += own.joined;
+  const std::string sets = "its " + std::to_string(own.patches) +
+                           " cells or patches of cells have points of their own, of which " +
+                           std::to_string(own.coincident) + " lie at the place of another";
+  if (!own.isTorn()) {
+    report.notes.push_back(sets + ": " + std::to_string(own.joined) +
+                           " were joined; `weld` none would keep them apart");
+    if (own.differing > 0)
+      report.notes.push_back(std::to_string(own.differing) +
+                             " of these points have other values, by more than a thousandth of a "
+                             "field's range, and stay apart; `weld` 0 joins them");
+    return;
+  }
+  report.warnings.push_back(
+      sets +
+      (joins ? ", but " + std::to_string(own.differing) +
+                   " have other values there: a discontinuous field"
+             : "") +
+      ". Cells that hang together nowhere can hardly be simplified, and take many times the bytes; "
+      "`weld` 0 joins the points, with the values of the earlier cell");
+}
+
 }  // namespace
 
 Result<CellMesh> readStoredCells(const std::filesystem::path& path, const ReadOptions& options,
@@ -312,6 +339,9 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
   dropUnusedPoints(*cells, report.notes);
   if (Status checked = checkCellMesh(*cells, path); !checked)
     return std::unexpected(checked.error());
+  if (!options.keepsNumbers)
+    leaveOutNumbers(withThresholdField(options).fields, *cells, report.notes);
+  if (!options.weld) joinApartCells(*cells, options.joinPieces, report);
   if (Status done = leaveOutWideIntegers(withThresholdField(options).fields, path, cells->fields,
                                          report.notes);
       !done)

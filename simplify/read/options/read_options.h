@@ -47,6 +47,7 @@ struct ReadOptions {
   bool joinPieces = true;      ///< at the points that they share (join_pieces.h)
   /// Whose points stay apart; nullopt: the file's first step says it (readMesh).
   std::optional<BlockPairs> apartBlocks{};
+  bool keepsNumbers = false;  ///< also fields that only number things (leaveOutNumbers)
   /// Adds the cell field kOriginalCellField (split_cells.h) to those asked for by name; naming it
   /// does the same.
   bool originalIds = false;
@@ -89,6 +90,7 @@ struct ReadReport {
   SeriesReport series{};              ///< on all steps that were read as one mesh
   std::vector<std::string> labels{};  ///< the cell fields made of labels (cell_labels.h)
   std::vector<std::string> notes;     ///< also VTK's warnings
+  std::vector<std::string> warnings{};  ///< what spoils the result, and the cure
 };
 
 }  // namespace qtet

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "proto/field_key.h"
@@ -24,6 +26,19 @@ std::string namesOf(const std::vector<MeshField>& fields, const std::vector<std:
   for (const MeshField& field : fields) out.push_back(field.name);
   out.insert(out.end(), others.begin(), others.end());
   return fieldList(out);
+}
+
+/// Names of the fields in which VTK's filters say where points and cells come from.
+constexpr std::string_view kVtkOriginals[] = {"vtkOriginalPointIds", "vtkOriginalCellIds"};
+
+bool numbersThings(const MeshField& field) {
+  if (isFloatType(field.type) || field.components != 1 || !field.labelNames.empty()) return false;
+  const std::string_view name = nameWithoutStep(field.name).value_or(field.name);
+  if (std::ranges::find(kVtkOriginals, name) != std::end(kVtkOriginals)) return true;
+  if (field.values.size() < kFewestNumbers) return false;
+  std::vector<double> sorted = field.values;
+  std::ranges::sort(sorted);
+  return std::ranges::adjacent_find(sorted) == sorted.end();
 }
 
 bool isWithin(const Threshold& threshold, const MeshField& field, std::size_t tuple) {
@@ -134,6 +149,20 @@ Status leaveOutWideIntegers(const FieldNames& names, const std::filesystem::path
     fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(f));
   }
   return {};
+}
+
+void leaveOutNumbers(const FieldNames& names, CellMesh& mesh, std::vector<std::string>& notes) {
+  if (names) return;
+  std::vector<std::string> left;
+  std::erase_if(mesh.fields, [&](const MeshField& field) {
+    if (!numbersThings(field)) return false;
+    left.push_back(field.association + ":" + field.name);
+    mesh.otherFields.push_back(field.name);
+    return true;
+  });
+  if (!left.empty())
+    notes.push_back("fields that only number points or cells are left out: " + fieldList(left) +
+                    "; `fields` reads them, too");
 }
 
 const char* integerTypeOf(std::span<const double> values) {

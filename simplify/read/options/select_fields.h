@@ -34,6 +34,16 @@ namespace qtet {
                                           std::vector<MeshField>& fields,
                                           std::vector<std::string>& notes);
 
+/// Fewer values may all differ though they number nothing, such as the materials of a few cells.
+/// Numbers of so few things take some hundred bytes at most.
+inline constexpr std::size_t kFewestNumbers = 64;
+
+/// Where all fields are meant, leaves out those that number points or cells. VTK's filters add
+/// vtkOriginalPointIds and vtkOriginalCellIds. Others are fields of one integer each, at least
+/// kFewestNumbers in all, without names, no two of which are the same. One note names
+/// all such fields. They are the larger part of a log, and nobody looks at them.
+void leaveOutNumbers(const FieldNames& names, CellMesh& mesh, std::vector<std::string>& notes);
+
 /// int32 where it holds all values, else int64: for files that do not say how wide their integers
 /// are.
 [[nodiscard]] const char* integerTypeOf(std::span<const double> values);

@@ -31,6 +31,25 @@ TEST(CleanMesh, aFlawlessMeshStaysAsItIs) {
   EXPECT_EQ(mesh.points, before.points);
 }
 
+TEST(CleanMesh, itsVolumeAndBoxAreReported) {
+  TetMesh mesh = twoCells();
+  mesh.points.push_back({99, 99, 99});  // of no cell
+  const CleanReport report = cleaned(mesh);
+  double volume = 0;
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    volume +=
+        roundedVolume6(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) /
+        6;
+  EXPECT_DOUBLE_EQ(report.volume, volume);
+  EXPECT_GT(report.volume, 0);
+  for (const Position& p : mesh.points)
+    for (std::size_t a = 0; a < 3; ++a) {
+      EXPECT_LE(report.box[0][a], p[a]);
+      EXPECT_GE(report.box[1][a], p[a]);
+    }
+  EXPECT_LT(report.box[1][0], 99);
+}
+
 TEST(CleanMesh, aCellThatNamesAVertexTwiceIsDropped) {
   TetMesh mesh = twoCells();
   mesh.tetrahedra.insert(mesh.tetrahedra.begin() + 1, {0, 2, 2, 3});

@@ -62,13 +62,35 @@ TEST(Quantise, bitsAreAddedUntilNoCellIsWorse) {
   EXPECT_EQ(orientation(p[0], p[1], p[2], p[3]), 1);
 }
 
+/// Cells of height 1e-12 and then of height 1, side by side.
+TetMesh thinAndThick(int thin, int thick) {
+  TetMesh mesh;
+  for (int i = 0; i < thin + thick; ++i) {
+    const auto first = static_cast<VertexId>(mesh.points.size());
+    const double x = 2.0 * i;
+    mesh.points.insert(mesh.points.end(),
+                       {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}, {x, 0, i < thin ? 1e-12 : 1}});
+    mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+  }
+  return mesh;
+}
+
 TEST(Quantise, whatNoLatticeHoldsIsReportedAtTheMost) {
-  TetMesh mesh = oneCell();
-  mesh.points[3] = {0.2, 0.2, 1e-12};
-  const QuantisedMesh out = quantised(mesh);
+  const QuantisedMesh out = quantised(thinAndThick(1, 1));
   EXPECT_EQ(out.mesh.lattice.bits, kMaxPositionBits);
   EXPECT_EQ(out.report.worseCells.first, std::vector<std::uint64_t>{0});
   EXPECT_EQ(out.report.notes.size(), 2u);
+}
+
+TEST(Quantise, aMeshOfWhichMostIsFlattenedIsRefused) {
+  EXPECT_TRUE(quantise(thinAndThick(49, 51)));
+  EXPECT_TRUE(quantise(thinAndThick(50, 50)));
+  const auto refused = quantise(thinAndThick(51, 49));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
+  EXPECT_NE(refused.error().message.find("51 of its 100 cells would be flattened"),
+            std::string::npos)
+      << refused.error().message;
 }
 
 TEST(Quantise, aCellThatWasFlatMayStayFlat) {

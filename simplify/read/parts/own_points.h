@@ -1,0 +1,34 @@
+// Cells that have points of their own: MFEM, deal.II, Firedrake and their kin write each cell, or
+// each cell's refined patch, with points that no other one names.
+#pragma once
+
+#include <cstdint>
+
+#include "simplify/split/cell_mesh.h"
+
+namespace qtet {
+
+/// A patch has at most so many points on average: those of a hexahedron of degree 10, the highest
+/// that VTK knows.
+inline constexpr std::uint64_t kMostPatchPoints = 1331;
+/// Patches are taken for one mesh where more than this share of their points lie at the place of
+/// another patch's point. Parts of an assembly touch at far fewer.
+inline constexpr double kMostCoincide = 0.5;
+/// At most this share of such points may have other values (kSameValues). A field that jumps at an
+/// interface differs at fewer, one that jumps from cell to cell at most of them.
+inline constexpr double kFewDiffer = 0.01;
+
+struct OwnPoints {
+  std::uint64_t patches = 0;     ///< runs of cells that share points; 0: no cells of this kind
+  std::uint64_t coincident = 0;  ///< points at the place of another patch's earlier point
+  std::uint64_t differing = 0;   ///< those of them whose values differ
+  std::uint64_t joined = 0;      ///< points joined with an earlier one
+  [[nodiscard]] bool isTorn() const { return patches > 0 && joined == 0; }
+};
+
+/// Joins the patches of a mesh at the points that they share, as pieces are (joinPieces), where at
+/// most kFewDiffer of them have other values; these stay apart. `joins` false: only says what there
+/// is. REQUIRES: checkCellMesh(mesh) succeeded.
+OwnPoints joinOwnPoints(CellMesh& mesh, bool joins);
+
+}  // namespace qtet
