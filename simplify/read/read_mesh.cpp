@@ -7,6 +7,7 @@
 #include "simplify/clean/mend_faces.h"
 #include "simplify/read/abaqus/read_abaqus.h"
 #include "simplify/read/listed_files.h"
+#include "simplify/read/nastran/read_nastran.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
@@ -169,7 +170,7 @@ Result<CellMesh> readWhole(const std::filesystem::path& path, const ReadOptions&
   if (Status checked = checkMeshFile(path, ofAbaqus ? MeshFormat::kOther : format); !checked)
     return std::unexpected(checked.error());
   // they have no steps
-  if (ofAbaqus || (format >= MeshFormat::kMedit && format <= MeshFormat::kUnv)) {
+  if (ofAbaqus || (format >= MeshFormat::kMedit && format <= MeshFormat::kNastran)) {
     if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
       return std::unexpected(steps.error());
   }
@@ -187,6 +188,7 @@ Result<CellMesh> readWhole(const std::filesystem::path& path, const ReadOptions&
     case MeshFormat::kTetgen: return readTetgen(path, report, options.patience);
     case MeshFormat::kSu2: return readSu2(path, report, options.patience);
     case MeshFormat::kUnv: return readUnv(path, report, options.patience);
+    case MeshFormat::kNastran: return readNastran(path, report, options.patience);
     case MeshFormat::kXdmf: {
       const Result<XdmfFile> file = XdmfFile::open(path);
       if (!file) return std::unexpected(file.error());

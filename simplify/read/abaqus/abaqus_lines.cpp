@@ -9,7 +9,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\f\v", kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view kBlanks = " \t\r\f\v";
 constexpr std::uint32_t kLinesBetweenLooks = 1 << 12;
 constexpr std::size_t kShownOfAField = 24;
 
@@ -92,7 +92,6 @@ bool AbaqusLines::open(const std::filesystem::path& path) {
   }
   untilLook_ = 1;
   files_.push_back({path, std::move(*text)});
-  if (files_.back().text.starts_with(kByteOrderMark)) files_.back().place = kByteOrderMark.size();
   return true;
 }
 

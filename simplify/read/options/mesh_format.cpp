@@ -87,7 +87,10 @@ Status checkXml(const fs::path& path, const FileEnds& ends, std::string_view wan
 }
 
 Status checkLegacy(const fs::path& path, const FileEnds& ends) {
-  if (!ends.front.starts_with("# vtk DataFile Version")) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::string_view front = ends.front;
+  if (front.starts_with(kByteOrderMark)) front.remove_prefix(kByteOrderMark.size());
+  if (!front.starts_with("# vtk DataFile Version")) {
     return fail(ErrorCode::kBadInput,
                 path.string() +
                     " is not a legacy VTK file: its first line is not '# vtk DataFile Version ...'",
@@ -110,7 +113,7 @@ struct Ending {
   MeshFormat format;
 };
 
-constexpr std::array<Ending, 36> kEndings{{
+constexpr std::array<Ending, 39> kEndings{{
     {".vtu", MeshFormat::kVtu},       {".pvtu", MeshFormat::kPvtu},
     {".pvts", MeshFormat::kPvts},     {".pvtr", MeshFormat::kPvtr},
     {".pvti", MeshFormat::kPvti},     {".vtm", MeshFormat::kVtm},
@@ -129,6 +132,8 @@ constexpr std::array<Ending, 36> kEndings{{
     {".series", MeshFormat::kSeries}, {".cas", MeshFormat::kFluent},
     {".vtkhdf", MeshFormat::kVtkHdf}, {".xdmf", MeshFormat::kXdmf},
     {".xmf", MeshFormat::kXdmf},      {".unv", MeshFormat::kUnv},
+    {".bdf", MeshFormat::kNastran},   {".fem", MeshFormat::kNastran},
+    {".nas", MeshFormat::kNastran},
 }};
 
 /// NAME.e.4.0 and the like.

@@ -37,7 +37,8 @@ enum class MeshFormat {
   kMedit,
   kTetgen,
   kSu2,
-  kUnv,  // our own readers
+  kUnv,
+  kNastran,  // our own readers
   // through meshio, if it knows them
   kOther,
 };

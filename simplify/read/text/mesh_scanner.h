@@ -124,7 +124,7 @@ class MeshScanner {
   std::optional<Error> error_;
 };
 
-/// The file's bytes. Errors: io.
+/// The file's bytes, without a byte order mark of UTF-8. Errors: io; bad-input (UTF-16).
 [[nodiscard]] Result<std::string> wholeFile(const std::filesystem::path& path);
 
 }  // namespace qtet

@@ -31,9 +31,17 @@ constexpr std::array<Kind, 11> kKinds{{{"Tetrahedra", 8, kTetrahedronCell, 4},
                                        {"Vertices", 4, 0, 0}}};
 /// A cell's numbers in text at most: a hexahedron of Gmsh's highest order has 1,000 nodes.
 constexpr std::uint64_t kMaxNumbers = 1001;
+constexpr std::size_t kShownOfAFirstWord = 24;
 constexpr std::uint32_t kDimensionCode = 3, kVerticesCode = 4, kEndCode = 54;
 /// Where a .meshb keeps its numbers' widths.
 constexpr std::int32_t kDoubles = 2, kWidePlaces = 3, kWideIds = 4;
+
+/// Some programs write the keywords in capitals.
+std::string smallLetters(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
 
 class Medit {
  public:
@@ -53,29 +61,49 @@ class Medit {
 
  private:
   void readText() {
+    knowFirstWord();
     while (!in_.atEnd()) {
-      const std::string_view word = in_.word();
-      if (word == "End") return;
-      if (word == "MeshVersionFormatted") {
+      const std::string_view found = in_.word();
+      const std::string word = smallLetters(found);
+      if (word == "end") return;
+      if (word == "meshversionformatted") {
         version_ = in_.number<std::int32_t>("the format's version");
-      } else if (word == "Dimension") {
+      } else if (word == "dimension") {
         checkDimension(in_.number<std::int32_t>("the dimension"));
-      } else if (word == "Vertices") {
+      } else if (word == "vertices") {
         readVertices(in_.number<std::uint64_t>("the number of vertices"));
-      } else if (const Kind* kind = kindOf([&](const Kind& k) { return k.word == word; })) {
+      } else if (const Kind* kind =
+                     kindOf([&](const Kind& k) { return smallLetters(k.word) == word; })) {
         readCells(*kind, in_.number<std::uint64_t>("the number of cells"));
       } else if (isCurvedVolume(word)) {
-        refuseCurved(word);
+        refuseCurved(found);
       }  // any other word or number belongs to a list that nobody needs here
     }
+  }
+
+  /// Other programs call their own formats .mesh, too.
+  void knowFirstWord() {
+    const std::uint64_t place = in_.place();
+    const std::string first(in_.word().substr(0, kShownOfAFirstWord));
+    in_.seek(place);
+    if (in_.failed() || first.empty()) return;
+    constexpr std::string_view kAdvice =
+        "; save the mesh as .vtu, or as .mesh of Medit, which begins with MeshVersionFormatted";
+    const auto refuse = [&](const std::string& what) {
+      in_.fail(ErrorCode::kBadInput, what + std::string(kAdvice));
+    };
+    if (first == "MFEM") return refuse("it is a mesh of MFEM's own format");
+    if (first == "mesh3d") return refuse("it is a mesh of Netgen's own format");
+    if (first.find_first_not_of("0123456789") == std::string::npos)
+      return refuse("it begins with a number, as Netgen's neutral format does");
   }
 
   /// A list of curved volume cells that is not read: HexahedraQ2, TetrahedraP3 and so on. Their
   /// other lists, as TetrahedraP3Ordering, are no cells.
   static bool isCurvedVolume(std::string_view word) {
-    for (const std::string_view kind : {"Tetrahedra", "Hexahedra", "Prisms", "Pyramids"})
+    for (const std::string_view kind : {"tetrahedra", "hexahedra", "prisms", "pyramids"})
       if (word.starts_with(kind) && word.size() == kind.size() + 2 &&
-          (word[kind.size()] == 'P' || word[kind.size()] == 'Q'))
+          (word[kind.size()] == 'p' || word[kind.size()] == 'q'))
         return true;
     return false;
   }

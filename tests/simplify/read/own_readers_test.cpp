@@ -706,6 +706,35 @@ TEST(ReadMedit, severalCellsMayStandOnALine) {
   EXPECT_EQ(read->cells(), 2u);
 }
 
+TEST(ReadMedit, wordsMayBeInCapitals) {
+  std::string text = meditText("0");
+  for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  for (const std::string mark : {"", "\xEF\xBB\xBF"}) {
+    const Result<CellMesh> read = cellsIn(fileWith("capitals.mesh", mark + text));
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->cells(), 1u);
+  }
+}
+
+TEST(ReadMedit, otherFormatsOfThatEndingAreKnownByTheirFirstWord) {
+  for (const auto& [text, said] :
+       {std::pair("MFEM mesh v1.0\n\ndimension\n3\n\nvertices\n0\n", "MFEM's own format"),
+        std::pair("mesh3d\ndimension\n3\n", "Netgen's own format"),
+        std::pair("4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1\n1 1 2 3 4\n", "Netgen's neutral format")}) {
+    const Result<CellMesh> read = cellsIn(fileWith("other.mesh", text));
+    ASSERT_FALSE(read) << text;
+    EXPECT_NE(read.error().message.find(said), std::string::npos) << read.error().message;
+  }
+}
+
+TEST(OwnReaders, textInUtf16IsRefused) {
+  for (const std::string mark : {"\xFF\xFE", "\xFE\xFF"}) {
+    const Result<CellMesh> read = cellsIn(fileWith("wide.mesh", mark + meditText("0")));
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().message.find("UTF-16"), std::string::npos) << read.error().message;
+  }
+}
+
 TEST(ReadMesh, aPipeIsNotWaitedFor) {
   const fs::path pipe = testing::freshFolder("pipe") / "pipe.inp";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
