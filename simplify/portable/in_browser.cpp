@@ -84,7 +84,7 @@ Result<std::vector<CellMesh>> VtkHdfFile::partitions(std::size_t, const FieldNam
   return refusal({});
 }
 Result<XdmfFile> XdmfFile::open(const std::filesystem::path& path) { return refusal(path); }
-Result<CellMesh> XdmfFile::read(std::size_t, const FieldNames&, ReadReport&) {
+Result<CellMesh> XdmfFile::read(std::size_t, const ReadOptions&, ReadReport&) {
   return refusal(path_);
 }
 

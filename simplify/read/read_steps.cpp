@@ -57,10 +57,9 @@ Result<std::vector<TimedCells>> readXdmf(const std::filesystem::path& path,
   Result<XdmfFile> file = XdmfFile::open(path);
   if (!file) return std::unexpected(file.error());
   std::ranges::copy(file->notes(), std::back_inserter(report.notes));
-  return readChosen(file->times(), path, options, report,
-                    [&](std::size_t step, ReadReport& ofStep) {
-                      return file->read(step, options.fields, ofStep);
-                    });
+  return readChosen(
+      file->times(), path, options, report,
+      [&](std::size_t step, ReadReport& ofStep) { return file->read(step, options, ofStep); });
 }
 
 /// A reader that damage can break, in a process of its own.
