@@ -89,6 +89,11 @@ Status addFoamFields(const fs::path& folder, const FieldNames& wanted,
   FieldChoice choice(wanted, report);
   int number = 0;
   for (const auto& [called, path] : filesIn(folder)) {
+    std::error_code code;
+    if (fs::file_size(path, code) == 0 && !code) {
+      report.notes.push_back(path.string() + " is empty (0 bytes), and was left out");
+      continue;
+    }
     const Result<std::string> className = FoamList::classOf(path);
     if (!className && path.extension() != ".gz") return std::unexpected(className.error());
     if (!className) {  // any program compresses files

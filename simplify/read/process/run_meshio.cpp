@@ -33,6 +33,7 @@ except ImportError:
     sys.exit(77)
 import os
 import shutil
+import traceback
 import xml.etree.ElementTree as tree
 from xml.sax.saxutils import quoteattr
 
@@ -99,18 +100,23 @@ def formats_of_name():
     endings = os.path.basename(source).lower().split(".")[1:]
     return next(filter(None, (formats_of(".".join(endings[i:])) for i in range(len(endings)))), [])
 
-def with_bulk(formats):
-    """Gmsh writes the bulk data of Nastran alone, without the line before them."""
-    if formats[:1] != ["nastran"]:
-        return source
-    with open(source, errors="replace") as file:
-        text = file.read()
-    if any(line.strip().upper().startswith("BEGIN BULK") for line in text.splitlines()):
-        return source
-    whole = folder + "/whole.bdf"
-    with open(whole, "w") as file:
-        file.write("BEGIN BULK\n" + text)
-    return whole
+def reason_of(error):
+    """meshio often refuses without a word, and Python's own errors need their place."""
+    frame = traceback.extract_tb(error.__traceback__)[-1]
+    place = "%s in line %d of its %s" % (
+        type(error).__name__, frame.lineno, "/".join(frame.filename.split("/")[-2:]))
+    text = " ".join(str(error).split())
+    return "%s (%s)" % (text, place) if text else place
+
+def read_mesh(formats):
+    """As meshio.read, which prints its reason and then exits."""
+    readers, reasons = meshio._helpers.reader_map, []
+    for name in formats:
+        try:
+            return readers[name](source)
+        except meshio.ReadError as error:
+            reasons.append(reason_of(error))
+    raise RuntimeError("; ".join(reasons))
 
 def is_series(formats):
     if formats[:1] != ["xdmf"]:
@@ -119,21 +125,58 @@ def is_series(formats):
     grids = [] if domain is None else domain.findall("Grid")
     return any(grid.get("CollectionType") == "Temporal" for grid in grids)
 
+def write_steps(times, write_step):
+    """Of a step that is not meant the time alone counts."""
+    series = tree.Element("VTKFile", type="Collection")
+    collection = tree.SubElement(series, "Collection")
+    for number, time in enumerate(times):
+        name = "%d.vtu" % number
+        tree.SubElement(collection, "DataSet", timestep=repr(time), file=name)
+        if is_meant(time, number, len(times)):
+            write_step(number, name)
+    tree.ElementTree(series).write(folder + "/mesh.pvd")
+
 def write_series():
     with meshio.xdmf.TimeSeriesReader(source) as reader:
         points, cells = reader.read_points_cells()
-        series, count = tree.Element("VTKFile", type="Collection"), reader.num_steps
-        collection = tree.SubElement(series, "Collection")
-        for number in range(count):
-            # of another step the time alone counts
+        def time_of(number):
             time = reader.collection[number].find("Time")
-            time = float(number if time is None else time.get("Value"))
-            name = "%d.vtu" % number
-            tree.SubElement(collection, "DataSet", timestep=repr(time), file=name)
-            if is_meant(time, number, count):
-                _, point_data, cell_data = reader.read_data(number)
-                write(meshio.Mesh(points, cells, point_data, cell_data), name)
-        tree.ElementTree(series).write(folder + "/mesh.pvd")
+            return float(number if time is None else time.get("Value"))
+        def write_step(number, name):
+            _, point_data, cell_data = reader.read_data(number)
+            write(meshio.Mesh(points, cells, point_data, cell_data), name)
+        write_steps([time_of(number) for number in range(reader.num_steps)], write_step)
+
+def steps_of_med():
+    """By time: meshio's names of fields with several times, "u[1] - 0.5", and their own."""
+    import h5py
+    steps = {}
+    with h5py.File(source, "r") as file:
+        fields = file["CHA"] if "CHA" in file else {}
+        for name, data in fields.items():
+            keys = sorted(data.keys())
+            for number, key in enumerate(keys if len(keys) > 1 else []):
+                time = float(data[key].attrs["PDT"])
+                called = name + "[%d] - %s" % (number, format(time, "g"))
+                steps.setdefault(time, {})[called] = name
+    return sorted(steps.items())
+
+def write_med(mesh):
+    steps = steps_of_med()
+    stepped = {called for _, names in steps for called in names}
+    def of_step(data, names):
+        return {names.get(called, called): values for called, values in data.items()
+                if called in names or called not in stepped}
+    def write_step(number, name):
+        names = steps[number][1]
+        step = meshio.Mesh(mesh.points, mesh.cells, of_step(mesh.point_data, names),
+                           of_step(mesh.cell_data, names))
+        step.cell_tags = getattr(mesh, "cell_tags", {})
+        write(step, name)
+    if steps:
+        write_steps([time for time, _ in steps], write_step)
+    else:
+        write(mesh, "mesh.vtu")
 
 try:
     formats = formats_of(kind) if kind else formats_of_name()
@@ -141,12 +184,19 @@ try:
         sys.exit(78)
     if is_series(formats):
         write_series()
+    elif formats[:1] == ["med"]:
+        write_med(read_mesh(formats))
     else:
-        write(meshio.read(with_bulk(formats), formats[0] if kind else None), "mesh.vtu")
+        write(read_mesh(formats), "mesh.vtu")
 except SystemExit as end:  # meshio has said why
     sys.exit(end.code if end.code == 78 else 1)
+except RuntimeError as error:
+    sys.stdout.flush()
+    sys.stderr.write("\n" + str(error))
+    sys.exit(1)
 except BaseException as error:
-    sys.stderr.write("\n" + (str(error) or type(error).__name__).replace("\n", " "))
+    sys.stdout.flush()
+    sys.stderr.write("\n" + reason_of(error))
     sys.exit(1)
 )python";
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "tests/simplify/read/foam/foam_files.h"
 #include "tests/support/meshes.h"
 
@@ -48,6 +50,17 @@ TEST(FieldFiles, valuesHaveARoomThatFewBytesCannotPass) {
     ASSERT_EQ(mesh.has_value(), room >= kBytes) << room;
     if (mesh) EXPECT_EQ(namesIn(*mesh), (Names{"cell:T:1", "cell:U:3"}));
   }
+}
+
+TEST(FieldFiles, anEmptyFileIsLeftOutWithANote) {
+  const fs::path folder = testing::freshFolder("empty-field");
+  writeFoamField(folder / "T", "volScalarField", "uniform 1");
+  std::ofstream(folder / "p");
+  const Result<CellMesh> mesh = withFields(folder);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(namesIn(*mesh), Names{"cell:T:1"});
+  ASSERT_EQ(mesh->otherFields.size(), 1u);
+  EXPECT_TRUE(mesh->otherFields[0].ends_with("p is empty (0 bytes), and was left out"));
 }
 
 TEST(FieldFiles, fieldsOfCellsAndPointsAreReadAndOtherFilesSkipped) {
