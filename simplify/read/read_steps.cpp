@@ -5,6 +5,7 @@
 #include <iterator>
 #include <span>
 
+#include "proto/field_list.h"
 #include "proto/number_text.h"
 #include "simplify/read/ensight/read_ensight.h"
 #include "simplify/read/foam/read_foam.h"
@@ -147,6 +148,26 @@ Result<CellMesh> cellsOfParts(std::span<const BlockFile> parts, const std::files
   return out;
 }
 
+/// Says which arrays a summary names that are neither fields nor left out for a reason.
+Status noteStatedArrays(const std::filesystem::path& path, MeshFormat format, const CellMesh& cells,
+                        ReadReport& report) {
+  const auto stated = statedArrays(path, format);
+  if (!stated) return std::unexpected(stated.error());
+  std::vector<std::string> lost;
+  for (const std::string& name : *stated) {
+    const bool isNoted = std::ranges::any_of(report.notes, [&](const std::string& note) {
+      return note.find(" field " + name + " ") != std::string::npos;
+    });
+    if (!isNoted && std::ranges::find(cells.fields, name, &MeshField::name) == cells.fields.end() &&
+        std::ranges::find(cells.otherFields, name) == cells.otherFields.end() &&
+        std::ranges::find(report.ignoredFields, name) == report.ignoredFields.end())
+      lost.push_back(name);
+  }
+  if (!lost.empty())
+    report.notes.push_back("its summary names arrays that no piece has: " + fieldList(lost));
+  return {};
+}
+
 /// A file that names the parts of one mesh.
 Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options, ReadReport& report,
@@ -160,6 +181,9 @@ Result<std::vector<TimedCells>> readParts(const std::filesystem::path& path, Mes
   if (!parts) return std::unexpected(parts.error());
   Result<CellMesh> cells = cellsOfParts(*parts, path, options, report, depth);
   if (!cells) return std::unexpected(cells.error());
+  if (namesPieces(format))
+    if (Status noted = noteStatedArrays(path, format, *cells, report); !noted)
+      return std::unexpected(noted.error());
   std::vector<TimedCells> out;
   out.push_back({"", std::move(*cells)});
   return out;

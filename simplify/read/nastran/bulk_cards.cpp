@@ -253,7 +253,31 @@ void BulkCards::addFree(std::size_t perLine) {
          " fields between commas; export the file again");
 }
 
+/// Some programs write "10.0000-1" into a field of 8 columns, and all behind it moves on by one. No
+/// number ends with a sign, so that digit belongs to it. True: each field is where it should be
+/// then, since the line ends with a whole one.
+bool BulkCards::addOverfull() {
+  const std::string_view text = std::string_view(line_).substr(0, line_.find_last_not_of(' ') + 1);
+  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+  std::vector<std::string_view> found;
+  std::size_t moved = 0;
+  for (std::size_t at = kNameColumns; at < text.size(); at += kSmallField) {
+    const std::size_t end = at + kSmallField;
+    const bool isOverfull = end < text.size() && (text[end - 1] == '-' || text[end - 1] == '+') &&
+                            (isDigit(text[end - 2]) || text[end - 2] == '.') && isDigit(text[end]);
+    found.push_back(withoutBlanks(text.substr(at, kSmallField + (isOverfull ? 1 : 0))));
+    if (isOverfull) ++moved, ++at;
+  }
+  const bool endsWhole = (text.size() - moved) % kSmallField == 0;
+  if (moved == 0 || !endsWhole || found.size() > kFieldsOfALine) return false;
+  found.resize(kFieldsOfALine);
+  for (const std::string_view field : found)
+    if (fields_.size() < kMaxFields) fields_.emplace_back(field);
+  return true;
+}
+
 void BulkCards::addFixed(std::size_t width) {
+  if (width == kSmallField && addOverfull()) return;
   const std::string_view text(line_);
   for (std::size_t at = kNameColumns; at < kNameColumns + kDataColumns; at += width)
     if (fields_.size() < kMaxFields)

@@ -67,6 +67,7 @@ class BulkCards {
   void startCard();
   void addFields();
   void addFree(std::size_t perLine);
+  bool addOverfull();
   void addFixed(std::size_t width);
 
   std::filesystem::path root_;

@@ -8,6 +8,7 @@
 #include "simplify/read/options/bad_file.h"
 #include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/xml_tree.h"
+#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {
@@ -140,6 +141,24 @@ Result<std::vector<BlockFile>> piecesOf(const std::filesystem::path& path, MeshF
     out.push_back({path.parent_path() / file, ""});
   }
   if (out.empty()) return badFile(path, "it names no <Piece>; save it again");
+  return out;
+}
+
+Result<std::vector<std::string>> statedArrays(const std::filesystem::path& path,
+                                              MeshFormat format) {
+  std::unique_ptr<XmlElement> tree;
+  const Result<const XmlElement*> grid = listIn(path, std::string(rootType(format)), tree);
+  if (!grid) return std::unexpected(grid.error());
+  std::vector<std::string> out;
+  for (const char* section : {"PPointData", "PCellData"}) {
+    const XmlElement* arrays = (*grid)->child(section);
+    for (std::size_t i = 0; arrays && i < arrays->children.size(); ++i) {
+      const std::string name(arrays->children[i]->attribute("Name"));
+      const bool marksGhosts = name == kGhostTypes || name == kGhostLevels;
+      if (!name.empty() && !marksGhosts && std::ranges::find(out, name) == out.end())
+        out.push_back(name);
+    }
+  }
   return out;
 }
 

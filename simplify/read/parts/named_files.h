@@ -26,6 +26,11 @@ struct BlockFile {
 [[nodiscard]] Result<std::vector<BlockFile>> piecesOf(const std::filesystem::path& path,
                                                       MeshFormat format);
 
+/// The names of the arrays of points and cells that a summary states, but for those that mark
+/// ghosts. Errors: those of readXml; bad-input. REQUIRES: namesPieces(format).
+[[nodiscard]] Result<std::vector<std::string>> statedArrays(const std::filesystem::path& path,
+                                                            MeshFormat format);
+
 /// The files of a .vtm file's blocks, depth first. Those that can hold no volume cells (surfaces,
 /// tables) are noted instead. A block is called by its own name, or that of the block around it.
 /// Names that come again are led by those of all blocks around: "wing/solid". Errors: those of

@@ -553,6 +553,35 @@ def nastrans_bulk_data_need_no_line_before_them():
         is_whole(read(out / "bulk.bdf")[0], 1)
 
 
+def fields_of_med_with_times_are_a_series():
+    if not meshio or not h5py:
+        return "no meshio or h5py"
+    path = out / "steps.med"
+    mesh = meshio.Mesh(cube(), [("tetra", TETRAHEDRA)], {"u": cube()[:, 0], "still": cube()[:, 1]})
+    meshio.write(path, mesh)
+    with h5py.File(path, "r+") as file:
+        steps = file["CHA"]["u"]
+        first = list(steps)[0]
+        second = first[:-1] + "9"
+        steps.copy(first, second)
+        steps[second].attrs["PDT"] = 0.123456789
+        for values in (o for o in steps[second]["NOE"].values() if "CO" in o):
+            values["CO"][...] += 10
+    shown = json.loads(run("check", path, "--json", "--time", "all").stdout)
+    names = sorted(field.split()[1] for field in shown["fields"])
+    assert names == ["still@0", "still@0.123456789", "u@0", "u@0.123456789"], shown
+    assert run("convert", path, "-o", out / "last.vtu").returncode == 0
+    assert arrays_of(out / "last.vtu")["point_u"].min() == 10
+
+
+def meshio_says_why():
+    if not meshio:
+        return "no meshio"
+    (out / "wrong.off").write_text("nonsense\n")
+    said = refused("check", out / "wrong.off")
+    assert "ReadError" in said and "Couldn't read file" not in said, said
+
+
 def an_unknown_ending_is_told_what_there_is():
     (out / "mesh.nonsense").write_text("nothing")
     said = refused("check", out / "mesh.nonsense")
@@ -826,6 +855,8 @@ TESTS = [
     abaqus_of_second_order_is_read,
     universal_files_are_read,
     nastrans_bulk_data_need_no_line_before_them,
+    fields_of_med_with_times_are_a_series,
+    meshio_says_why,
     an_unknown_ending_is_told_what_there_is,
     a_decomposed_case_is_read_from_its_processors,
     meshes_of_openfoam_are_checked,

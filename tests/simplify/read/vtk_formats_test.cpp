@@ -255,6 +255,15 @@ fs::path summaryOf(const std::vector<std::string>& pieces, const std::string& na
   return path;
 }
 
+TEST(VtkFormats, anArrayOfTheSummaryThatNoPieceHasIsNoted) {
+  const Result<ReadMesh> read = readMesh(summaryOf(
+      {pieceAt(-1, "Float32", fieldOf("Float32", "T", 1)), pieceAt(0, "Float32", "")}, "stated"));
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_TRUE(
+      std::ranges::find(read->report.notes, "its summary names arrays that no piece has: U") !=
+      read->report.notes.end());
+}
+
 // VTK's own reader of such files writes beyond its arrays here.
 TEST(VtkFormats, piecesThatDisagreeWithTheirSummaryAndOneAnotherAreReadOneByOne) {
   const fs::path path =

@@ -80,6 +80,20 @@ TEST(ReadNastran, exponentsMayHaveNoLetter) {
     EXPECT_FALSE(nastranReal(no)) << no;
 }
 
+TEST(ReadNastran, anExponentMayStandBehindItsField) {
+  const auto place = [](const std::string& line) {
+    const Result<CellMesh> read = readText(line + "\n");
+    return read ? read->points.front() : Position{-1, -1, -1};
+  };
+  //                 name    number  system  x       y       z
+  EXPECT_EQ(place("GRID           1        10.0000-1      2.      3."), (Position{1, 2, 3}));
+  EXPECT_EQ(place("GRID           1              2.10.0000-130.0000-1"), (Position{2, 1, 3}));
+  EXPECT_EQ(place("GRID           1        3.3333-110.0000-1 5.000+1  "),
+            (Position{0.33333, 1, 50}));
+  // with two digits more no field ends where the line does
+  expectRefused("GRID           1        10.0000-12      2.      3.\n", "'10.0000-' is where");
+}
+
 TEST(ReadNastran, hexahedraGoOnOverLinesWithoutAMark) {
   std::string cube;
   int number = 0;

@@ -36,5 +36,17 @@ TEST(NamedFiles, namesThatComeAgainHaveThoseAroundThem) {
             (BlockNames{"fluid/internal", "solid/internal", "core"}));
 }
 
+TEST(NamedFiles, aSummaryStatesArrays) {
+  const auto path = testing::fileWith(
+      "summary.pvtu",
+      "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><PPointData><PDataArray Name=\"u\"/>"
+      "<PDataArray Name=\"vtkGhostType\"/></PPointData><PCellData><PDataArray Name=\"u\"/>"
+      "<PDataArray Name=\"k\"/></PCellData><Piece "
+      "Source=\"a.vtu\"/></PUnstructuredGrid></VTKFile>");
+  const auto names = statedArrays(path, MeshFormat::kPvtu);
+  ASSERT_TRUE(names) << names.error().text();
+  EXPECT_EQ(*names, (std::vector<std::string>{"u", "k"}));
+}
+
 }  // namespace
 }  // namespace qtet
