@@ -14,8 +14,8 @@
 
 namespace qtet {
 
-/// At most this share of the cells may be flattened or inverted at the finest lattice. Little of the
-/// shape would be left beyond.
+/// At most this share of the cells may be flattened or inverted at the finest lattice. Beyond it
+/// little of the shape would be left.
 inline constexpr double kMostWorseCells = 0.5;
 
 struct QuantiseOptions {
@@ -53,8 +53,8 @@ struct QuantisedMesh {
 /// (FieldPrecision). Integer fields take step 1 and lose nothing where kMaxFieldBits bits hold their
 /// range. Points and cells keep their order;
 /// the boundary is `boundary` where that is known, else boundaryOf's. Errors: bad-value (bits
-/// outside their limits), quantiseField's, bad-input (extents that a double cannot hold or divide; more
-/// than kMostWorseCells), cancelled.
+/// outside their limits), quantiseField's, cancelled, bad-input (extents that a double cannot hold
+/// or divide; more than kMostWorseCells).
 /// REQUIRES: a mesh that cleanMesh has passed, errors that checkValueBounds has passed.
 [[nodiscard]] Result<QuantisedMesh> quantise(const TetMesh& mesh,
                                              const QuantiseOptions& options = {},

@@ -295,11 +295,19 @@ void leaveOutIds(CellMesh& cells, std::vector<std::string>& notes) {
                     " joined the pieces and is left out; `fields` reads it, too");
 }
 
+OwnJoin ownJoinOf(const ReadOptions& options) {
+  if (!options.joinPieces || options.joinsOwnPoints == false) return OwnJoin::kNever;
+  if (options.joinsOwnPoints == true) return OwnJoin::kAlways;
+  return options.namesTime ? OwnJoin::kStep : OwnJoin::kByValues;
+}
+
 /// Joins cells that have points of their own, or warns that they stay apart.
-void joinApartCells(CellMesh& cells, bool joins, ReadReport& report) {
-  const OwnPoints own = joinOwnPoints(cells, joins);
+void joinApartCells(CellMesh& cells, const ReadOptions& options, ReadReport& report) {
+  const OwnJoin how = ownJoinOf(options);
+  const OwnPoints own = joinOwnPoints(cells, how);
   if (own.patches == 0) return;
   report.joinedPoints += own.joined;
+  report.ownPointsJoined = !own.isTorn();
   const std::string sets = "its " + std::to_string(own.patches) +
                            " cells or patches of cells have points of their own, of which " +
                            std::to_string(own.coincident) + " lie at the place of another";
@@ -307,16 +315,19 @@ void joinApartCells(CellMesh& cells, bool joins, ReadReport& report) {
     report.notes.push_back(sets + ": " + std::to_string(own.joined) +
                            " were joined; `weld` none would keep them apart");
     if (own.differing > 0)
-      report.notes.push_back(std::to_string(own.differing) +
-                             " of these points have other values, by more than a thousandth of a "
-                             "field's range, and stay apart; `weld` 0 joins them");
+      report.notes.push_back(
+          std::to_string(own.differing) +
+          " of these points have other values, by more than a thousandth of a field's range, and " +
+          (how == OwnJoin::kByValues ? "stay apart; `weld` 0 joins them"
+                                     : "took those of the earlier cell"));
     return;
   }
   report.warnings.push_back(
       sets +
-      (joins ? ", but " + std::to_string(own.differing) +
-                   " have other values there: a discontinuous field"
-             : "") +
+      (own.differing > 0 && options.joinPieces
+           ? ", but " + std::to_string(own.differing) +
+                 " have other values there: a discontinuous field"
+           : "") +
       ". Cells that hang together nowhere can hardly be simplified, and take many times the bytes; "
       "`weld` 0 joins the points, with the values of the earlier cell");
 }
@@ -343,7 +354,7 @@ Result<CellMesh> readCells(const std::filesystem::path& path, const ReadOptions&
     return std::unexpected(checked.error());
   if (!options.keepsNumbers)
     leaveOutNumbers(withThresholdField(options).fields, *cells, report.notes);
-  if (!options.weld) joinApartCells(*cells, options.joinPieces, report);
+  if (!options.weld) joinApartCells(*cells, options, report);
   if (Status done = leaveOutWideIntegers(withThresholdField(options).fields, path, cells->fields,
                                          report.notes);
       !done)

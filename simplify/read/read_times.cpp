@@ -62,6 +62,7 @@ Result<TetMesh> readWindow(const std::filesystem::path& path, const ReadOptions&
                            std::span<const double> times, double rest, ReadReport& report) {
   ReadOptions some = options;
   if (!some.apartBlocks) some.apartBlocks = report.apartBlocks;
+  if (!some.joinsOwnPoints) some.joinsOwnPoints = report.ownPointsJoined;
   Result<ReadMesh> window = readTimes(path, some, times, rest);
   if (!window) return std::unexpected(window.error());
   if (report.series.times.empty()) {
@@ -87,6 +88,7 @@ Result<ReadMesh> readTimesInParts(const std::filesystem::path& path, const ReadO
     ReadOptions ofPart = options;
     ofPart.moves = moves;
     if (!ofPart.apartBlocks) ofPart.apartBlocks = out->report.apartBlocks;
+    if (!ofPart.joinsOwnPoints) ofPart.joinsOwnPoints = out->report.ownPointsJoined;
     Result<ReadMesh> more =
         readTimes(path, ofPart, part(at), moves ? std::optional(times.front()) : std::nullopt);
     if (!more) return more;

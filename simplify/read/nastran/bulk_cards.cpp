@@ -47,7 +47,7 @@ std::string words(std::string_view text) {
 
 enum class BulkBegin : std::uint8_t { kNone, kBulk, kPart };
 
-/// What begins behind the line: bulk data, or those of one part among several.
+/// Whether bulk data begin behind the line, or those of one part among several.
 BulkBegin bulkBegin(std::string_view line) {
   const std::string text = words(line);
   if (!text.starts_with("BEGIN ")) return BulkBegin::kNone;

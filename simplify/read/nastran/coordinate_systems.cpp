@@ -71,8 +71,8 @@ class Placing {
     return placeOf(file_.grids[row->second], depth);
   }
 
-  /// From the origin, a point on z and one in the plane x-z. Abaqus' systems have the first of these
-  /// on x, and the second in the plane x-y.
+  /// From the origin, a point on z and one in the plane x-z. Abaqus' systems have the former on x,
+  /// and the latter in the plane x-y.
   static std::optional<AbaqusPlacement> axesOf(const std::array<Position, 3>& points) {
     std::array<double, 9> numbers{};
     for (std::size_t i = 0; i < 9; ++i) numbers[i] = points[i / 3][i % 3];

@@ -11,10 +11,10 @@ namespace qtet {
 
 /// GRID, GRDSET, CORD1R, CORD1C, CORD1S and their kin of CORD2, CTETRA, CHEXA, CPENTA and CPYRAM of
 /// the first and second degree. Elements that are no volumes are counted in the report. The
-/// properties of elements (PID) are the label nastran:ref where there are two at least. Errors:
-/// io, bad-input, not-found, limit-exceeded, with the file and the line: a volume element that is
-/// not read; an element with some of its nodes on edges; a system that is not there; numbers that
-/// are given twice.
+/// properties of elements (PID) are the label nastran:ref where there are two at least. Errors name
+/// the file and the line: io; not-found and limit-exceeded (included files); bad-input (a volume
+/// element that is not read, or with nodes on some of its edges; a system that is not there;
+/// numbers that are given twice).
 [[nodiscard]] Result<CellMesh> readNastran(const std::filesystem::path& path, ReadReport& report,
                                            std::chrono::seconds patience = kReadPatience);
 

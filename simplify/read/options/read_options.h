@@ -47,6 +47,8 @@ struct ReadOptions {
   bool joinPieces = true;      ///< at the points that they share (join_pieces.h)
   /// Whose points stay apart; nullopt: the file's first step says it (readMesh).
   std::optional<BlockPairs> apartBlocks{};
+  /// Whether cells with points of their own are joined (own_points.h); nullopt: values say it.
+  std::optional<bool> joinsOwnPoints{};
   bool keepsNumbers = false;  ///< also fields that only number things (leaveOutNumbers)
   /// Adds the cell field kOriginalCellField (split_cells.h) to those asked for by name; naming it
   /// does the same.
@@ -82,8 +84,9 @@ struct ReadReport {
   BlockPairs differingBlocks{};    ///< they share points, at which their values differ
   /// The pairs that stay apart, where blocks meet; nullopt: none do, or nobody has decided.
   std::optional<BlockPairs> apartBlocks{};
-  std::uint64_t weldedPoints = 0;  ///< joined with an earlier one
-  std::uint64_t mendedFaces = 0;   ///< quadrilaterals that both sides cut alike after welding
+  std::optional<bool> ownPointsJoined{};  ///< where cells have points of their own
+  std::uint64_t weldedPoints = 0;         ///< joined with an earlier one
+  std::uint64_t mendedFaces = 0;  ///< quadrilaterals that both sides cut alike after welding
   /// All that the file has, ascending; empty: it has none, or its reader takes all steps at once.
   std::vector<double> times;
   std::string motion{};               ///< of moving points: the series that has how far (joinSteps)

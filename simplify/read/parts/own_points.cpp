@@ -95,7 +95,7 @@ std::vector<VertexId> sortPoints(CellMesh& mesh, const Patches& patches) {
 
 }  // namespace
 
-OwnPoints joinOwnPoints(CellMesh& mesh, bool joins) {
+OwnPoints joinOwnPoints(CellMesh& mesh, OwnJoin how) {
   OwnPoints out;
   Patches patches = patchesOf(mesh);
   if (patches.count < 2 || patches.points / patches.count > kMostPatchPoints) return out;
@@ -103,13 +103,13 @@ OwnPoints joinOwnPoints(CellMesh& mesh, bool joins) {
   if (static_cast<double>(out.coincident) <= kMostCoincide * static_cast<double>(patches.points))
     return {};
   out.patches = patches.count;
-  if (!joins ||
-      static_cast<double>(out.differing) > kFewDiffer * static_cast<double>(out.coincident))
-    return out;
+  const bool agree =
+      static_cast<double>(out.differing) <= kFewDiffer * static_cast<double>(out.coincident);
+  if (how == OwnJoin::kNever || (how != OwnJoin::kAlways && !agree)) return out;
   const std::vector<VertexId> ends = sortPoints(mesh, patches);
   BlocksOfPoints blocks;
   const PieceOf pieceOf(ends);
-  for (VertexId v = 0; v < mesh.points.size(); ++v)
+  for (VertexId v = 0; how == OwnJoin::kByValues && v < mesh.points.size(); ++v)
     blocks.block.push_back(static_cast<std::int32_t>(pieceOf(v)) + 1);
   out.joined = joinPieces(mesh, ends, blocks).points;
   return out;

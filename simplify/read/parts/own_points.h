@@ -1,5 +1,5 @@
-// Cells that have points of their own: MFEM, deal.II, Firedrake and their kin write each cell, or
-// each cell's refined patch, with points that no other one names.
+// Cells that have points of their own. MFEM, deal.II, Firedrake and their kin write each cell so,
+// or each cell's refined patch: no other one names its points.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,15 @@ struct OwnPoints {
   [[nodiscard]] bool isTorn() const { return patches > 0 && joined == 0; }
 };
 
-/// Joins the patches of a mesh at the points that they share, as pieces are (joinPieces), where at
-/// most kFewDiffer of them have other values; these stay apart. `joins` false: only says what there
-/// is. REQUIRES: checkCellMesh(mesh) succeeded.
-OwnPoints joinOwnPoints(CellMesh& mesh, bool joins);
+enum class OwnJoin : std::uint8_t {
+  kNever,     ///< only says what there is
+  kByValues,  ///< where at most kFewDiffer of the points have other values, and these stay apart
+  kStep,      ///< as kByValues, but for a step of a series, whose steps have one mesh: all points
+  kAlways,    ///< all points, whatever their values
+};
+
+/// Joins the patches of a mesh at the points that they share, as pieces are (joinPieces).
+/// REQUIRES: checkCellMesh(mesh) succeeded.
+OwnPoints joinOwnPoints(CellMesh& mesh, OwnJoin how);
 
 }  // namespace qtet

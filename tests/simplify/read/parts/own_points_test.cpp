@@ -86,10 +86,30 @@ TEST(OwnPoints, pointsAtAJumpStayApart) {
     cells.points = mesh.points;
     cells.fields = mesh.fields;
     for (const Tetrahedron& cell : mesh.tetrahedra) cells.addCell(kTetrahedronCell, cell);
-    return joinOwnPoints(cells, true);
+    return joinOwnPoints(cells, OwnJoin::kByValues);
   }();
   EXPECT_GT(own.differing, 0u);
   EXPECT_EQ(readOf(mesh).mesh.points.size(), boxSample().points.size() + 4);
+}
+
+TEST(OwnPoints, allReadingsOfASeriesMakeOneMesh) {
+  const TetMesh agreeing = apartBox(smooth),
+                differing =
+                    apartBox([](const Position&, std::size_t c) { return static_cast<double>(c); });
+  ReadOptions options;
+  options.joinsOwnPoints = true;
+  EXPECT_EQ(readOf(differing, options).mesh.points.size(), boxSample().points.size());
+  options.joinsOwnPoints = false;
+  EXPECT_EQ(readOf(agreeing, options).mesh.points.size(), agreeing.points.size());
+  EXPECT_EQ(readOf(agreeing).report.ownPointsJoined, true);
+  EXPECT_EQ(readOf(differing).report.ownPointsJoined, false);
+  EXPECT_EQ(readOf(boxSample()).report.ownPointsJoined, std::nullopt);
+  // points at a jump are joined in a series, too
+  const TetMesh jump = apartBox(
+      [](const Position& p, std::size_t cell) { return cell == 0 ? 1e3 : smooth(p, cell); });
+  options = {};
+  options.namesTime = true;
+  EXPECT_EQ(readOf(jump, options).mesh.points.size(), boxSample().points.size());
 }
 
 TEST(OwnPoints, aPointOfEachPatchMayLieInAnyOrder) {
