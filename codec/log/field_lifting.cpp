@@ -138,7 +138,7 @@ class Lifting {
   }
   /// The nearest number of units, or less.
   [[nodiscard]] static std::int64_t stepsOf(std::int64_t off, int shift, Skips skips) {
-    if (shift == 0) return off;
+    if (shift == 0) return skips == Skips::kSmall && std::abs(off) == 1 ? 0 : off;
     const double units = std::ldexp(static_cast<double>(std::abs(off)), -shift);
     const auto steps =
         static_cast<std::int64_t>(units + (skips == Skips::kSmall ? 1 - kSkipped : 0.5));

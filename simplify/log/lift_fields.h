@@ -15,10 +15,11 @@
 
 namespace qtet {
 
-/// How much a field's known rms may grow in levels of at most a quarter of the cells, and in those
-/// of at most half. Below kSmallSteps it may be kMostSmallGrowth: such an error is of rounding.
-inline constexpr double kMostGrowth = 1.03, kMostFineGrowth = 1.05, kMostSmallGrowth = 1.15,
-                        kSmallSteps = 0.3;
+/// How much a field's known rms may grow: in levels of at most a quarter of the cells, of at most
+/// half, and in finer ones. An rms below kSmallSteps of the field's steps is mostly that of
+/// rounding, and may grow more.
+inline constexpr double kMostGrowth = 1.03, kMostHalfGrowth = 1.05, kMostFineGrowth = 1.12,
+                        kMostSmallGrowth = 1.15, kSmallSteps = 0.3;
 
 struct LiftOptions {
   /// The fields before it stay as they are. The lists below begin with it.
