@@ -46,8 +46,4 @@ struct LiftedTarget {
 [[nodiscard]] LiftingRules exactRules(const ValueOrder& order, const FieldInfo& field,
                                       std::span<const std::int32_t> values);
 
-/// Gives fused vertices values that follow from their prey by the usual curvature, within the range
-/// of the last level's, and the rules that tell them.
-[[nodiscard]] LiftingRules followPrey(const ValueOrder& order, const LiftedTarget& field);
-
 }  // namespace qtet

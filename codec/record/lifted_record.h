@@ -20,8 +20,6 @@ namespace qtet {
 /// How the fused values of a level follow from their prey.
 struct LiftingRule {
   static constexpr int kNoCorrection = -1, kMaxShift = 30, kMaxCurve = 127;
-  /// The curvature of values that have no other rule: .15. Meshes fitted .09 to .21 best.
-  static constexpr int kUsualCurve = 38;
 
   /// Corrections count 2^shift; kNoCorrection: there are none.
   int shift = 0;
