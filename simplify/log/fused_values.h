@@ -12,8 +12,8 @@
 namespace qtet {
 
 /// Values of all of the history's vertices from those of the last level's, `components` integers
-/// each. A fused vertex has the value that is best for the cells of the last level which became its
-/// star, as the cost has it (ALGORITHM.md, "Cost"), within the range of the last level's values.
+/// each. A fused vertex has the value for which the cost is least at its place (ALGORITHM.md,
+/// "Cost"). It is within the range of the last level's values.
 /// `finest`: the last level's cells.
 [[nodiscard]] std::vector<std::int32_t> fusedValues(const LogHistory& log,
                                                     std::span<const Tetrahedron> finest,

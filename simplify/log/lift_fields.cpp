@@ -14,10 +14,10 @@
 namespace qtet {
 namespace {
 
-/// By how much corrections count, from wide to narrow: so many times the known error in levels with
-/// at most a quarter of the cells, twice as much up to 60 % of them, four times up to `end`. Finer
-/// levels have none. Instants of a series take the first figure everywhere: they are most of their
-/// log.
+/// By how much corrections count, from wide to narrow. The first figure is for levels with at most
+/// a quarter of the cells: so many times their known error. It is twice that up to 60 % of the
+/// cells, and four times up to `end`. Finer levels have none. Instants of a series take the first
+/// figure everywhere: they are most of their log.
 struct Width {
   double errors, end;
 };
@@ -203,7 +203,7 @@ class Lifter {
     }
     return out;
   }
-  /// Of an error of 1, by component.
+  /// The steps that an error of 1 has, by component.
   [[nodiscard]] double stepsIn(std::size_t f) const {
     return options_.replay->ranges[f - options_.firstField] /
            std::sqrt(static_cast<double>(history_.fields[f].components));
