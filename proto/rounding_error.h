@@ -1,5 +1,5 @@
-// How far rounding takes a field's values from those of the input. It follows from what the manifest
-// says of the field.
+// How far rounding takes a field's values from those of the input. It follows from what the
+// manifest says of the field.
 #pragma once
 
 #include <algorithm>
@@ -37,8 +37,8 @@ template <class Field>
          field.range[0] == field.minimum[0];
 }
 
-/// The most that a value of the finest level, in the input's type, may differ from the input's, each
-/// component by itself. In the field's unit; 0 where isStoredExactly.
+/// The most that a value of the finest level, in the input's type, may differ from the input's,
+/// each component by itself. In the field's unit; 0 where isStoredExactly.
 template <class Field>
 [[nodiscard]] double largestRoundingError(const Field& field) {
   if (isStoredExactly(field)) return 0;

@@ -24,8 +24,8 @@ constexpr double kSkipped = 0.8;
 /// decoder has them before the record.
 class Lifting {
  public:
-  Lifting(const ValueOrder& order, const LiftedTarget& field, bool hasTargets)
-      : order_(order), field_(field), hasTargets_(hasTargets), ranges_(field.components) {
+  Lifting(const ValueOrder& order, const LiftedTarget& field)
+      : order_(order), field_(field), ranges_(field.components) {
     std::vector<VertexId> vertices(order.vertices());
     std::ranges::copy(order.baseVertices, vertices.begin());
     const std::span<const Birth> births = order.points.births();
@@ -36,13 +36,13 @@ class Lifting {
     for (const VertexId v : vertices)
       for (std::uint32_t c = 0; c < field.components; ++c) now_.push_back(field.values[at(v, c)]);
     for (const VertexId v : vertices) count(v);
-    for (std::size_t b = 0; hasTargets && b < births.size(); ++b) count(order.fused[b]);
+    for (std::size_t b = 0; b < births.size(); ++b) count(order.fused[b]);
   }
 
   /// The rule of the level from birth `first` to `end`; its fused values take what it tells.
   LiftingRule lift(std::uint32_t first, std::uint32_t end, const LevelStep& step) {
-    LiftingRule rule{step.shift, hasTargets_ ? curveOf(first, end) : LiftingRule::kUsualCurve};
-    std::int64_t over = undo(first, end, rule, hasTargets_ ? step.skips : Skips::kAll);
+    LiftingRule rule{step.shift, curveOf(first, end)};
+    std::int64_t over = undo(first, end, rule, step.skips);
     // corrections back into the range alone: one unit is enough, so that nearly all are 0
     for (int shift = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(over)));
          over > 0 && shift >= 0; --shift) {
@@ -113,7 +113,7 @@ class Lifting {
       isFollowed_ = isFollowed_ && missing == birth.k;
       if (missing == birth.k)
         fused = kMissing;
-      else if (!rule.isCorrected() || !hasTargets_)
+      else if (!rule.isCorrected())
         fused = firstPresent(prey);
       slot = fused;
       return 0;
@@ -138,7 +138,7 @@ class Lifting {
   }
   /// The nearest number of units, or less.
   [[nodiscard]] static std::int64_t stepsOf(std::int64_t off, int shift, Skips skips) {
-    if (shift == 0) return off;
+    if (shift == 0) return skips == Skips::kSmall && std::abs(off) == 1 ? 0 : off;
     const double units = std::ldexp(static_cast<double>(std::abs(off)), -shift);
     const auto steps =
         static_cast<std::int64_t>(units + (skips == Skips::kSmall ? 1 - kSkipped : 0.5));
@@ -202,18 +202,19 @@ class Lifting {
 
   const ValueOrder& order_;
   const LiftedTarget& field_;
-  const bool hasTargets_;
   std::vector<Range> ranges_;  // by component, of whole values
   std::vector<std::int32_t> now_;
   std::vector<Pair> pairs_;
   bool isFollowed_ = false;  // no correction of the level is other than 0
 };
 
-LiftingRules liftLevels(const ValueOrder& order, const LiftedTarget& field, bool hasTargets,
-                        std::span<const LevelStep> steps) {
+}  // namespace
+
+LiftingRules liftField(const ValueOrder& order, const LiftedTarget& field,
+                       std::span<const LevelStep> steps) {
   const std::span<const std::uint32_t> starts = order.points.levelStarts();
   assert(steps.size() == starts.size());
-  Lifting lifting(order, field, hasTargets);
+  Lifting lifting(order, field);
   LiftingRules out(starts.size());
   auto end = static_cast<std::uint32_t>(order.points.births().size());
   for (std::size_t level = starts.size(); level-- > 0;) {
@@ -223,24 +224,11 @@ LiftingRules liftLevels(const ValueOrder& order, const LiftedTarget& field, bool
   return out;
 }
 
-}  // namespace
-
-LiftingRules liftField(const ValueOrder& order, const LiftedTarget& field,
-                       std::span<const LevelStep> steps) {
-  return liftLevels(order, field, true, steps);
-}
-
 LiftingRules exactRules(const ValueOrder& order, const FieldInfo& field,
                         std::span<const std::int32_t> values) {
   std::vector<std::int32_t> copy(values.begin(), values.end());
   const std::vector<LevelStep> steps(order.points.levelStarts().size());
-  return liftLevels(order, {field.components, field.hasMissing, copy}, true, steps);
-}
-
-LiftingRules followPrey(const ValueOrder& order, const LiftedTarget& field) {
-  const std::vector<LevelStep> steps(order.points.levelStarts().size(),
-                                     {LiftingRule::kNoCorrection});
-  return liftLevels(order, field, false, steps);
+  return liftField(order, {field.components, field.hasMissing, copy}, steps);
 }
 
 }  // namespace qtet

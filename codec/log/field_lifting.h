@@ -15,8 +15,8 @@ namespace qtet {
 /// A point field's rules: one for each of PointAncestry::levelStarts().
 using LiftingRules = std::vector<LiftingRule>;
 
-/// Which corrections are left out: those below half a unit, below .8 of one, or all that only bring
-/// a value nearer to the one that is wanted.
+/// Which corrections are left out: those below half a unit, small ones, or all. Small ones count
+/// less than .8 of a unit, or 1 where the unit is 1. A value may need one to stay in its range.
 enum class Skips : std::uint8_t { kHalf, kSmall, kAll };
 
 /// How far a level's fused values may be from those that are wanted.
@@ -45,9 +45,5 @@ struct LiftedTarget {
 /// The rules by which all values stay.
 [[nodiscard]] LiftingRules exactRules(const ValueOrder& order, const FieldInfo& field,
                                       std::span<const std::int32_t> values);
-
-/// Gives fused vertices values that follow from their prey by the usual curvature, within the range
-/// of the last level's, and the rules that tell them.
-[[nodiscard]] LiftingRules followPrey(const ValueOrder& order, const LiftedTarget& field);
 
 }  // namespace qtet

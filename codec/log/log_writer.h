@@ -40,7 +40,7 @@ struct LogWriterOptions {
   /// A chunk ends at the record that takes it beyond; the first ones are smaller, from 4 KB on.
   std::uint32_t chunkBytes = 64 << 10;
   CodecId valueCodec = CodecId::kLifted;  ///< kLifted, kDraco or kAdaptive
-  /// Of each field, for kLifted; exactRules without. A cell field has none.
+  /// One list a field, for kLifted; exactRules without. A cell field has none.
   std::vector<LiftingRules> rules{};
   /// For the manifest: none, or one a level, coarse-first, the input's mesh included.
   LevelErrors errors;

@@ -20,8 +20,6 @@ namespace qtet {
 /// How the fused values of a level follow from their prey.
 struct LiftingRule {
   static constexpr int kNoCorrection = -1, kMaxShift = 30, kMaxCurve = 127;
-  /// The curvature of values that have no other rule: .15. Meshes fitted .09 to .21 best.
-  static constexpr int kUsualCurve = 38;
 
   /// Corrections count 2^shift; kNoCorrection: there are none.
   int shift = 0;
@@ -34,13 +32,6 @@ struct LiftingRule {
 /// A slope in one component: sums of weight * (the corner's value - another), on both sides.
 struct Rise {
   std::array<std::int64_t, 2> side{};  ///< against the step, along it
-
-  /// `value(v)` is v's, or `from` where it is missing.
-  template <class Value>
-  Rise(const Slope& slope, std::int64_t from, const Value& value) {
-    for (std::size_t i = 0; i < slope.vertex.size(); ++i)
-      side[i / 3] += slope.weight[i] * (value(slope.vertex[i]) - from);
-  }
 };
 
 /// The part of a slope that is the same for any component.
@@ -107,14 +98,16 @@ class LiftedRecord {
     std::array<std::int64_t, kMaxPrey> plain{};       ///< by both sides alike
     bool hasBoth = false;
   };
-  /// From all exits. `at(v)` is v's value, `fused` where that is missing.
-  template <class At>
-  [[nodiscard]] Guess guess(std::int64_t fused, const At& at) const {
+  /// One a slope, in one component. The others are 0.
+  using Rises = std::array<Rise, kMaxPrey>;
+
+  /// From all exits. `rises`: to the fused value.
+  [[nodiscard]] Guess guess(const Rises& rises) const {
     Guess out;
     out.hasBoth = hasBoth_;
     std::array<std::int64_t, kMaxPrey> step{}, plain{};
     for (std::size_t i = 0; i < count_; ++i) {
-      const Rise rise(slopes_[i], fused, at);
+      const Rise& rise = rises[i];
       plain[i] = lifting::rounded(256 * (rise.side[0] + rise.side[1]), lifting::kChangeBits);
       step[i] = sides_[i].hasBoth ? blended(sides_[i], rise) : plain[i];
     }
@@ -123,26 +116,20 @@ class LiftedRecord {
     return out;
   }
   /// From the exits within the mesh alone.
-  template <class At>
-  [[nodiscard]] Guess guessWithin(std::int64_t fused, const At& at) const {
+  [[nodiscard]] Guess guessWithin(const Rises& rises) const {
     Guess out;
     std::array<std::int64_t, kMaxPrey> step{};
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Rise rise(slopes_[i], fused, at);
-      step[i] = within(slopes_[i], sides_[i], rise);
-    }
+    for (std::size_t i = 0; i < count_; ++i) step[i] = within(slopes_[i], sides_[i], rises[i]);
     spread(step, out.difference);
     out.plain = out.difference;
     return out;
   }
   /// How far the two sides of the slopes disagree, at most, in half values.
-  template <class At>
-  [[nodiscard]] std::uint64_t bend(std::int64_t fused, const At& at) const {
+  [[nodiscard]] std::uint64_t bend(const Rises& rises) const {
     std::uint64_t out = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      const Rise rise(slopes_[i], fused, at);
       const std::int64_t apart =
-          rise.side[1] * sides_[i].ratio[1] - rise.side[0] * sides_[i].ratio[0];
+          rises[i].side[1] * sides_[i].ratio[1] - rises[i].side[0] * sides_[i].ratio[0];
       out = std::max(out, magnitudeOf(apart) >> (lifting::kChangeBits - 1));
     }
     return out;
@@ -176,8 +163,10 @@ class LiftedRecord {
     const Slope& slope = slopes_[0];
     std::size_t i = 0;
     while (slope.weight[i] == 0) ++i;
-    const std::int64_t from = at(slope.vertex[i]);
-    const Rise rise(slope, from, at);
+    const std::int64_t from = at(slope.vertex[i]);  // since rounded weights do not sum up to 0
+    Rise rise;
+    for (; i < slope.vertex.size(); ++i)
+      rise.side[i / 3] += slope.weight[i] * (at(slope.vertex[i]) - from);
     return from +
            lifting::rounded(sides_[0].reach[0] * rise.side[1] - sides_[0].reach[1] * rise.side[0],
                             lifting::kChangeBits);

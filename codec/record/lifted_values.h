@@ -90,10 +90,16 @@ class LiftedBlock {
            const Prey& truth);
   [[nodiscard]] unsigned presentPrey(const LiftedRecord& record, std::uint32_t c,
                                      const Prey& truth);
-  [[nodiscard]] SizeHints hintsOf(const LiftedRecord& record, std::uint32_t c);
-  template <class At>
+  /// A record's corners in one component.
+  struct Corners {
+    LiftedRecord::Rises rises;  ///< to the fused value, which a missing one counts as
+    SizeHints hints;            ///< what they tell of it
+    bool isWhole = true;        ///< none is missing
+  };
+  [[nodiscard]] Corners cornersOf(const LiftedRecord& record, std::uint32_t c) const;
   [[nodiscard]] LiftedRecord::Guess guessOf(const LiftedRecord& record, std::uint32_t c,
-                                            const At& at, LiftedRecord::Guess& other);
+                                            const LiftedRecord::Rises& rises,
+                                            LiftedRecord::Guess& other) const;
   std::int32_t checked(std::int64_t value) {
     if (-kLargest <= value && value <= kLargest) return static_cast<std::int32_t>(value);
     bad_ = true;
@@ -239,35 +245,43 @@ void LiftedBlock<Coder>::rim(const LiftingRule& rule, const LiftedRecord& record
 }
 
 template <class Coder>
-SizeHints LiftedBlock<Coder>::hintsOf(const LiftedRecord& record, std::uint32_t c) {
+auto LiftedBlock<Coder>::cornersOf(const LiftedRecord& record, std::uint32_t c) const -> Corners {
   const Birth& birth = record.birth();
   const std::int64_t fused = at(birth.slot, c);
-  int sum = 2 * size(birth.slot, c), count = 2;
+  unsigned sum = 2u * size(birth.slot, c), count = 2;
   std::uint64_t spread = 0;
-  for (const Slope& slope : record.slopes())
+  Corners out;
+  Rise* rise = out.rises.data();
+  for (const Slope& slope : record.slopes()) {
     for (std::size_t i = 0; i < slope.vertex.size(); ++i) {
       if (slope.weight[i] == 0) continue;
-      const VertexId corner = slope.vertex[i];
-      sum += size(corner, c), ++count;
-      if (at(corner, c) != kMissing) spread = std::max(spread, magnitudeOf(at(corner, c) - fused));
+      const std::size_t corner = std::size_t{slope.vertex[i]} * components_ + c;
+      sum += field_.sizes[corner], ++count;
+      if (hasMissing_ && field_.values[corner] == kMissing) {
+        out.isWhole = false;
+        continue;
+      }
+      const std::int64_t apart = field_.values[corner] - fused;
+      rise->side[i / 3] += slope.weight[i] * apart;
+      spread = std::max(spread, magnitudeOf(apart));
     }
-  SizeHints hints;
-  hints.around = std::min(4 * (sum / count), SizeHints::kMaxAround);
-  hints.spread = stepsOf(spread);
-  hints.place = static_cast<std::uint8_t>(birth.placement());
-  return hints;
+    ++rise;
+  }
+  out.hints.around = std::min(static_cast<int>(4 * (sum / count)), SizeHints::kMaxAround);
+  out.hints.spread = stepsOf(spread);
+  out.hints.place = static_cast<std::uint8_t>(birth.placement());
+  return out;
 }
 
 /// The guess that counts. REQUIRES of `other`: where exits lie on the boundary, it becomes the one
 /// that does not.
 template <class Coder>
-template <class At>
 LiftedRecord::Guess LiftedBlock<Coder>::guessOf(const LiftedRecord& record, std::uint32_t c,
-                                                const At& at, LiftedRecord::Guess& other) {
-  const std::int64_t fused = this->at(record.birth().slot, c);
-  LiftedRecord::Guess guess = record.guess(fused, at);
+                                                const LiftedRecord::Rises& rises,
+                                                LiftedRecord::Guess& other) const {
+  LiftedRecord::Guess guess = record.guess(rises);
   if (!record.isBeyond()) return guess;
-  other = record.guessWithin(fused, at);
+  other = record.guessWithin(rises);
   if (boundaryScore_[std::min<std::size_t>(c, kAxes - 1)] > 0) std::swap(guess, other);
   return guess;
 }
@@ -277,16 +291,13 @@ void LiftedBlock<Coder>::component(const LiftingRule& rule, const LiftedRecord& 
                                    std::uint32_t c, const Prey& truth) {
   const Birth& birth = record.birth();
   const std::int64_t fused = at(birth.slot, c);
-  const auto value = [&](VertexId v) -> std::int64_t {
-    const std::int32_t x = at(v, c);
-    return hasMissing_ && x == kMissing ? fused : x;
-  };
+  const Corners corners = cornersOf(record, c);
   LiftedRecord::Guess other;
-  const LiftedRecord::Guess guess = guessOf(record, c, value, other);
-  SizeHints hints = hintsOf(record, c);
+  const LiftedRecord::Guess guess = guessOf(record, c, corners.rises, other);
+  SizeHints hints = corners.hints;
   hints.kind = birth.k > 2 ? 2 : guess.hasBoth ? 0 : 1;
   hints.bend = guess.hasBoth
-                   ? std::min(stepsOf(record.bend(fused, value)), SizeHints::kMaxSteps - 1)
+                   ? std::min(stepsOf(record.bend(corners.rises)), SizeHints::kMaxSteps - 1)
                    : SizeHints::kMaxSteps;
   std::uint64_t steepest = 0;
   for (std::size_t i = 1; i < birth.k; ++i)
@@ -314,10 +325,9 @@ void LiftedBlock<Coder>::component(const LiftingRule& rule, const LiftedRecord& 
   }
 
   const std::int64_t mean = record.mean(difference);
-  const bool isWhole =
-      !hasMissing_ || record.isWhole([&](VertexId v) { return at(v, c) != kMissing; });
-  const std::int64_t weight = isWhole ? record.curveWeight(rule) : 0;
-  const std::int64_t link = weight == 0 ? 0 : record.link(value);
+  const std::int64_t weight = corners.isWhole ? record.curveWeight(rule) : 0;
+  const std::int64_t link =
+      weight == 0 ? 0 : record.link([&](VertexId v) -> std::int64_t { return at(v, c); });
   std::int64_t base = fused;
   if (rule.isCorrected()) {
     hints.sign = coded > 0 ? 1 : coded < 0 ? 2 : 0;

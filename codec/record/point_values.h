@@ -40,10 +40,9 @@ struct Slope {
   /// A side's sum times this, in 1/256, is the change over a step as that side alone has it. 0
   /// without an exit there.
   [[nodiscard]] std::int64_t ratio(std::size_t side) const {
-    const std::int64_t own = reachOf(side);
-    return own == 0 ? 0
-                    : std::min<std::int64_t>((256 * (reachOf(0) + reachOf(1)) + own / 2) / own,
-                                             kMaxReach);
+    const auto at = [&](std::size_t i) { return std::uint32_t{reach[i]} & kMaxReach; };
+    const std::uint32_t own = at(side), both = at(0) + at(1);
+    return own == 0 ? 0 : std::min<std::uint32_t>((256 * both + own / 2) / own, kMaxReach);
   }
 
   /// By the exits within the mesh. `difference(v)` is v's value less the fused vertex's.

@@ -93,8 +93,8 @@ typedef struct {
 } qtet_named_number;
 
 /* How far the values of a field may be from the input's, at the last level, each component by
- * itself. The name may be that of a series, for all its instants. "all" means every float field that
- * no other bound names. */
+ * itself. The name may be that of a series, for all its instants. "all" means every float field
+ * that no other bound names. */
 typedef struct {
   const char* name;
   double value;     /* above 0, finite */
@@ -116,9 +116,9 @@ typedef struct {
   uint32_t valueCodec;      /* QTET_CODEC_LIFTED */
   uint32_t keepOrder;       /* 1: the log keeps the input's numbering; 0 */
   uint32_t lossless;        /* 1: it keeps the input's own numbers; 0 */
-  uint32_t exactCoarse;     /* Since 0.4. 1: coarse levels keep the best values, for more bytes; 0 */
-  uint32_t threads;         /* as many as there are processors at most; 1. The log is the same */
-  double maxBoundaryError;  /* over the diagonal; NaN: no bound */
+  uint32_t exactCoarse;    /* Since 0.4. 1: coarse levels keep the best values, for more bytes; 0 */
+  uint32_t threads;        /* as many as there are processors at most; 1. The log is the same */
+  double maxBoundaryError; /* over the diagonal; NaN: no bound */
   const qtet_named_number* maxFieldErrors; /* rms over the field's range */
   const qtet_named_number* fieldWeights;   /* of point fields; others count 1 */
   uint32_t maxFieldErrorCount, fieldWeightCount;

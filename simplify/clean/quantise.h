@@ -50,12 +50,11 @@ struct QuantisedMesh {
 /// worse: positive volume to zero or less, zero to less. Float fields take `fieldBits`: step =
 /// largest component's extent / (2^bits - 1) and a minimum a component. A field with a bound takes
 /// the largest step that holds it and divides that extent, and the fewest bits for it
-/// (FieldPrecision). Integer fields take step 1 and lose nothing where kMaxFieldBits bits hold their
-/// range. Points and cells keep their order;
-/// the boundary is `boundary` where that is known, else boundaryOf's. Errors: bad-value (bits
-/// outside their limits), quantiseField's, cancelled, bad-input (extents that a double cannot hold
-/// or divide; more than kMostWorseCells).
-/// REQUIRES: a mesh that cleanMesh has passed, errors that checkValueBounds has passed.
+/// (FieldPrecision). Integer fields take step 1 and lose nothing where kMaxFieldBits bits hold
+/// their range. Points and cells keep their order; the boundary is `boundary` where that is known,
+/// else boundaryOf's. Errors: bad-value (bits outside their limits), quantiseField's, bad-input
+/// (extents that a double cannot hold or divide; more than kMostWorseCells), cancelled. REQUIRES: a
+/// mesh that cleanMesh has passed, errors that checkValueBounds has passed.
 [[nodiscard]] Result<QuantisedMesh> quantise(const TetMesh& mesh,
                                              const QuantiseOptions& options = {},
                                              const std::stop_token& stop = {},

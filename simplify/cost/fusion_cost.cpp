@@ -15,11 +15,6 @@
 namespace qtet {
 namespace {
 
-// The boundary's field counts like that of a layer this thick (of the diagonal). The thin cells at
-// a wall have no volume to give them weight, yet the field is steepest there, and a viewer shows
-// it.
-constexpr double kWallLayer = 3e-5;
-
 // Most cells, of some, have all of their vertices in one run of so many ids.
 bool areNear(std::span<const Tetrahedron> cells, std::size_t run) {
   constexpr std::size_t kAsked = 1024;

@@ -30,6 +30,11 @@ struct PreyQuadric {
   double pull = 0;
 };
 
+/// The boundary's field counts like that of a layer this thick (of the diagonal). The thin cells at
+/// a wall have no volume to give them weight, yet the field is steepest there, and a viewer shows
+/// it.
+inline constexpr double kWallLayer = 3e-5;
+
 class FusionCost {
  public:
   /// `workers` share the work and change nothing of its outcome. REQUIRES: `mesh` outlives this and

@@ -315,7 +315,7 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
     quantised->info.labelNames = namesOfValues(info, quantised->values);
     item.values = inLogOrder(quantised->values, info.components, logs);
     if (!isCellField(info))
-      item.values = fusedValues(*history_, std::move(item.values), info.components);
+      item.values = fusedValues(*history_, finest_, std::move(item.values), info.components);
     if (!quantised->missing.empty())
       item.missing = inLogOrder(quantised->missing, info.components, logs);
     item.info = info;

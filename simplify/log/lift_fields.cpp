@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "proto/series.h"
@@ -13,21 +14,27 @@
 namespace qtet {
 namespace {
 
-/// A level's corrections count so many times its known error, from the coarsest level to the one
-/// with so many of the finest's cells. Levels beyond the last one have none.
-struct Zone {
-  double cells, errors;
+/// By how much corrections count, from wide to narrow. The first figure is for levels with at most
+/// a quarter of the cells: so many times their known error. It is twice that up to 60 % of the
+/// cells, and four times up to `end`. Finer levels have none. Instants of a series take the first
+/// figure everywhere: they are most of their log.
+struct Width {
+  double errors, end;
 };
-/// The widest first. A field takes the first that its rms allows.
-constexpr std::array<std::array<Zone, 3>, 4> kSchedules{{{{{0.25, 1}, {0.6, 2}, {0.8, 4}}},
-                                                         {{{0.25, 0.7}, {0.6, 1.4}, {0.9, 2.8}}},
-                                                         {{{0.25, 0.5}, {0.6, 1}, {1, 2}}},
-                                                         {{{0.25, 0.25}, {0.6, 0.5}, {1, 1}}}}};
-/// The same for the instants of a series, which are most of their log.
-constexpr std::array<double, 4> kSeriesErrors{1, 0.7, 0.5, 0.25};
-/// Shares of cells at which the growth of errors is looked at.
-constexpr double kHalf = 0.5, kQuarter = 0.25;
-static_assert(kSchedules.size() == kSeriesErrors.size());
+constexpr std::array<Width, 9> kWidths{{{4, 0.8},
+                                        {2.8, 0.8},
+                                        {2, 0.8},
+                                        {1.4, 0.8},
+                                        {1, 0.8},
+                                        {0.7, 0.9},
+                                        {0.5, 1},
+                                        {0.35, 1},
+                                        {0.25, 1}}};
+/// The first that is tried: S5 of the measurements (HISTORY.md, "Values once").
+constexpr std::size_t kFirstWidth = 4;
+constexpr double kQuarter = 0.25, kHalf = 0.5, kMiddle = 0.6;
+/// Small corrections of an instant stay where they count less than so many steps.
+constexpr double kMinSkipped = 0.25;
 
 /// The cells of each level over those of the finest.
 std::vector<double> sharesOfCells(const FusionHistory& history) {
@@ -102,14 +109,34 @@ class Lifter {
   LiftingRules lift(std::size_t f, const std::vector<std::int32_t>& filled) {
     const std::vector<std::int32_t> predicted = predictedValues(history_, f);
     const std::vector<std::int32_t> wanted = history_.values[f];
-    const bool isMeasured = movesMeasured(f);
-    const std::vector<FieldError> before = isMeasured ? errorsOf(f, filled) : Figures{};
-    for (std::size_t attempt = 0; isMeasured && attempt < kSchedules.size(); ++attempt) {
-      LiftingRules rules = lift(f, predicted, stepsOf(f, attempt));
-      const Figures after = errorsOf(f, filled);
-      if (isNear(f, before, after)) {
-        setFieldErrors(*options_.replay, after, f - options_.firstField, errors_);
-        return rules;
+    if (movesMeasured(f)) {
+      const Figures before = errorsOf(f, filled);
+      std::optional<Lifted> best;
+      std::size_t width = width_,
+                  failed = kWidths.size();  // wider than the failed one none is tried
+      while (width < kWidths.size()) {
+        history_.values[f] = wanted;
+        Lifted lifted{width, lift(f, predicted, stepsOf(f, width)), errorsOf(f, filled), {}};
+        const double grown = growthOf(f, before, lifted.errors);
+        const int halvings = static_cast<int>(std::floor(-std::log2(std::max(grown, 1.0 / 16))));
+        if (grown <= 1) {
+          lifted.values = std::move(history_.values[f]);
+          best = std::move(lifted);
+          // what the error grows by is as the square of the width
+          const std::size_t wider = width - std::min<std::size_t>(width, std::max(halvings, 0));
+          if (wider == width || (failed < kWidths.size() && wider <= failed)) break;
+          width = wider;
+        } else {
+          failed = width;
+          if (best) break;
+          width += static_cast<std::size_t>(std::max(-halvings, 1));
+        }
+      }
+      if (best) {
+        width_ = best->width;
+        history_.values[f] = std::move(best->values);
+        setFieldErrors(*options_.replay, best->errors, f - options_.firstField, errors_);
+        return std::move(best->rules);
       }
       history_.values[f] = wanted;
     }
@@ -120,6 +147,12 @@ class Lifter {
 
  private:
   using Figures = std::vector<FieldError>;
+  struct Lifted {
+    std::size_t width;
+    LiftingRules rules;
+    Figures errors;
+    std::vector<std::int32_t> values;
+  };
 
   [[nodiscard]] bool movesMeasured(std::size_t f) const {
     return options_.replay != nullptr && isFloatType(history_.fields[f].type) &&
@@ -148,51 +181,45 @@ class Lifter {
     std::swap(whole, history_.values[f]);
     return out;
   }
-  /// Whether the rms has grown by as much as it may, or less, from half of the cells down.
-  [[nodiscard]] bool isNear(std::size_t f, const Figures& before, const Figures& after) const {
+  /// By how much the rms has grown at most, over the growth that is allowed; above 1 is too much.
+  [[nodiscard]] double growthOf(std::size_t f, const Figures& before, const Figures& after) const {
     const double steps = stepsIn(f);
-    double finerCells = 1, finerGrowth = 1;
+    double out = 0, finerCells = 1, finerGrowth = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
       const std::uint32_t coarser = options_.replay->levels[i].coarser;
       if (coarser >= cells_.size()) break;
-      double cells = cells_[cells_.size() - 1 - coarser];
-      double growth = before[i].rms > 0 ? after[i].rms / before[i].rms : 1;
-      const double ownCells = cells, ownGrowth = growth;
+      const double cells = cells_[cells_.size() - 1 - coarser];
+      const double growth = before[i].rms > 0 ? after[i].rms / before[i].rms - 1 : 0;
+      const bool isSmall = before[i].rms * steps < kSmallSteps;
+      const auto most = [&](double usual) { return (isSmall ? kMostSmallGrowth : usual) - 1; };
+      out = std::max(out, growth / most(cells <= kQuarter ? kMostGrowth
+                                        : cells <= kHalf  ? kMostHalfGrowth
+                                                          : kMostFineGrowth));
       if (cells < kHalf && finerCells > kHalf) {  // at half itself, between the two levels
         const double share = std::log(kHalf / finerCells) / std::log(cells / finerCells);
-        growth = std::max(growth, finerGrowth + share * (growth - finerGrowth));
-        cells = kHalf;
+        out = std::max(out, (finerGrowth + share * (growth - finerGrowth)) / most(kMostHalfGrowth));
       }
-      const double most = before[i].rms * steps < kSmallSteps ? kMostSmallGrowth
-                          : cells > kQuarter                  ? kMostFineGrowth
-                                                              : kMostGrowth;
-      if (cells <= kHalf && growth > most) return false;
-      finerCells = ownCells, finerGrowth = ownGrowth;
+      finerCells = cells, finerGrowth = growth;
     }
-    return true;
+    return out;
   }
-  /// Of an error of 1, by component.
+  /// The steps that an error of 1 has, by component.
   [[nodiscard]] double stepsIn(std::size_t f) const {
     return options_.replay->ranges[f - options_.firstField] /
            std::sqrt(static_cast<double>(history_.fields[f].components));
   }
 
-  [[nodiscard]] std::vector<LevelStep> stepsOf(std::size_t f, std::size_t attempt) const {
+  [[nodiscard]] std::vector<LevelStep> stepsOf(std::size_t f, std::size_t width) const {
     std::vector<LevelStep> out(levels_.size());
     const std::vector<double> errors = errorsInSteps(errors_, f - options_.firstField, stepsIn(f));
     if (errors.empty()) return out;
     const bool isInstant = instantName(history_.fields[f].name).has_value();
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const double error = errors[levels_[i]];
-      if (isInstant) {
-        out[i].shift = shiftOf(kSeriesErrors[attempt] * error);
-        if (out[i].shift > 0) out[i].skips = Skips::kSmall;
-        continue;
-      }
-      const auto zone = std::ranges::find_if(
-          kSchedules[attempt], [&](const Zone& z) { return cells_[levels_[i]] < z.cells; });
-      out[i].shift = zone == kSchedules[attempt].end() ? LiftingRule::kNoCorrection
-                                                       : shiftOf(zone->errors * error);
+      const double cells = isInstant ? 0 : cells_[levels_[i]];
+      const double times = cells < kQuarter ? 1 : cells < kMiddle ? 2 : 4;
+      const double wanted = times * kWidths[width].errors * errors[levels_[i]];
+      out[i].shift = cells < kWidths[width].end ? shiftOf(wanted) : LiftingRule::kNoCorrection;
+      if (isInstant && wanted >= kMinSkipped) out[i].skips = Skips::kSmall;
     }
     return out;
   }
@@ -203,6 +230,7 @@ class Lifter {
   const LiftOptions& options_;
   const std::vector<double> cells_;
   std::vector<std::size_t> levels_;  // where the fused values of each level with records stand
+  std::size_t width_ = kFirstWidth;  // of the field before
 };
 
 }  // namespace

@@ -15,10 +15,11 @@
 
 namespace qtet {
 
-/// How much a field's known rms may grow in levels of at most a quarter of the cells, and in those
-/// of at most half. Below kSmallSteps it may be kMostSmallGrowth: such an error is of rounding.
-inline constexpr double kMostGrowth = 1.03, kMostFineGrowth = 1.05, kMostSmallGrowth = 1.15,
-                        kSmallSteps = 0.3;
+/// How much a field's known rms may grow in levels of at most a quarter of the cells. The second
+/// one is for those up to half, the third for finer ones. An rms below kSmallSteps of the field's
+/// steps is mostly that of rounding, and may grow more.
+inline constexpr double kMostGrowth = 1.03, kMostHalfGrowth = 1.05, kMostFineGrowth = 1.12,
+                        kMostSmallGrowth = 1.15, kSmallSteps = 0.3;
 
 struct LiftOptions {
   /// The fields before it stay as they are. The lists below begin with it.
@@ -37,9 +38,9 @@ struct LiftOptions {
 /// Moves the fused values of point fields of floats, so that their corrections take few bits. A
 /// correction counts about the known error of its level, more in fine levels, and the finest have
 /// none. It counts less where a field's rms grows by more than kMostGrowth. Instants that are
-/// predicted from others follow the moved ones. Takes and leaves a number everywhere. `errors`: the known errors of the values that come, then of
-/// those that go. Gives each field's rules, none to a cell field. Errors: cancelled. REQUIRES:
-/// fields in the order of decoding.
+/// predicted from others follow the moved ones. Takes and leaves a number everywhere. `errors`: the
+/// known errors of the values that come, then of those that go. Gives each field's rules, none to a
+/// cell field. Errors: cancelled. REQUIRES: fields in the order of decoding.
 [[nodiscard]] Result<std::vector<LiftingRules>> liftFields(FusionHistory& history,
                                                            const ValueOrder& order,
                                                            LevelErrors& errors,

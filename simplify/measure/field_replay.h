@@ -51,7 +51,7 @@ template <class IsOriginal>
           std::sqrt(worst) + rounding.max};
 }
 
-/// What a FieldMeter leaves.
+/// A FieldMeter leaves it.
 struct FieldReplay {
   struct Level {
     std::uint32_t coarser = 0;         ///< steps from the finest level

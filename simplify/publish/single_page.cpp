@@ -159,7 +159,7 @@ Result<std::uint32_t> cutLog(Bytes& content, const fs::path& path, std::uint64_t
     const std::uint64_t base = all.front().offset + all.front().size() + later.size();
     return fail(ErrorCode::kLimitExceeded,
                 "the smallest page of this log, with the base mesh, has " +
-                    std::to_string(other + (base + 3) / 3 * 4) + " bytes; allow so many");
+                    std::to_string(other + (base + 2) / 3 * 4) + " bytes; allow so many");
   }
   const ChunkEntry& last = all[chunks - 1];
   content.resize(last.offset + last.size());

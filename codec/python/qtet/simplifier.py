@@ -237,7 +237,9 @@ def _bounds(errors: Mapping[str, float | str] | None) -> tuple[Any, int]:
     for name, bound in (errors or {}).items():
         match = _BOUND.fullmatch(bound if isinstance(bound, str) else repr(float(bound)))
         if match is None:
-            raise ValueError(f"errors[{name!r}] is {bound!r}; give a number above 0, '0.1%' or '0.5K'")
+            raise ValueError(
+                f"errors[{name!r}] is {bound!r}; give a number above 0, '0.1%' or '0.5K'"
+            )
         entries.append(_ErrorBound(name.encode(), float(match[1]), match[2].encode()))
     return (_ErrorBound * len(entries))(*entries), len(entries)
 
@@ -330,7 +332,8 @@ def _tool_words(options: Mapping[str, Any]) -> list[str]:
         if value is True:
             words += [name]
         elif isinstance(value, dict):
-            words += [word for field, x in value.items() for word in (name, f"{field}={x if isinstance(x, str) else float(x)}")]
+            for field, x in value.items():
+                words += [name, f"{field}={x if isinstance(x, str) else float(x)}"]
         else:
             words += [name, str(value)]
     return words

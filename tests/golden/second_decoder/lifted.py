@@ -303,6 +303,9 @@ class Lifted:
             v = 0
         if any(slope.beyond) and self.wrong != "curvature counts beyond the mesh":
             v = 0
+        missing = any(w and self.values[x][c] == MISSING for x, w in slope.corners)
+        if missing and self.wrong != "curvature counts beside missing values":
+            v = 0
         if v == 0:
             return y
         a = next(self.value(x, c, f) for x, weight in slope.corners if weight)

@@ -55,8 +55,8 @@ export interface FieldInfo {
 const kFloat32 = 0;
 
 /**
- * The most that a value of the last level may differ from the original's, in the field's unit. It is
- * half a step and the rounding of the type (proto/rounding_error.h). 0: it is the original's.
+ * The most that a value of the last level may differ from the original's, in the field's unit. It
+ * is half a step and the rounding of the type (proto/rounding_error.h). 0: it is the original's.
  */
 export function largestRoundingError(info: FieldInfo): number {
   const {bits = 0, components, instant, isWhole, minimum, step, type} = info;

@@ -160,6 +160,8 @@ export class ProgressPanel {
 
   private showError(error: string): void {
     const all = this.manifest!.fields;
+    // while another mesh comes, the numbers may be those of the mesh before
+    const shown = this.fields.flatMap((f) => all[f] ?? []);
     const label = labelName(this.fields, all);
     const left = this.part('.error-left');
     setText(left, label === null ? error : `${error} of the volume`);
@@ -167,7 +169,7 @@ export class ProgressPanel {
       left,
       'title',
       label === null
-        ? this.fields.map((f) => formatWithin(all[f]!, largestRoundingError(all[f]!))).join('\n')
+        ? shown.map((field) => formatWithin(field, largestRoundingError(field))).join('\n')
         : `${error} of the volume has another ${label}`,
     );
   }
