@@ -339,6 +339,21 @@ def _tool_words(options: Mapping[str, Any]) -> list[str]:
     return words
 
 
+# Bytes of a list of names at most: Linux takes 128 kB a word of a command.
+_MAX_NAMES = 100_000
+
+
+def _all_fields(grid: Grid) -> list[str]:
+    """The words by which the tool takes the fields that only number points or cells, too: they are
+    given, not found in a file. Where they are too long, it leaves such fields out."""
+    names = ",".join(
+        f"{association}:{name}".replace(",", "\\,")
+        for association, data in (("point", grid.point_data), ("cell", grid.cell_data))
+        for name in data
+    )
+    return ["--fields", names] if 0 < len(names.encode()) <= _MAX_NAMES else []
+
+
 def _simplify_by_tool(
     grid: Grid,
     path: str | os.PathLike[str] | None,
@@ -352,7 +367,8 @@ def _simplify_by_tool(
         mesh = pathlib.Path(folder) / (stem + ".vtu")
         log = pathlib.Path(path) if path is not None else mesh.with_suffix(".qtet")
         grid.write_vtu(mesh)
-        words = ["simplify", str(mesh), "-o", str(log), "--quiet", *_tool_words(options)]
+        words = ["simplify", str(mesh), "-o", str(log), "--quiet"]
+        words += _all_fields(grid) + _tool_words(options)
         if tool.run(words, goes_on=lambda: progress and progress(_STAGES[2], 0.0)) is None:
             raise Cancelled("cancelled")
         return path if path is not None else log.read_bytes()
