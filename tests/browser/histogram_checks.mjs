@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {differingShare} from './png.mjs';
-import {serveMesh} from './programs.mjs';
+import {makeLog, serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
 async function opened({server, browser}, query, device = kDesktop) {
@@ -133,7 +133,46 @@ async function countsAwkwardFields(context) {
   return JSON.stringify({constant, missing, decades});
 }
 
+/** While a series plays, another field is counted, and the handles set its range. */
+async function countsAnotherFieldWhileASeriesPlays(context) {
+  const {server, bin, out} = context;
+  makeLog(bin, 'counting', out, ['fin', '--steps', '4'], ['--measure', 'none']);
+  server.kill();
+  await server.start();
+  const viewer = await opened(context, 'mesh=counting&field=Density&clip=none');
+  const {page} = viewer;
+  const low = handle(viewer, 'first');
+  await low.waitFor();
+  const title = () => low.getAttribute('aria-valuetext');
+  assert.match(await title(), /^Density/);
+  await page.evaluate(() => {
+    window.qtetViewer.playing = true;
+    window.qtetViewer.setAttribute('field', 'Pressure');
+  });
+  await page.waitForFunction(() =>
+    window.qtetViewer.shadowRoot
+      .querySelector('.histogram .end')
+      .getAttribute('aria-valuetext')
+      .startsWith('Pressure'),
+  );
+  assert.equal(await page.evaluate(() => window.qtetViewer.playing), true);
+  assert.equal(await page.locator('qtet-viewer select[name=field]').inputValue(), 'Pressure');
+  const [from, to] = await Promise.all(
+    ['valuemin', 'valuemax'].map(async (name) => Number(await low.getAttribute(`aria-${name}`))),
+  );
+  await viewer.screenshot('histogram-playing');
+  await low.focus();
+  await page.keyboard.press('Shift+ArrowRight');
+  await viewer.settle();
+  const [set] = (await rangeOf(viewer)).split(',').map(Number);
+  assert.ok(set > from && set < to, `${set} is not within ${from} and ${to}`);
+  assert.equal(Number(await low.getAttribute('aria-valuenow')), set);
+  assert.deepEqual(viewer.problems, []);
+  return `${await title()} of ${from} to ${to}`;
+}
+
 export const histogramChecks = {
+  countsAnotherFieldWhileASeriesPlays,
   setsTheRangeByItsHandles,
   takesTheMiddleByADoubleClick,
   hasRoomForFingers,

@@ -16,7 +16,7 @@ import type {Kept, Page} from './page/page';
 import {kMaxAhead, settingsFor, ShownMesh, type SegmentPlace} from './page/shown_mesh';
 import {Shell} from './panels/shell';
 import {displayOf, Requests} from './requests';
-import {readSettings, type Settings, type ShownRange} from './settings/settings';
+import {kViewAttributes, readSettings, type Settings, type ShownRange} from './settings/settings';
 import type {Later, LaterHost} from './later';
 import type {MovieOptions} from './picture/movies';
 import {StreamControl} from './stream_control';
@@ -154,9 +154,11 @@ export class Viewing implements LaterHost {
 
   /** While a series plays, panels that do not show the time would be written again for nothing. */
   private updatePanels(): void {
-    const {later, mesh, settings} = this;
+    const {later, mesh, page, settings} = this;
     if (!later) return;
-    const shown = JSON.stringify([{...settings, time: null}, mesh.bounds, mesh.snapshot === null]);
+    const texts = kViewAttributes.filter((name) => name !== 'time').map((name) => page.read(name));
+    const its = {...settings, time: null};
+    const shown = JSON.stringify([texts, its, mesh.bounds, mesh.snapshot === null]);
     if (!this.isPlaying || shown !== this.shownSettings) later.panels.update(settings, mesh);
     else later.panels.inspect.update();
     this.shownSettings = shown;

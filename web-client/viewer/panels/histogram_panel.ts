@@ -1,6 +1,7 @@
 // The histogram of the coloured field with the colours below it. Two handles set the range.
 
 import type {Client} from '../../core/session/client';
+import {scalarText} from '../../core/layers/field_values';
 import {colorGradient} from '../../core/picture/color_maps';
 import type {Axis, Histogram} from '../../core/picture/histogram';
 import type {StreamState} from '../../core/session/worker_messages';
@@ -58,8 +59,8 @@ export class HistogramPanel {
   private axis: Axis = {low: 0, high: 1, logarithmic: false};
   /** The last answer; null before there is one. */
   private counted: Histogram | null = null;
-  /** The quantity that was counted. */
-  private color = '';
+  /** The quantity that was counted, whatever its instant. */
+  private quantity = '';
   private isDragged = false;
 
   constructor(
@@ -90,10 +91,10 @@ export class HistogramPanel {
     this.changed();
   }
 
-  /** Follows the range at once, and counts a while later; an instant that passes is not counted. */
+  /** Follows the range at once, and counts a while later. Instants that pass are not counted. */
   private changed(): void {
-    if (this.host.isPlaying) return;
     this.show();
+    if (this.host.isPlaying && !this.isStale) return;
     this.timer ??= setTimeout(() => {
       this.timer = undefined;
       void this.count();
@@ -108,13 +109,26 @@ export class HistogramPanel {
     const [low, high] = snapshot.scaleRange;
     const [from, to] = snapshot.extent.map((share) => low + share * (high - low));
     const axis = axisOf(range, [from!, to!]);
+    const quantity = this.shownQuantity;
     const counted = await client.histogram(axis);
     // The answer may be late.
-    if (mesh !== this.host.mesh || snapshot.color !== mesh.snapshot?.color) return this.changed();
+    if (mesh !== this.host.mesh || quantity !== this.shownQuantity) return this.changed();
     this.axis = axis;
     this.counted = counted;
-    this.color = JSON.stringify(snapshot.color);
+    this.quantity = quantity;
     this.show();
+  }
+
+  /** The coloured quantity of the picture; empty if there is none. */
+  private get shownQuantity(): string {
+    const {manifest, snapshot} = this.host.mesh;
+    return manifest && snapshot?.color ? scalarText(snapshot.color, manifest.fields) : '';
+  }
+
+  /** Another quantity or scale was counted: the axis says nothing about what is shown. */
+  private get isStale(): boolean {
+    const {axis, host, quantity} = this;
+    return quantity !== this.shownQuantity || axis.logarithmic !== host.range?.logarithmic;
   }
 
   private show(): void {
@@ -123,9 +137,9 @@ export class HistogramPanel {
     const color = mesh.snapshot?.color;
     const isShown = range !== null && color && mesh.manifest && counted && !range.labels;
     this.root.classList.toggle('empty', !isShown);
-    // Another quantity or scale is counted soon; until then this one's picture stays.
-    const isStale = JSON.stringify(color) !== this.color || axis.logarithmic !== range?.logarithmic;
-    if (!isShown || isStale) return;
+    this.root.classList.toggle('stale', this.isStale);
+    // It is counted soon. Until then the last picture stays, and sets nothing.
+    if (!isShown || this.isStale) return;
     const hasWidth = axis.low < axis.high;
     find(this.root, 'path').setAttribute('d', barsPath(counted.counts));
     const [first, last] = [range.low, range.high].map((value) => shareOf(axis, value));
@@ -169,7 +183,7 @@ export class HistogramPanel {
   }
 
   private write([low, high]: readonly [number, number]): void {
-    if (low < high) this.page.write('range', `${low},${high}`);
+    if (low < high && !this.isStale) this.page.write('range', `${low},${high}`);
   }
 
   private toMiddle(): void {
