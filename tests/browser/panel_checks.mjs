@@ -106,6 +106,71 @@ async function keepsHalfOfALowWindow(context) {
   return `free: ${folded.toFixed(2)} folded, ${pulled.toFixed(2)} pulled up`;
 }
 
+/** Where the corners of the mesh's bounds lie: [left, top, right, bottom] in CSS pixels. */
+const boxOnCanvas = (viewer) =>
+  viewer.page.evaluate(() => {
+    const {meshView, viewing} = window.qtetViewer;
+    const {bounds} = viewing.mesh.snapshot;
+    const places = Array.from({length: 8}, (_, i) =>
+      meshView.project([0, 1, 2].map((axis) => bounds[axis + (i & (1 << axis) ? 3 : 0)])),
+    );
+    const [x, y] = ['x', 'y'].map((its) => places.map((place) => place[its]));
+    return [Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)];
+  });
+
+/** The viewer's picture and a frame of another size, as addresses of PNG files. */
+const savedPictures = (viewer) =>
+  viewer.page.evaluate(async () => {
+    const {meshView} = window.qtetViewer;
+    const [{bitmap}] = await meshView.render({width: 600, height: 400, margin: 0, pixelRatio: 1});
+    const canvas = new OffscreenCanvas(600, 400);
+    canvas.getContext('2d').drawImage(bitmap, 0, 0);
+    const files = [await window.qtetViewer.picture(), await canvas.convertToBlob()];
+    const bytes = await Promise.all(files.map((file) => file.arrayBuffer()));
+    return bytes.map((its) => [...new Uint8Array(its)].join());
+  });
+
+/** An open sheet lets the mesh go above it. Camera and saved pictures stay. */
+async function liftsTheMeshAboveAnOpenSheet(context) {
+  const notes = [];
+  for (const query of ['mesh=box&clip=none', 'mesh=box&clip=y:0.5&camera=1,-4.6,2,0,0,0']) {
+    const viewer = await opened(context, query, kCoarsePhone);
+    const {page} = viewer;
+    await viewer.settle();
+    const before = await boxOnCanvas(viewer);
+    const [camera, pictures] = [await cameraOf(viewer), await savedPictures(viewer)];
+    const fold = page.getByRole('button', {name: 'Controls'});
+    await fold.tap();
+    await viewer.settle();
+    await viewer.screenshot(`panel-lifted-${notes.length}`);
+    const [left, top, right, bottom] = await boxOnCanvas(viewer);
+    const [sheet, legend] = await Promise.all(
+      ['.panel', '.legend'].map((its) => page.locator(`qtet-viewer ${its}`).boundingBox()),
+    );
+    const place = `${[left, top, right, bottom].map(Math.round)}`;
+    assert.ok(left >= 0 && right <= 390, place);
+    assert.ok(top >= legend.y + legend.height && bottom <= sheet.y, place);
+    const middle = [(left + right) / 2, (top + bottom) / 2];
+    assert.ok(Math.abs(2 * middle[1] - legend.y - legend.height - sheet.y) < 40, place);
+    assert.deepEqual(await cameraOf(viewer), camera);
+    assert.deepEqual(await savedPictures(viewer), pictures);
+    await viewer.settle();
+    const picked = await page.evaluate(async ([x, y]) => {
+      const {client, meshView} = window.qtetViewer;
+      const {lattice} = await client.pick(meshView.rayAt(x, y));
+      return meshView.project(lattice);
+    }, middle);
+    assert.ok(Math.hypot(picked.x - middle[0], picked.y - middle[1]) < 1, JSON.stringify(picked));
+    await fold.tap();
+    await viewer.settle();
+    assert.deepEqual(await boxOnCanvas(viewer), before);
+    notes.push(`${before.map(Math.round)} to ${place}`);
+    assert.deepEqual(viewer.problems, []);
+    await context.browser.closePages();
+  }
+  return notes.join('; ');
+}
+
 const cameraOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.cameraState);
 
 /** A face of the cube looks along its axis, by a click and by the keyboard. */
@@ -213,6 +278,7 @@ export const panelChecks = {
   showsItsActionsAtOnce,
   remembersItsFolds,
   keepsHalfOfALowWindow,
+  liftsTheMeshAboveAnOpenSheet,
   turnsByTheCube,
   turnsByATapOnTheCube,
   showsTheValueAtThePointer,

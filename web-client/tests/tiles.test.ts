@@ -1,5 +1,6 @@
 import {describe, expect, test} from 'vitest';
 import type {Vector} from '../core/protocol/geometry';
+import type {Lens} from '../webgl/lens';
 import {MeshCamera} from '../webgl/mesh_camera';
 import {product, transformed} from '../webgl/matrix';
 import {partsOf, straighten, type Part} from '../webgl/tiles';
@@ -100,4 +101,44 @@ describe('the camera of a picture', () => {
     expect(x).toBeCloseTo(0);
     expect(y).toBeCloseTo(0);
   });
+});
+
+const kCovered = {left: 0, right: 0, top: 0.1, bottom: 0.6};
+
+test.each([false, true])('aCoveredPictureGoesToTheFreeArea (moved: %s)', (isMoved) => {
+  const camera = meshCamera();
+  if (isMoved) camera.orbit.orbit(0.3, 0.1);
+  const [state, saved] = [camera.orbit.state, corners(camera, kWhole)];
+  const seenBy = (its: Lens): number[] => {
+    camera.orbit.setDepths(its);
+    return transformed(camera.sightOf(its).toCanvas, [200, 100, 0]).slice(0, 2);
+  };
+  const before = seenBy(camera.orbit.lens).map((share) => expect.closeTo(share) as number);
+  expect(camera.setCovered(kCovered)).toBe(true);
+  expect(camera.setCovered({...kCovered})).toBe(false);
+  camera.resize(1280, 800);
+  const {lens, target} = camera.orbit;
+  const [x, y] = transformed(product(lens.toCube, lens.toEye), target);
+  expect([x, y]).toEqual([expect.closeTo(0), expect.closeTo(0.5)]);
+  expect(seenBy(lens)).not.toEqual(before);
+  expect(camera.orbit.state).toEqual(state);
+  expect(corners(camera, kWhole)).toEqual(saved);
+  expect(seenBy(camera.uncovered())).toEqual(before);
+  expect(camera.setCovered(null)).toBe(true);
+  camera.resize(1280, 800);
+  expect(seenBy(lens)).toEqual(before);
+});
+
+test('aMoveInACoveredPictureFollowsThePointer', () => {
+  const camera = meshCamera();
+  camera.setCovered(kCovered);
+  camera.resize(1280, 800);
+  const {lens, target} = camera.orbit;
+  const placeOf = (): Vector => transformed(product(lens.toCube, lens.toEye), target);
+  expect(lens.part!.fullHeight).toBeLessThan(800);
+  const before = placeOf();
+  camera.orbit.pan(0.1, 0.05);
+  const after = placeOf();
+  expect(after[0] - before[0]).toBeCloseTo((2 * 0.1 * 800) / 1280);
+  expect(after[1] - before[1]).toBeCloseTo(2 * 0.05);
 });

@@ -15,7 +15,7 @@ const kParallelDegrees = 0.1;
 /** The first direction to a mesh: front right, from above. */
 const kFirstDirection = unit([0.62, -1, 0.55]);
 /** The share of the free width or height that a fitted mesh fills. */
-const kFill = 0.88;
+export const kFill = 0.88;
 /** The least distance of the eye from the target of a fitted view, in radii. */
 const kMinDistance = 0.05;
 /** The least distance of the near plane from the eye, in radii. */
@@ -109,10 +109,12 @@ export class OrbitCamera {
     this.moveTo([across * Math.cos(angle), across * Math.sin(angle), radius * Math.cos(tilt)]);
   }
 
-  /** Moves by shares of the picture's height at the target: what is seen goes right and up. */
+  /** Moves by shares of the canvas's height at the target: what is seen goes right and up. */
   pan(right: number, up: number): void {
-    const height = 2 * lengthOf(this.offset) * this.lens.tangent;
-    const [along, above] = this.lens.axes;
+    const {axes, part, tangent} = this.lens;
+    const share = part ? part.height / part.fullHeight : 1;
+    const height = 2 * lengthOf(this.offset) * tangent * share;
+    const [along, above] = axes;
     this.aimAt(sum(this.target, sum(scaled(along, -right * height), scaled(above, -up * height))));
   }
 

@@ -2,10 +2,19 @@
 
 import {moved, type LatticeChange, type Vector} from '../core/protocol/geometry';
 import type {Snapshot} from '../core/session/worker_messages';
-import {OrbitCamera, type CameraState, type Framing} from './camera';
+import {kFill, OrbitCamera, type CameraState, type Framing} from './camera';
 import {checkedDirection, type Direction} from './directions';
 import type {Eye, Lens} from './lens';
-import {difference, inverse, lengthOf, product, scaled, sum, type Matrix} from './matrix';
+import {
+  difference,
+  inverse,
+  lengthOf,
+  product,
+  scaled,
+  sum,
+  transformed,
+  type Matrix,
+} from './matrix';
 import {OrbitControls} from './orbit_controls';
 import {cornersOf, farthestOf, outlineOf, outlineOfLines} from './outline';
 import {checkedCamera, type Pose} from './pose';
@@ -43,6 +52,10 @@ export class MeshCamera {
   /** Lattice points that the mesh lies between. */
   private outline: Vector[] = [];
   private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
+  /** As View.setCovered. */
+  private covered: Insets | null = null;
+  /** The canvas's. */
+  private size = {width: 1, height: 1};
   /** The mesh has followed another one. It may have another size, and the camera stays in place. */
   private isSuccessor = false;
   /** The next mesh is seen from here first; null: its first view. */
@@ -90,6 +103,7 @@ export class MeshCamera {
     if (Array.isArray(this.start)) this.orbit.state = this.start;
     else this.look(this.start);
     this.start = null;
+    this.placePicture();
   }
 
   /** The mesh lies on another lattice from now on, in the same place. */
@@ -116,24 +130,37 @@ export class MeshCamera {
 
   /** Returns false if they are the same as before. */
   setInsets(insets: Insets): boolean {
-    const sides = Object.keys(insets) as (keyof Insets)[];
-    if (sides.every((side) => insets[side] === this.insets[side])) return false;
+    if (areSame(insets, this.insets)) return false;
     this.insets = insets;
     return true;
   }
 
+  /** As View.setCovered. Returns false if they are the same as before. */
+  setCovered(covered: Insets | null): boolean {
+    if (covered && this.covered ? areSame(covered, this.covered) : covered === this.covered)
+      return false;
+    this.covered = covered;
+    return true;
+  }
+
+  /** Cards cover the picture for a while. */
+  get isCovered(): boolean {
+    return this.covered !== null;
+  }
+
   /** Shifts the picture's centre into the middle of the free area of a canvas of this size. */
   resize(width: number, height: number): void {
-    const {left, right, top, bottom} = this.insets;
-    this.orbit.lens.setPart({
-      fullWidth: width,
-      fullHeight: height,
-      x: ((right - left) / 2) * width,
-      y: ((bottom - top) / 2) * height,
-      width,
-      height,
-    });
+    this.size = {width, height};
+    this.placePicture();
     this.refit();
+    if (this.covered) this.placePicture();
+  }
+
+  /** The canvas's camera as if no card covered it for a while. */
+  uncovered(): Lens {
+    const lens = this.orbit.lens.clone();
+    this.place(lens, this.insets);
+    return lens;
   }
 
   /**
@@ -147,6 +174,7 @@ export class MeshCamera {
       return;
     }
     this.orbit.look(direction, () => this.framing());
+    this.placePicture();
     this.changed();
   }
 
@@ -174,13 +202,13 @@ export class MeshCamera {
       const {distance, target} = this.framing(insets, width / height);
       lens.eye = sum(scaled(direction, distance), target);
     } else {
-      const {left, right, top, bottom} = this.insets;
-      const {fullWidth, fullHeight} = seen.part!;
+      const [freeWidth, freeHeight] = freeOf(this.insets);
+      const {size} = this;
       const scale = Math.min(
-        width / (fullWidth * (1 - left - right)),
-        (height * (1 - 2 * margin)) / (fullHeight * (1 - top - bottom)),
+        width / (size.width * freeWidth),
+        (height * (1 - 2 * margin)) / (size.height * freeHeight),
       );
-      full = {width: scale * fullWidth, height: scale * fullHeight};
+      full = {width: scale * size.width, height: scale * size.height};
     }
     lens.setPart({
       fullWidth: full.width,
@@ -238,6 +266,44 @@ export class MeshCamera {
     this.orbit.goWith(factor, difference(this.offset, scaled(before.offset, factor)));
   }
 
+  private placePicture(): void {
+    const {covered, insets, orbit} = this;
+    this.place(orbit.lens, insets);
+    if (covered) this.place(orbit.lens, covered, this.shrunkBy(covered));
+  }
+
+  /** Puts the centre of a picture of `scale` times the canvas's size between the insets. */
+  private place(lens: Lens, {left, right, top, bottom}: Insets, scale = 1): void {
+    const {width, height} = this.size;
+    lens.setPart({
+      fullWidth: scale * width,
+      fullHeight: scale * height,
+      x: ((scale - 1 + right - left) / 2) * width,
+      y: ((scale - 1 + bottom - top) / 2) * height,
+      width,
+      height,
+    });
+  }
+
+  /**
+   * At most 1: with this scale the area between `covered` shows of the mesh what that between the
+   * insets shows. REQUIRES: the lens is placed between the insets.
+   */
+  private shrunkBy(covered: Insets): number {
+    if (!this.hasMesh) return 1;
+    this.orbit.setDepths();
+    const {toCanvas} = this.sightOf(this.orbit.lens);
+    const places = this.outline.map((point) => transformed(toCanvas, point));
+    const isInFront = places.every(([, , depth]) => Math.abs(depth) <= 1);
+    const before = freeOf(this.insets);
+    const shares = freeOf(covered).map((free, axis) => {
+      const along = places.map((place) => place[axis]!);
+      const span = isInFront ? (Math.max(...along) - Math.min(...along)) / 2 : Infinity;
+      return (kFill * free) / Math.min(span, kFill * before[axis]!);
+    });
+    return Math.min(1, ...shares);
+  }
+
   private refit(): void {
     if (this.orbit.fitted && this.hasMesh) this.orbit.fit(() => this.framing());
   }
@@ -260,17 +326,24 @@ export class MeshCamera {
    * Frames the mesh itself, not its box: a box leaves its corners empty. `aspect` may be that of
    * another picture than the canvas.
    */
-  private framing(
-    {left, right, top, bottom} = this.insets,
-    aspect = this.orbit.lens.aspect,
-  ): Framing {
+  private framing(insets = this.insets, aspect = this.orbit.lens.aspect): Framing {
     const isWhole = !this.focus || this.orbit.isStandard || this.reach.scale !== 0;
     const seen = isWhole ? null : seenPart(this.focus!, this.bounds, this.orbit.direction);
     const points = (seen ? cornersOf(seen) : this.outline).map((corner) => this.placed(corner));
     const wider = aspect / this.orbit.lens.aspect;
-    return this.orbit.framing(points, (1 - left - right) * wider, 1 - top - bottom);
+    const [freeWidth, freeHeight] = freeOf(insets);
+    return this.orbit.framing(points, freeWidth * wider, freeHeight);
   }
 }
+
+/** The shares of the width and of the height that are free. */
+const freeOf = ({left, right, top, bottom}: Insets): [number, number] => [
+  1 - left - right,
+  1 - top - bottom,
+];
+
+const areSame = (a: Insets, b: Insets): boolean =>
+  (Object.keys(a) as (keyof Insets)[]).every((side) => a[side] === b[side]);
 
 /** The bounds round both; the first may be empty. */
 function union(a: readonly number[], b: readonly number[]): number[] {

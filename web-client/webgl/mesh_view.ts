@@ -118,6 +118,10 @@ export class MeshView implements View {
     if (this.camera.setInsets(insets)) this.resize(); // which clears the canvas
   }
 
+  setCovered(insets: Insets | null): void {
+    if (this.camera.setCovered(insets)) this.resize();
+  }
+
   setFocus(focus: number[] | null): void {
     this.camera.focus = focus;
   }
@@ -192,15 +196,20 @@ export class MeshView implements View {
 
   /** The current picture on `background` (a CSS colour). */
   async picture(background: string): Promise<Blob> {
-    if (this.drawsVolume) await this.volume!.drawWhole(this.pictureOf());
+    const {camera} = this;
+    if (this.drawsVolume) await this.volume!.drawWhole(this.pictureOf(camera.uncovered()));
     // Drawing and copying share a task: a canvas that has been shown is empty.
     if (this.hasVolume) this.volume!.present();
-    else this.draw(1);
+    else {
+      this.draw(1);
+      if (camera.isCovered) this.drawSurface(camera.uncovered());
+    }
     const copy = new OffscreenCanvas(this.surfaceCanvas.width, this.surfaceCanvas.height);
     const context = copy.getContext('2d')!;
     context.fillStyle = background;
     context.fillRect(0, 0, copy.width, copy.height);
     context.drawImage(this.surfaceCanvas, 0, 0);
+    if (camera.isCovered) this.resize();
     return copy.convertToBlob({type: 'image/png'});
   }
 
@@ -353,10 +362,10 @@ export class MeshView implements View {
       done.forEach((drawn) => drawn(ms));
     };
     try {
-      this.orbit.setDepths();
-      this.parts.fadeLines(this.camera.sightOf(this.orbit.lens).toCanvas, this.canvas);
-      if (this.drawsVolume) this.volume!.draw(this.pictureOf(), this.moved);
-      else this.drawCanvas();
+      if (this.drawsVolume) {
+        this.fadeLines(this.orbit.lens);
+        this.volume!.draw(this.pictureOf(), this.moved);
+      } else this.drawSurface(this.orbit.lens);
       this.moved = false;
       this.frameMs = performance.now() - start;
       this.listeners.drawn?.(this.pose);
@@ -365,12 +374,18 @@ export class MeshView implements View {
     }
   }
 
-  private drawCanvas(): void {
+  private fadeLines(lens: Lens): void {
+    this.orbit.setDepths(lens);
+    this.parts.fadeLines(this.camera.sightOf(lens).toCanvas, this.canvas);
+  }
+
+  private drawSurface(lens: Lens): void {
+    this.fadeLines(lens);
     const {gl} = this.graphics;
     this.graphics.beginCanvas();
     this.graphics.use({depths: 'written'});
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.parts.draw(this.camera.eyeOf(this.orbit.lens));
+    this.parts.draw(this.camera.eyeOf(lens));
   }
 }

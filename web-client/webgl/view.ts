@@ -90,6 +90,11 @@ export interface View {
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void;
   setInsets(insets: Insets): void;
   /**
+   * Cards cover more for a while. The picture goes between these insets, smaller if it must; the
+   * camera and saved pictures stay as they are. Null: the picture goes back.
+   */
+  setCovered(insets: Insets | null): void;
+  /**
    * The place that the first view of the next mesh looks at: bounds in lattice coordinates; null:
    * all of it.
    */

@@ -14,6 +14,7 @@ export type Command =
   | 'setLook'
   | 'setRange'
   | 'setInsets'
+  | 'setCovered'
   | 'setFocus'
   | 'pan'
   | 'centre'

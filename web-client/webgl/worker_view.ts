@@ -164,6 +164,9 @@ class WorkerView implements View {
   setInsets(insets: Insets): void {
     this.command('setInsets', insets);
   }
+  setCovered(insets: Insets | null): void {
+    this.command('setCovered', insets);
+  }
   setFocus(focus: number[] | null): void {
     this.command('setFocus', focus);
   }

@@ -2,7 +2,7 @@
 // place beside them.
 
 import {markedValues} from '../../core/layers/shown';
-import type {View} from '../../webgl/view';
+import type {Insets, View} from '../../webgl/view';
 import {CardLayout} from '../page/card_layout';
 import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
@@ -26,7 +26,11 @@ export class Shell {
     const {element, root} = page;
     this.progress = new ProgressPanel(root, (text) => page.announce(text));
     this.legend = new Legend(root);
-    this.cards = new CardLayout(element, root, (insets) => host.view?.setInsets(insets), resized);
+    const covers = (insets: Insets, more: Insets | null): void => {
+      host.view?.setInsets(insets);
+      host.view?.setCovered(more);
+    };
+    this.cards = new CardLayout(element, root, covers, resized);
   }
 
   /** Shows the legend; null if nothing is coloured. */
