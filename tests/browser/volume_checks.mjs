@@ -1,7 +1,7 @@
 // The volume, compared with a formula for a box; and the user's controls for it.
 
 import assert from 'node:assert/strict';
-import {kDesktop, kPhone} from './browser.mjs';
+import {kDesktop, kPhone, kSmallDesktop} from './browser.mjs';
 import {coloredShare, differingShare, largestDifference, readPng} from './png.mjs';
 import {serveMesh} from './programs.mjs';
 
@@ -317,6 +317,52 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
   return `${seen.coarse} pictures of ${seen.cells} cells, then ${seen.strips} strips`;
 }
 
+/** Whatever changes the volume, slow graphics show few cells of it before all of them. */
+async function drawsFewCellsOfANewVolumeFirst({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin&clip=none`, kSmallDesktop);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  await viewer.inView((view) => {
+    const {loadVolume} = view;
+    view.loadVolume = async () => {
+      const loaded = await loadVolume.call(view);
+      const {drawer} = view.volume;
+      for (const way of ['drawAtOnce', 'drawStrips']) {
+        const draw = drawer[way];
+        drawer[way] = async (picture, its, ...words) => {
+          globalThis.qtetDrawn.push(its === view.volume.coarse ? 'few' : 'all');
+          const done = await draw.call(drawer, picture, its, ...words);
+          if (way === 'drawStrips') setTimeout(() => (view.volume.wholeMs = Infinity));
+          return done;
+        };
+      }
+      return loaded;
+    };
+  });
+  const seen = [];
+  for (const [name, value] of [
+    ['volume', 'auto'],
+    ['field', 'Pressure'],
+    ['threshold', 'Density=1.5,4'],
+    ['clip', 'y:0.5'],
+  ]) {
+    await viewer.inView(() => void (globalThis.qtetDrawn = []));
+    await viewer.page.evaluate(
+      ([its, text]) => window.qtetViewer.setAttribute(its, text),
+      [name, value],
+    );
+    await viewer.waitInView(() => globalThis.qtetDrawn.length > 0);
+    await viewer.screenshot(`volume-first-${name}`);
+    await viewer.restVolume();
+    const drawn = await viewer.inView(() => globalThis.qtetDrawn);
+    assert.equal(drawn[0], 'few', `${name}: ${drawn}`);
+    assert.equal(drawn.at(-1), 'all', `${name}: ${drawn}`);
+    seen.push(`${name}: ${drawn}`);
+  }
+  assert.deepEqual(viewer.problems, []);
+  return seen.join('; ');
+}
+
 /**
  * Runs in the worker that draws. Returns the RGBA of the volume alone in some pixels: once as
  * drawn, and once as a sum. The sum is that of all cells on the line of sight, searched one by one.
@@ -522,4 +568,5 @@ export const volumeChecks = {
   editsTheTransferFunction,
   standsOffFromBothGrounds,
   drawsFewCellsWhileSomethingMoves,
+  drawsFewCellsOfANewVolumeFirst,
 };

@@ -31,8 +31,8 @@ export class MeshView implements View {
   private readonly volumeLook: VolumeLook = {transfer: null, range: null};
   private readonly surfaceCanvas: HTMLCanvasElement | OffscreenCanvas;
   private readonly endWatch: () => void;
-  /** The last words of setLook and setRange, as texts. */
-  private readonly last = {look: '', range: ''};
+  /** The last words of setLook and setRange as texts, and what isMerelyFiner has seen. */
+  private readonly last = {look: '', range: '', quantity: '', cells: 0};
   /** The user has changed something since the last picture; new levels alone do not count. */
   private moved = false;
   /** The requested frame; 0: none is. */
@@ -75,7 +75,9 @@ export class MeshView implements View {
       this.camera.changeLattice(change);
     }
     this.afterFrame.push(drawn);
-    this.invalidate(snapshot.volume == null);
+    // While a series plays, each instant has its turn: the next one would interrupt it.
+    const isAwaited = this.isMerelyFiner(snapshot) || this.playsEveryMs > 0;
+    this.invalidate(snapshot.volume == null || !isAwaited);
     if (snapshot.volume !== undefined) this.volume?.take(snapshot.volume);
     this.volume?.setClip(snapshot.planes);
     // A cap would hide the volume behind it. A slice is drawn inside it.
@@ -281,6 +283,15 @@ export class MeshView implements View {
     // The graphics draw one picture at a time. The next begins after it, from the state of then.
     if (this.volume?.busy) this.volume.waiting = true;
     else if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
+  }
+
+  /** The volume of before with another count of cells. REQUIRES: called once for each picture. */
+  private isMerelyFiner({color, statistics, warp}: Snapshot): boolean {
+    const before = {...this.last};
+    this.last.quantity = JSON.stringify([color, warp?.scale]);
+    this.last.cells = statistics.tetrahedra;
+    const isSame = before.quantity === this.last.quantity;
+    return this.hasVolume && isSame && before.cells !== this.last.cells;
   }
 
   private get hasVolume(): boolean {
