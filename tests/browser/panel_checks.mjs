@@ -254,6 +254,14 @@ async function namesTheNearestWord(context) {
   const said = await other.page.getByRole('alert').innerText();
   assert.match(said, /no field "Presure"\. Did you mean "Pressure"\?/);
   assert.match(said, /Did you mean "viridis"\?/);
+  const beyond = await opened(context, 'mesh=fin&field=Velocity[3]');
+  assert.match(
+    await beyond.page.getByRole('alert').innerText(),
+    /field="Velocity\[3\]".* It has Velocity\[0\] to Velocity\[2\]\. Its magnitude is shown\./,
+  );
+  const menu = beyond.page.locator('qtet-viewer select[name=field]');
+  assert.equal(await menu.inputValue(), 'Velocity');
+  await beyond.screenshot('panel-component');
 }
 
 /** Nothing "stays on the screen" if the damage came before the first picture. */

@@ -1,6 +1,8 @@
 import {expect, test} from 'vitest';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Manifest} from '../core/protocol/manifest';
+import {parseScalar} from '../core/layers/field_values';
+import {scalarName} from '../viewer/panels/panel';
 import {unfittingParts, unknownNames, wrongParts} from '../viewer/settings/wrong_parts';
 
 const reading =
@@ -54,7 +56,7 @@ const kWrong: Record<string, string[]> = {
   'clip-mode': ['flat'],
   iso: ['p', 'p=', '1'],
   threshold: ['p=1', 'p=1,2,3'],
-  volume: ['1', '0,2', Array(34).fill(0.5).join()],
+  volume: ['1', 'x', 'on', '0,2', Array(34).fill(0.5).join()],
   quality: ['0%', 'best', 'cells:-1'],
   projection: ['fish-eye'],
   camera: ['1,2,3'],
@@ -89,6 +91,27 @@ test('whatTheMeshDoesNotHaveIsNamed', () => {
   expect(sentences({iso: 'part=1'})).toContain('takes a field of points');
   expect(sentences({threshold: 'T=1,2'})).toContain('no field "T"');
   expect(sentences({quality: 'cells:10'})).toBe('');
+});
+
+test('aComponentThatIsNotThereIsNamedWithThoseThatAre', () => {
+  const fields = [
+    {...field('Stress', 'point'), components: 6},
+    {...field('U', 'point'), components: 3},
+    field('p', 'point'),
+  ];
+  const said = (attributes: Record<string, string>): string =>
+    unfittingParts(reading(attributes), {...manifest, fields}).join('|');
+  expect(said({field: 'Stress[6]'})).toBe(
+    'field="Stress[6]" names a component that Stress does not have. ' +
+      'It has Stress[0] to Stress[5]. Its magnitude is shown.',
+  );
+  expect(said({field: 'U[3]'})).toMatch(/It has U\[0\] to U\[2\]\. Its magnitude is shown\.$/);
+  expect(said({field: 'p[0]'})).toMatch(/Its only value is called "p", which is shown\.$/);
+  expect(said({iso: 'U[3]=1'})).toContain('iso="U[3]=1" names a component that U does not have.');
+  for (const right of ['Stress', 'Stress[0]', 'Stress[5]', 'U[2]', 'p'])
+    expect(said({field: right})).toBe('');
+  expect(scalarName({field: 0, component: 5}, fields)).toBe('Stress[5]');
+  expect(parseScalar('p[0]', fields)).toEqual({field: 2, component: -1});
 });
 
 test('aSlipIsAnsweredByTheNearestWord', () => {

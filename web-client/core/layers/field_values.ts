@@ -1,5 +1,5 @@
 // The words of attributes that name fields: "Velocity" (its magnitude), "Velocity[0]" (a
-// component), "Density=0.5,0.7" (values of it).
+// component, counted from 0), "Density=0.5,0.7" (values of it).
 
 import {kMagnitude, scalarRange, type Scalar} from '../picture/field_scale';
 import {fieldKeys, type FieldInfo} from '../protocol/fields';
@@ -32,11 +32,29 @@ export function parseScalar(text: string | null, fields: readonly FieldInfo[]): 
   if (text === null) return null;
   const whole = fieldOfKey(text, fields);
   if (whole >= 0) return {field: whole, component: kMagnitude};
-  const match = /^(.*)\[(\d+)\]$/s.exec(text);
-  const field = match ? fieldOfKey(match[1]!, fields) : -1;
-  if (field < 0) return null;
-  const component = Number(match![2]);
-  return {field, component: component < fields[field]!.components ? component : kMagnitude};
+  const named = namedComponent(text, fields);
+  if (!named) return null;
+  return hasComponent(named, fields) ? named : {...named, component: kMagnitude};
+}
+
+/** The field and the number behind it, whether or not the field has such a component. */
+function namedComponent(text: string, fields: readonly FieldInfo[]): Scalar | null {
+  const [, key, component] = /^(.*)\[(\d+)\]$/s.exec(text) ?? [];
+  const field = key === undefined ? -1 : fieldOfKey(key, fields);
+  return field < 0 ? null : {field, component: Number(component)};
+}
+
+/** The only value of a field without components is called by the field's name alone. */
+const hasComponent = ({field, component}: Scalar, fields: readonly FieldInfo[]): boolean =>
+  fields[field]!.components > 1 && component < fields[field]!.components;
+
+/** The field of which parseScalar reads the magnitude, because it has no such component. */
+export function fieldWithoutComponent(
+  text: string,
+  fields: readonly FieldInfo[],
+): FieldInfo | null {
+  const named = fieldOfKey(text, fields) < 0 ? namedComponent(text, fields) : null;
+  return named && !hasComponent(named, fields) ? fields[named.field]! : null;
 }
 
 /** The field's key without a component, to ask a server before its fields are known. */

@@ -29,7 +29,10 @@ export function scalarTitle(scalar: Scalar, fields: readonly FieldInfo[]): strin
   return unit === undefined ? name : `${name} [${unit}]`;
 }
 
-/** "Velocity, x", or "Velocity, magnitude" for a vector without a component. Without a time. */
+/**
+ * "Velocity, x", or "Velocity, magnitude" for a vector without a component. More than three are
+ * numbered as in addresses: "Stress[5]". Without a time.
+ */
 export function scalarName({field, component}: Scalar, fields: readonly FieldInfo[]): string {
   const info = fields[field]!;
   const twins = fields.filter(({name}) => name === info.name).length > 1;
@@ -37,7 +40,7 @@ export function scalarName({field, component}: Scalar, fields: readonly FieldInf
   const name = twins && info.association === 'cell' ? `${plain} (cells)` : plain;
   if (info.components === 1) return name;
   if (component === kMagnitude) return `${name}, magnitude`;
-  return `${name}, ${info.components <= 3 ? kAxes[component] : `component ${component + 1}`}`;
+  return info.components <= 3 ? `${name}, ${kAxes[component]}` : `${name}[${component}]`;
 }
 
 /** The name of the one shown field if it is a label: its error is a share of the volume. */

@@ -1,7 +1,12 @@
 // Attributes that say nothing the viewer understands: a sentence for each, with what may stand
 // there. A viewer ignores them otherwise, and a link with a slip would show another picture.
 
-import {parseNumbers, parseScalar} from '../../core/layers/field_values';
+import {
+  fieldWithoutComponent,
+  parseNumbers,
+  parseScalar,
+  scalarKey,
+} from '../../core/layers/field_values';
 import {fieldLayers, kLayers} from '../../core/layers/layers';
 import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
 import {parseLimit} from '../../core/protocol/limit';
@@ -87,6 +92,21 @@ export function unknownNames(names: readonly string[]): string[] {
     .map((name) => `The address has "${name}", which means nothing here.${hint(name, known)}`);
 }
 
+/** Sentences about a component that the named field does not have. */
+function wrongComponents(
+  [name, text]: readonly [name: string, text: string],
+  scalar: string,
+  fields: Manifest['fields'],
+): string[] {
+  const info = fieldWithoutComponent(scalar, fields);
+  if (!info) return [];
+  const key = scalarKey(scalar);
+  const start = `${name}="${text}" names a component that ${key} does not have.`;
+  return info.components === 1
+    ? [`${start} Its only value is called "${key}", which is shown.`]
+    : [`${start} It has ${key}[0] to ${key}[${info.components - 1}]. Its magnitude is shown.`];
+}
+
 /** A sentence for each attribute that does not fit this mesh. */
 export function unfittingParts(read: Read, {fields, levels}: Manifest): string[] {
   const sentences: string[] = [];
@@ -100,6 +120,7 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
       `The mesh has no field "${field}".${hint(field, keys)} The first field is shown instead. ` +
         has,
     );
+  if (field !== null) sentences.push(...wrongComponents(['field', field], field, fields));
   const warp = read('warp');
   if (warp !== null && warp !== kNoWarp && warpField(warp, fields) < 0)
     sentences.push(
@@ -115,6 +136,7 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
     if (!parseScalar(name, fields))
       sentences.push(`${what}: the mesh has no field "${name}".${hint(name, keys)} ${has}`);
     else if (!layer.read(text, fields)) sentences.push(`${what}: it takes a field of points.`);
+    else sentences.push(...wrongComponents([layer.name, text], name, fields));
   }
   const quality = read('quality');
   if (parseLimit(quality)?.kind === 'error' && !levels.some(({error}) => error))
