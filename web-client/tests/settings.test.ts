@@ -110,11 +110,15 @@ describe('settings', () => {
       hasFirstOpacities: false,
     });
   });
-  test('aVolumeIsOpacitiesOrTheFirstOnes', () => {
+  test('aVolumeIsOpacitiesOrTheFirstOnesAndNothingElse', () => {
     expect(of({volume: '0,0.5,1'}).volume).toEqual([0, 0.5, 1]);
-    for (const text of ['auto', 'on', '0.5', '0,2']) {
+    for (const text of ['auto', '']) {
       expect(of({volume: text}).volume).toHaveLength(9);
       expect(of({volume: text}).hasFirstOpacities).toBe(true);
+    }
+    for (const wrong of ['x', 'on', '0.5', '0,2']) {
+      expect(of({volume: wrong}).volume).toBeNull();
+      expect(of({volume: wrong}).hasFirstOpacities).toBe(false);
     }
   });
   test('aVolumesFirstOpacitiesAreDenserTheThinnerTheMesh', () => {

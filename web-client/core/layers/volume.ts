@@ -72,7 +72,7 @@ function sharesAtKnots({shares: amounts, placeOf}: Amounts): number[] {
 }
 
 export function readVolume(text: string | null): VolumeSetting {
-  if (text === null) return {volume: null, hasFirstOpacities: false};
+  if (text === null || !isRight(text)) return {volume: null, hasFirstOpacities: false};
   const given = opacitiesIn(text);
   return {volume: given ?? firstOpacities(0), hasFirstOpacities: !given};
 }
