@@ -1,6 +1,7 @@
 // Undo and redo by real keys.
 
 import assert from 'node:assert/strict';
+import {kSmallDesktop} from './browser.mjs';
 
 const attribute = (viewer, name) =>
   viewer.page.evaluate((its) => window.qtetViewer.getAttribute(its), name);
@@ -63,6 +64,34 @@ async function undoesSettingsAndTheCamera({server, browser}) {
   assert.deepEqual(viewer.problems, []);
 }
 
+/** Isosurfaces and what their switch changes besides come and go in one step. */
+async function undoesIsosurfacesInOneStep({server, browser}) {
+  const viewer = await browser.open(`${server.url}?mesh=fin`, kSmallDesktop);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  await page.getByRole('button', {name: 'View from +x'}).waitFor();
+  await viewer.settle();
+  const look = () =>
+    page.evaluate(() => {
+      const {settings, mesh} = window.qtetViewer.viewing;
+      const {opacity, planes} = settings;
+      return {opacity, planes, iso: mesh.snapshot.isosurface?.count ?? null};
+    });
+  const before = await look();
+  await page.locator('qtet-viewer input[name=iso]').evaluate((its) => its.click());
+  await viewer.settle();
+  assert.notEqual(await attribute(viewer, 'iso'), null);
+  assert.equal((await look()).opacity, before.opacity);
+  await viewer.screenshot('isosurfaces-on');
+  await page.locator('qtet-viewer canvas.scene').focus();
+  assert.equal(await press(viewer, 'Control+z'), 'Undone: isosurfaces');
+  assert.equal(await attribute(viewer, 'iso'), null);
+  assert.deepEqual(await look(), before);
+  assert.equal(await press(viewer, 'Control+z'), 'Nothing to undo');
+  assert.deepEqual(viewer.problems, []);
+}
+
 /** In a text box the keys are the browser's. */
 async function leavesTextBoxesTheirOwnUndo({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=box&range=0,1`);
@@ -81,4 +110,8 @@ async function leavesTextBoxesTheirOwnUndo({server, browser}) {
   assert.equal(await attribute(viewer, 'colormap'), 'turbo');
 }
 
-export const undoChecks = {undoesSettingsAndTheCamera, leavesTextBoxesTheirOwnUndo};
+export const undoChecks = {
+  undoesSettingsAndTheCamera,
+  undoesIsosurfacesInOneStep,
+  leavesTextBoxesTheirOwnUndo,
+};
