@@ -243,6 +243,26 @@ async function showsTheValueAtThePointer(context) {
   await phone.screenshot('cube-phone');
 }
 
+/** A page that runs from right to left changes nothing within the viewer. */
+async function staysAsItIsInAPageFromRightToLeft(context) {
+  for (const [name, device] of Object.entries({desktop: kDesktop, phone: kCoarsePhone})) {
+    const pictures = [];
+    for (const dir of ['ltr', 'rtl']) {
+      const viewer = await opened(context, 'mesh=box&clip=none', device);
+      const {page} = viewer;
+      await page.getByRole('button', {name: 'View from +x'}).waitFor();
+      await page.evaluate((its) => (document.documentElement.dir = its), dir);
+      if (device.isMobile) await page.getByRole('button', {name: 'Controls'}).tap();
+      await page.locator('qtet-viewer .histogram .end').first().waitFor();
+      await viewer.settle();
+      pictures.push(await viewer.screenshot(`panel-${dir}-${name}`));
+      assert.deepEqual(viewer.problems, []);
+      await context.browser.closePages({areSound: false});
+    }
+    assert.equal(differingShare(...pictures), 0, name);
+  }
+}
+
 /** A slip in a link is answered by the word that was probably meant. */
 async function namesTheNearestWord(context) {
   const viewer = await opened(context, 'mesh=box&colourmap=turbo&utm_source=mail');
@@ -290,6 +310,7 @@ export const panelChecks = {
   turnsByTheCube,
   turnsByATapOnTheCube,
   showsTheValueAtThePointer,
+  staysAsItIsInAPageFromRightToLeft,
   namesTheNearestWord,
   promisesNothingOfADamagedHead,
 };
