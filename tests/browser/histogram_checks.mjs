@@ -133,6 +133,41 @@ async function countsAwkwardFields(context) {
   return JSON.stringify({constant, missing, decades});
 }
 
+/** The histogram comes half a second after the panel, which keeps its place. */
+async function comesWithoutMovingThePanel(context) {
+  const {server, browser} = context;
+  for (const [name, device] of Object.entries({desktop: kDesktop, phone: kCoarsePhone})) {
+    const watch = () => {
+      window.qtetPlaces = [];
+      const look = () => {
+        const root = window.qtetViewer?.shadowRoot;
+        const plot = root?.querySelector('.histogram-plot');
+        if (plot) {
+          const {top} = root.querySelector('.histogram').getBoundingClientRect();
+          const next = root.querySelector('input[name=edges]').closest('details');
+          const isShown = getComputedStyle(plot).visibility === 'visible';
+          window.qtetPlaces.push([isShown, Math.round(next.getBoundingClientRect().top - top)]);
+        }
+        requestAnimationFrame(look);
+      };
+      look();
+    };
+    const viewer = await browser.open(`${server.url}?mesh=fin&clip=none`, device, watch);
+    await viewer.waitForState('complete');
+    const {page} = viewer;
+    if (device.isMobile) await page.getByRole('button', {name: 'Controls'}).tap();
+    await viewer.screenshot(`histogram-awaited-${name}`);
+    await handle(viewer, 'first').waitFor();
+    await viewer.settle();
+    const places = await page.evaluate(() => window.qtetPlaces);
+    const here = (isShown) =>
+      new Set(places.filter(([its, at]) => its === isShown && at > 0).map(([, at]) => at));
+    assert.ok(here(false).size > 0, 'the histogram was never awaited');
+    assert.deepEqual([...here(false)], [...here(true)]);
+    assert.deepEqual(viewer.problems, []);
+  }
+}
+
 /** While a series plays, another field is counted, and the handles set its range. */
 async function countsAnotherFieldWhileASeriesPlays(context) {
   const {server, bin, out} = context;
@@ -172,6 +207,7 @@ async function countsAnotherFieldWhileASeriesPlays(context) {
 }
 
 export const histogramChecks = {
+  comesWithoutMovingThePanel,
   countsAnotherFieldWhileASeriesPlays,
   setsTheRangeByItsHandles,
   takesTheMiddleByADoubleClick,

@@ -37,7 +37,7 @@ const kMarkup = `
   <div class="end" role="slider" tabindex="0" aria-label="Value of the first colour"></div>
   <div class="end last" role="slider" tabindex="0" aria-label="Value of the last colour"></div>
 </div>
-<div class="row ends"><span></span><span></span></div>
+<div class="row ends"><span>&nbsp;</span><span></span></div>
 <div class="row"><span class="what"></span>
   <button type="button" class="to-middle" title="Sets the range to it">${kTitle}</button></div>`;
 
@@ -135,8 +135,10 @@ export class HistogramPanel {
     const {range, mesh, settings} = this.host;
     const {counted, axis} = this;
     const color = mesh.snapshot?.color;
-    const isShown = range !== null && color && mesh.manifest && counted && !range.labels;
-    this.root.classList.toggle('empty', !isShown);
+    const isNone = mesh.manifest?.fields.length === 0 || range?.labels !== undefined;
+    const isShown = range !== null && color && mesh.manifest && counted && !isNone;
+    this.root.classList.toggle('empty', isNone);
+    this.root.classList.toggle('awaited', !isShown); // its place is kept
     this.root.classList.toggle('stale', this.isStale);
     // It is counted soon. Until then the last picture stays, and sets nothing.
     if (!isShown || this.isStale) return;
