@@ -165,7 +165,54 @@ async function givesUpADroppedMesh(context) {
   await expectWhole(viewer, logs.fin);
 }
 
+/** Whatever does not become a picture is named. */
+async function namesWhatIsNotShown(context) {
+  const {logs, out, viewer: files} = context;
+  const {viewer} = await withMesh(context);
+  const close = () => viewer.page.getByRole('button', {name: 'Close'}).click();
+  const pieces = Buffer.from(
+    '<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid><PPoints>' +
+      '<PDataArray type="Float32" Name="Points" NumberOfComponents="3"/></PPoints>' +
+      '<Piece Source="a/a_0.vtu"/></PUnstructuredGrid></VTKFile>',
+  );
+  await drop(viewer, ['a.pvtu', pieces]);
+  assert.match(await notice(viewer), /^a\.pvtu needs a_0\.vtu, which it names\./);
+  await viewer.screenshot('dropped-pvtu');
+  await close();
+  await drop(viewer, ['part.stl', Buffer.from('solid part')]);
+  assert.match(await notice(viewer), /^part\.stl is a surface: it has no cells inside/);
+  await viewer.screenshot('dropped-stl');
+  await close();
+  await expectWhole(viewer, logs.fin);
+
+  const box = readFileSync(join(logs.box.folder, 'box.qtet'));
+  await drop(viewer, ['one.qtet', box], ['other.qtet', box]);
+  assert.match(await notice(viewer), /^other\.qtet is not shown beside one\.qtet/);
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, logs.box);
+  assert.match(await notice(viewer), /^other\.qtet is not shown/);
+  await viewer.screenshot('dropped-two');
+  if (!canSimplify(files)) return kSkipped;
+  await close();
+  const mesh = readFileSync(join(out, 'box.vtu'));
+  await drop(viewer, ['first.vtu', mesh], ['second.vtu', mesh]);
+  await viewer.page.waitForFunction(
+    () => window.qtetViewer.shadowRoot.querySelector('h1').innerText === 'first',
+  );
+  assert.match(await notice(viewer), /^second\.vtu is not shown beside first\.vtu/);
+  await viewer.waitForState('complete');
+  await expectWhole(viewer, logs.box);
+  await close();
+  await drop(viewer, ['a_0.vtu', mesh], ['a.pvtu', pieces]);
+  await viewer.page.waitForFunction(
+    () => window.qtetViewer.shadowRoot.querySelector('h1').innerText === 'a',
+  );
+  await viewer.waitForState('complete');
+  assert.equal((await viewer.counts()).tetrahedra, 3072);
+}
+
 export const dropChecks = {
+  namesWhatIsNotShown,
   showsALogThatIsDropped,
   simplifiesAMeshThatIsDropped,
   savesTheLogAndAPageOfIt,

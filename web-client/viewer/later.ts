@@ -22,6 +22,7 @@ import {Panels, type PanelsHost} from './panels/panels';
 import type {Shell} from './panels/shell';
 import {TimeBar, type TimeHost} from './panels/time_bar';
 import type {MeshDrop} from './drop/mesh_drop';
+import {leftOut} from './drop/together';
 import type {MovieOptions} from './picture/movies';
 import type {Pictures} from './picture/pictures';
 
@@ -33,7 +34,7 @@ export interface LaterHost extends ActionsHost, PanelsHost, TimeHost {
     readonly state: StreamState;
     choose(mesh: string): void;
     readonly logAddress: string;
-    openFile(file: File): void;
+    openFile(file: File, notice?: string): void;
   };
   readonly notices: {end(code: string): void};
 }
@@ -199,7 +200,7 @@ export class Later {
   private async take(files: File[]): Promise<void> {
     const [file] = files as [File];
     const first = new Uint8Array(await file.slice(0, 8).arrayBuffer());
-    if (beginsLog(first)) this.host.stream.openFile(file);
+    if (beginsLog(first)) this.host.stream.openFile(file, leftOut(file, files));
     else if (file.name.endsWith('.qtet'))
       this.host.failed('dropped-mesh', `${file.name} is no log, or it is damaged. Copy it again.`);
     else if (file.type.startsWith('image/')) await (await this.pictures.get())?.open(file);

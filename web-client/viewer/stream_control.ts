@@ -138,14 +138,16 @@ export class StreamControl {
     this.openMesh(mesh);
   }
 
-  /** Opens a log of this machine. It stays here. */
-  openFile(file: File): void {
+  /** Opens a log of this machine. It stays here. `notice` is shown with it, unless it is empty. */
+  openFile(file: File, notice = ''): void {
     this.leave(null);
     const {element} = this.page;
     const before = element.getAttribute('src') ?? '';
     const name = file.name.replace(/(\.qtet)?$/, '.qtet');
     element.setAttribute('src', `${URL.createObjectURL(file)}#${encodeURIComponent(name)}`);
     if (before.startsWith('blob:')) URL.revokeObjectURL(before.replace(/#.*/, ''));
+    // The opening, a few microtasks from here, ends the notices of the page.
+    if (notice !== '') setTimeout(() => this.listeners.failed('dropped-mesh', notice));
   }
 
   private leave(mesh: string | null): void {

@@ -120,9 +120,10 @@ export class PageFiles {
     return opened ? use(opened) : kBadFile;
   }
 
+  /** A page learns no folders: a file of the same name stands for one in any of them. */
   private named(path: number, length: number): PageFile | undefined {
     const bytes = new Uint8Array(this.memory.buffer, path >>> 0, length);
-    const name = this.decoder.decode(bytes).replace(/^\.?\/+/, '');
+    const name = this.decoder.decode(bytes).replace(/^.*\//s, '');
     return this.files.find((file) => file.name === name);
   }
 

@@ -8,9 +8,10 @@ import {find, onClick} from '../page/find';
 import type {Page} from '../page/page';
 import {adopt, insertMarkup} from '../page/trusted';
 import styles from './mesh_drop.css?inline';
+import {hindrance, leftOut} from './together';
 
 export interface MeshDropHost {
-  readonly stream: {openFile(file: File): void};
+  readonly stream: {openFile(file: File, notice?: string): void};
   readonly notices: {end(code: string): void};
   failed(code: string, message: string): void;
 }
@@ -49,15 +50,20 @@ export class MeshDrop {
     this.cancel = new AbortController();
     const {signal} = this.cancel;
     const {dialog, host} = this;
-    const {name} = mainFile(files);
+    const main = mainFile(files);
+    const {name} = main;
+    const why = await hindrance(main, files);
+    if (signal.aborted) return;
+    if (why !== '') return host.failed('dropped-mesh', why);
     find(dialog, 'h2').textContent = name;
     this.show({stage: 'loading the simplifier', fraction: 0});
     if (!dialog.open) dialog.showModal();
     host.notices.end('dropped-mesh');
     try {
       const made = await simplifyFiles(files, (progress) => this.show(progress), signal);
-      host.stream.openFile(new File([made.log as BlobPart], name.replace(/\.\w+(\.gz)?$/, '')));
-      if (made.warnings.length > 0) host.failed('dropped-mesh', made.warnings.join('\n'));
+      const log = new File([made.log as BlobPart], name.replace(/\.\w+(\.gz)?$/, ''));
+      const said = [leftOut(main, files), ...made.warnings].filter((text) => text !== '');
+      host.stream.openFile(log, said.join('\n'));
     } catch (thrown) {
       if (errorCode(thrown) !== 'cancelled') host.failed('dropped-mesh', errorText(thrown));
     } finally {
