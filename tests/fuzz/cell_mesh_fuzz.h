@@ -1,5 +1,5 @@
-// A reader of mesh files that is given any bytes: an error, or a mesh whose arrays agree in length
-// and whose cells name points that are there.
+// A reader of mesh files that is given any bytes. It gives an error, or a mesh whose arrays agree
+// in length and whose cells name points that are there.
 #pragma once
 
 #include <sys/mman.h>

@@ -70,9 +70,9 @@ export function largestRoundingError(info: FieldInfo): number {
 }
 
 /**
- * The width that known errors are parts of (codec/MANIFEST.md, "Known error"): that of the values;
- * for several components the diagonal of the box that the values can have, which is no smaller than
- * theirs.
+ * The width that known errors are parts of (codec/MANIFEST.md, "Known error"): that of the values.
+ * For several components it is the diagonal of the box that the values can have. That is no smaller
+ * than the box that they have.
  */
 export function widthOfValues({
   components,
