@@ -1,4 +1,5 @@
-// A reader of mesh files that is given any bytes: it gives an error, or a mesh whose arrays agree.
+// A reader of mesh files that is given any bytes. It gives an error, or a mesh whose arrays agree in
+// length.
 #pragma once
 
 #include <sys/mman.h>
