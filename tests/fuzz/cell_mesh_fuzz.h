@@ -1,5 +1,4 @@
-// A reader of mesh files that is given any bytes. It gives an error, or a mesh whose arrays agree in
-// length.
+// A reader of mesh files that is given any bytes. It gives an error, or a mesh whose arrays agree.
 #pragma once
 
 #include <sys/mman.h>
