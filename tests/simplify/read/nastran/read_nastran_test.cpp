@@ -14,7 +14,6 @@
 namespace qtet {
 namespace {
 
-using testing::fileWith;
 namespace fs = std::filesystem;
 
 const std::string kCorners =
