@@ -80,7 +80,8 @@ UnvResults::Head UnvResults::head(std::string_view called,
                                   const std::array<std::string, 5>& idLines) {
   std::array<std::int64_t, 6> numbers{};
   for (std::int64_t& number : numbers) number = in_.number<std::int64_t>("a kind of result");
-  Head out{.characteristic = numbers[2], .kind = numbers[4], .components = numbers[5]};
+  Head out;
+  out.characteristic = numbers[2], out.kind = numbers[4], out.components = numbers[5];
   // The second of these lines is the type's name where its number says none.
   for (const std::string_view name :
        {called, resultType(numbers[3]), std::string_view(idLines[1]), std::string_view(idLines[0])})
