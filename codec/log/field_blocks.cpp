@@ -92,10 +92,10 @@ void codeLifted(const ValueOrder& order, std::uint32_t chunk, LiftedBlock<Coder>
   auto next = std::ranges::upper_bound(starts, order.chunkBirths[chunk]);
   LiftingRule rule;
   for (std::uint32_t b = order.chunkBirths[chunk]; b < order.chunkBirths[chunk + 1]; ++b) {
-    if (b == order.chunkBirths[chunk] || (next != starts.end() && b == *next)) {
-      if (next != starts.end() && b == *next) ++next;
+    const bool beginsLevel = next != starts.end() && b == *next;
+    if (beginsLevel) ++next;
+    if (beginsLevel || b == order.chunkBirths[chunk])
       rule = block.rule(ruleOf(static_cast<std::size_t>(next - starts.begin()) - 1));
-    }
     const Birth& birth = order.points.births()[b];
     block.record(rule, birth, order.points.slopesAt(birth), truthOf(b));
   }

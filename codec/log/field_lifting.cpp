@@ -6,9 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <iterator>
 #include <limits>
-#include <optional>
 
 #include "proto/limits.h"
 
@@ -31,7 +29,7 @@ class Lifting {
     const std::span<const Birth> births = order.points.births();
     for (std::size_t b = 0; b < births.size(); ++b)
       for (std::size_t i = 0; i < births[b].k; ++i)
-        vertices[preySlot(births[b], i)] = order.prey[b][i];
+        vertices[births[b].preySlot(i)] = order.prey[b][i];
     now_.reserve(vertices.size() * field.components);
     for (const VertexId v : vertices)
       for (std::uint32_t c = 0; c < field.components; ++c) now_.push_back(field.values[at(v, c)]);
@@ -63,9 +61,6 @@ class Lifting {
     double off, bent;
   };
 
-  [[nodiscard]] static VertexId preySlot(const Birth& birth, std::size_t i) {
-    return i == 0 ? birth.slot : birth.firstNew + static_cast<VertexId>(i) - 1;
-  }
   [[nodiscard]] std::size_t at(VertexId v, std::uint32_t c) const {
     return std::size_t{v} * field_.components + c;
   }

@@ -78,9 +78,6 @@ class LiftedBlock {
   [[nodiscard]] GuessedIntegers& models(std::uint32_t c, bool isCorrection) {
     return models_[2 * std::min<std::size_t>(c, kAxes - 1) + (isCorrection ? 1 : 0)];
   }
-  [[nodiscard]] static VertexId preySlot(const Birth& birth, std::size_t i) {
-    return i == 0 ? birth.slot : birth.firstNew + static_cast<VertexId>(i) - 1;
-  }
   std::int64_t integer(std::uint32_t c, bool isCorrection, const SizeHints& hints,
                        std::int64_t truth);
   bool isMissing(std::size_t context, bool truth);
@@ -228,7 +225,7 @@ void LiftedBlock<Coder>::rim(const LiftingRule& rule, const LiftedRecord& record
   hints.around = std::min(4 * was, SizeHints::kMaxAround);
   bool isFirst = true;
   for (std::size_t i = 0; i < birth.k; ++i) {
-    const VertexId slot = preySlot(birth, i);
+    const VertexId slot = birth.preySlot(i);
     size(slot, c) = static_cast<std::uint8_t>(was);
     if ((present >> i & 1) == 0) {
       at(slot, c) = kMissing;
@@ -346,7 +343,7 @@ void LiftedBlock<Coder>::component(const LiftingRule& rule, const LiftedRecord& 
   // an encoder's fused value is off by a multiple of the rule's unit
   if constexpr (Coder::kEncoding) bad_ |= first != truth[0];
   for (std::size_t i = 0; i < birth.k; ++i) {
-    const VertexId slot = preySlot(birth, i);
+    const VertexId slot = birth.preySlot(i);
     at(slot, c) = checked(first + difference[i]);
     size(slot, c) = static_cast<std::uint8_t>((was + largest + 1) / 2);
   }

@@ -73,6 +73,10 @@ struct Birth {
   static constexpr int kStepBits = 8;
 
   std::uint8_t place = 0;  ///< the Placement, and 4 times the near prey vertex
+  /// The slot of prey vertex i.
+  [[nodiscard]] VertexId preySlot(std::size_t i) const {
+    return i == 0 ? slot : firstNew + static_cast<VertexId>(i) - 1;
+  }
   [[nodiscard]] Placement placement() const { return static_cast<Placement>(place & 3); }
   [[nodiscard]] std::size_t near() const { return place >> 2; }
 };
@@ -118,8 +122,7 @@ class PointAncestry {
             truth(i, c));
     for (std::size_t i = 0; i < b.k; ++i)
       for (std::uint32_t c = 0; c < components; ++c)
-        at(i == 0 ? b.slot : b.firstNew + static_cast<VertexId>(i) - 1, c) =
-            prey[i * components + c];
+        at(b.preySlot(i), c) = prey[i * components + c];
   }
 
  private:

@@ -84,8 +84,7 @@ void number(const SplitRecorder& recorder, LogHistory& out) {
     Fusion& fusion = h.fusions[b];
     const Birth& birth = out.order.points.births()[b];
     std::array<VertexId, 4>& prey = out.order.prey[b];
-    for (std::size_t i = 0; i < birth.k; ++i)
-      prey[i] = vertexOf[i == 0 ? birth.slot : birth.firstNew + i - 1];
+    for (std::size_t i = 0; i < birth.k; ++i) prey[i] = vertexOf[birth.preySlot(i)];
     fusion.prey = prey;
     const std::uint8_t near = recorder.near[b];
     std::swap(fusion.prey[0], fusion.prey[near]);

@@ -102,13 +102,15 @@ Status checkOptions(const QuantiseOptions& options) {
 
 Status checkBox(const Bounds& box) {
   const double extent = box.extent();
-  const double finestStep = extent / std::ldexp(1.0, kMaxPositionBits);
-  if (!std::isfinite(extent) || (extent > 0 && finestStep < std::numeric_limits<double>::min())) {
+  if (!std::isfinite(extent))
     return fail(ErrorCode::kBadInput,
-                "the mesh is " + std::to_string(extent) +
-                    " units large, which floating point cannot divide into a lattice; "
-                    "scale the coordinates to another unit");
-  }
+                "the mesh is larger than the largest float64; multiply its coordinates, such as by "
+                "1e-10");
+  const double least = std::numeric_limits<double>::min() * std::ldexp(1.0, kMaxPositionBits);
+  if (extent > 0 && extent < least)
+    return fail(ErrorCode::kBadInput,
+                "the mesh is " + roundedText(extent) + " units large, and the lattice needs " +
+                    roundedText(least) + " at least; multiply its coordinates, such as by 1e300");
   return {};
 }
 
@@ -173,6 +175,11 @@ Status placeFields(const TetMesh& mesh, const QuantiseOptions& options, const st
       out.report.notes.push_back(name + ": " + std::to_string(quantised->nonFinite) +
                                  " values are NaN or infinite and come back as NaN");
     }
+    if (isFloatType(field.type) && !bounds[f] && quantised->info.step == kFinestFieldStep)
+      out.report.notes.push_back(
+          name + ": its values span " + roundedText(all.scales[f].extents.largest()) +
+          ", and the finest step of a log is " + roundedText(kFinestFieldStep) +
+          "; multiply them, such as by 1e300, or keep its own values by `lossless`");
     if (!quantised->exact && !isFloatType(field.type)) {
       out.report.notes.push_back(name + ": its integers span more than " +
                                  std::to_string(kMaxFieldBits) + " bits and are rounded to " +

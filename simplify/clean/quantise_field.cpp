@@ -66,7 +66,8 @@ double roomForRounding(const FieldInfo& info, double extent, double bound) {
 
 std::unexpected<Error> tooFine(const FieldInfo& info, double extent, double bound,
                                double rounding) {
-  const double finest = extent / (2 * (std::ldexp(1.0, kMaxFieldBits) - 1)) + rounding;
+  const double step = std::max(extent / (std::ldexp(1.0, kMaxFieldBits) - 1), kFinestFieldStep);
+  const double finest = step / 2 + rounding;
   return fail(ErrorCode::kBadValue,
               "field " + info.name + " cannot be within " + roundedText(bound) + ": " +
                   std::to_string(kMaxFieldBits) + " bits of its " + info.type +
@@ -94,10 +95,10 @@ Status takeBound(double extent, double bound, FieldInfo& info) {
   // one more where the quotient itself was rounded down
   for (double steps = std::max(1.0, std::ceil(extent / (2 * (bound - rounding)))); steps <= most;
        ++steps) {
-    info.step = std::max(extent / steps, std::numeric_limits<double>::min());
+    info.step = std::max(extent / steps, kFinestFieldStep);
     info.bits = bitsFor(steps);
     if (largestRoundingError(info) <= bound) return {};
-    if (info.step == std::numeric_limits<double>::min()) break;
+    if (info.step == kFinestFieldStep) break;
   }
   return tooFine(info, extent, bound, rounding);
 }
@@ -188,10 +189,7 @@ Result<QuantisedField> quantiseField(const MeshField& field, const FieldExtents&
     if (Status s = takeBound(largest, *precision.largestError, out.info); !s)
       return std::unexpected(s.error());
   } else if (!out.exact && largest > 0) {
-    // A step of no normal number would lose its own digits; such a field is constant for every
-    // purpose.
-    out.info.step = std::max(largest / (std::ldexp(1.0, precision.bits) - 1),
-                             std::numeric_limits<double>::min());
+    out.info.step = std::max(largest / (std::ldexp(1.0, precision.bits) - 1), kFinestFieldStep);
   }
   place(field, out);
   return out;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ namespace qtet {
 
 /// Fields of more bits are not predicted in time (time_differences.cpp).
 inline constexpr int kMaxScaleBits = 24;
+/// The finest step of floats, in the field's unit. A smaller one is no normal number and would lose
+/// its own digits.
+inline constexpr double kFinestFieldStep = std::numeric_limits<double>::min();
 
 struct QuantisedField {
   FieldInfo info;

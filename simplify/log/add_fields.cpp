@@ -327,7 +327,7 @@ Result<std::vector<FieldAdder::Item>> FieldAdder::itemsOf(const TetMesh& mesh) {
 /// the history's last ones.
 Result<LevelErrors> FieldAdder::measure(std::span<const Item> items, FieldReplay& replay) {
   MeasureOptions measure;
-  measure.replay = &replay;
+  if (history_->valueCodec == CodecId::kLifted) measure.replay = &replay;
   for (const ManifestLevel& level : manifest_.levels)
     measure.levels.push_back(level.error.has_value());
   if (std::ranges::count(measure.levels, 1) == 0) return LevelErrors{};
@@ -380,7 +380,6 @@ Result<std::vector<LiftingRules>> FieldAdder::liftMeasured(std::span<const Item>
   options.firstField = h.fields.size() - items.size();
   options.missing = missing;
   options.unmeasuredShift = LiftingRule::kNoCorrection;
-  options.threads = options_.threads;
   if (!errors.empty()) options.replay = &replay;
   return liftFields(h, history_->order, errors, options);
 }

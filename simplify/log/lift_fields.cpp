@@ -9,6 +9,7 @@
 #include "proto/series.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/mesh/missing_values.h"
+#include "simplify/mesh/tet_mesh.h"
 #include "simplify/series/time_differences.h"
 
 namespace qtet {
@@ -108,8 +109,8 @@ class Lifter {
   /// Leaves the values as the log has them. `filled`: the same with a number everywhere.
   LiftingRules lift(std::size_t f, const std::vector<std::int32_t>& filled) {
     const std::vector<std::int32_t> predicted = predictedValues(history_, f);
-    const std::vector<std::int32_t> wanted = history_.values[f];
     if (movesMeasured(f)) {
+      const std::vector<std::int32_t> wanted = history_.values[f];
       const Figures before = errorsOf(f, filled);
       std::optional<Lifted> best;
       std::size_t width = width_,

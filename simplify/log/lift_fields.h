@@ -31,7 +31,6 @@ struct LiftOptions {
   /// How corrections count without it, as LevelStep::shift.
   int unmeasuredShift = 0;
   std::vector<std::size_t> exact{};  ///< fields whose fused values stay too
-  int threads = 1;                   ///< the result does not depend on it
   std::stop_token stop{};            ///< asked at every field
 };
 

@@ -8,6 +8,7 @@
 
 #include "proto/field_key.h"
 #include "proto/number_text.h"
+#include "simplify/clean/quantise_field.h"
 #include "simplify/cost/boundary_weight.h"
 #include "simplify/cost/label_fields.h"
 #include "simplify/mesh/tet_mesh.h"
@@ -45,11 +46,13 @@ Result<std::vector<std::optional<double>>> namedWeights(const PipelineOptions& o
 std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed) {
   const FieldInfo& info = quantised.mesh.fields[f];
   const auto& values = quantised.mesh.values[f];
-  if (values.empty() || std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }))
-    return info.range[0] == info.range[1]
-               ? "is constant"
-               : "varies by less than its step, " + roundedText(info.step) +
-                     ", and is stored as one value (more `fieldBits` make a finer step)";
+  if (values.empty() ||
+      std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; })) {
+    if (info.range[0] == info.range[1]) return "is constant";
+    return "varies by less than its step, " + roundedText(info.step) +
+           ", and is stored as one value" +
+           (info.step > kFinestFieldStep ? " (more `fieldBits` make a finer step)" : "");
+  }
   if (!isFloatType(info.type) && !isNamed)
     return "is one of integers, which may be labels (`fieldWeights` " + info.name +
            "=1 makes it count)";

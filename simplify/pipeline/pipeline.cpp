@@ -202,13 +202,18 @@ std::optional<BaseRule> baseRuleOf(const PipelineOptions& options) {
   return BaseRule{kBaseError, kMaxBaseCells, kMaxBaseBytes};
 }
 
+/// Whether fused values may move once they are measured.
+bool movesCoarse(const PipelineOptions& options) {
+  return options.valueCodec == CodecId::kLifted && !options.exactCoarse;
+}
+
 /// The known error of each level; with bounds, the history ends where they would be passed.
 Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   if (!run.options.measure) return LevelErrors{};
   if (Status s = run.stages.begin(Stage::kMeasure); !s) return std::unexpected(s.error());
   MeasureOptions options = *run.options.measure;
   options.countsRounding = true;
-  options.replay = &run.replay;
+  if (movesCoarse(run.options)) options.replay = &run.replay;
   options.labels = run.labelFields;
   options.base = baseRuleOf(run.options);
   options.threads = run.options.fusion.threads;
@@ -233,12 +238,11 @@ Result<std::vector<LiftingRules>> toCodedValues(FusionHistory& history, const Va
   if (run.options.valueCodec == CodecId::kLifted) {
     LiftOptions options;
     options.missing = quantised.missing;
-    options.threads = run.options.fusion.threads;
     options.stop = run.options.stop;
     if (run.options.measure)  // a bound was measured with the values that are there
       for (const auto& [name, bound] : run.options.measure->bounds.fields)
         if (const auto field = fieldOfKey(history.fields, name)) options.exact.push_back(*field);
-    if (!errors.empty() && !run.options.exactCoarse) options.replay = &run.replay;
+    if (!errors.empty() && movesCoarse(run.options)) options.replay = &run.replay;
     Result<std::vector<LiftingRules>> lifted = liftFields(history, order, errors, options);
     if (!lifted) return std::unexpected(lifted.error());
     rules = std::move(*lifted);

@@ -60,6 +60,10 @@ Status inflated(const std::filesystem::path& path,
                 const std::function<Status(const std::filesystem::path&)>&, std::uint64_t) {
   return refusal(path);
 }
+Status unmarked(const std::filesystem::path& path,
+                const std::function<Status(const std::filesystem::path&)>&) {
+  return refusal(path);
+}
 std::string withName(std::string text, const std::string&, const std::string&) { return text; }
 
 Result<std::vector<std::filesystem::path>> exodusPieces(const std::filesystem::path& path) {

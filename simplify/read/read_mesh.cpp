@@ -8,6 +8,7 @@
 #include "simplify/read/abaqus/read_abaqus.h"
 #include "simplify/read/listed_files.h"
 #include "simplify/read/nastran/read_nastran.h"
+#include "simplify/read/options/byte_order_mark.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_steps.h"
@@ -33,26 +34,24 @@ ReadOptions withThresholdField(ReadOptions options) {
   return options;
 }
 
+/// The first character of the file's text; 0: there is none.
+char firstCharacterOf(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  passMark(file);
+  char first = 0;
+  file >> first;
+  return file ? first : '\0';
+}
+
 /// Abaqus and AVS share the ending .inp; Abaqus' lines begin with stars.
 bool isAbaqus(const std::filesystem::path& path) {
   std::error_code code;
   // opening a pipe would wait for who writes
-  if (!std::filesystem::is_regular_file(path, code)) return false;
-  std::ifstream file(path);
-  char first = 0;
-  file >> first;
-  // after a byte order mark
-  for (const char mark : {'\xEF', '\xBB', '\xBF'})
-    if (first == mark) file >> first;
-  return file && first == '*';
+  return std::filesystem::is_regular_file(path, code) && firstCharacterOf(path) == '*';
 }
 
 /// Fluent and Gmsh share the ending .msh; Fluent's begins with a parenthesis.
-bool isFluent(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  char first = 0;
-  return file >> first && first == '(';
-}
+bool isFluent(const std::filesystem::path& path) { return firstCharacterOf(path) == '('; }
 
 /// Fluent's own files tell cells by their faces, which VTK reads; other programs list the cells'
 /// nodes, which meshio reads.

@@ -11,9 +11,11 @@
 #include "simplify/read/foam/read_foam.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/options/bad_file.h"
+#include "simplify/read/options/byte_order_mark.h"
 #include "simplify/read/parts/file_series.h"
 #include "simplify/read/parts/named_files.h"
 #include "simplify/read/parts/piece_files.h"
+#include "simplify/read/process/inflate_file.h"
 #include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/read_apart.h"
@@ -63,11 +65,27 @@ Result<std::vector<TimedCells>> readXdmf(const std::filesystem::path& path,
       [&](std::size_t step, ReadReport& ofStep) { return file->read(step, options, ofStep); });
 }
 
+/// Text in which VTK's readers do not pass a byte order mark.
+bool isVtkText(MeshFormat format) {
+  return format == MeshFormat::kLegacyVtk || format == MeshFormat::kAvsUcd ||
+         format == MeshFormat::kFluent;
+}
+
 /// A reader that damage can break, in a process of its own.
 Result<std::vector<TimedCells>> readByVtk(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options, ReadReport& report) {
-  return readApart(path, options, report,
-                   [&](ReadReport& found) { return runVtk(path, format, options, found); });
+  Result<std::vector<TimedCells>> out = std::vector<TimedCells>{};
+  const auto read = [&](const std::filesystem::path& file) -> Status {
+    const std::size_t before = report.notes.size();
+    out = readApart(file, options, report,
+                    [&](ReadReport& found) { return runVtk(file, format, options, found); });
+    for (std::string& note : std::span(report.notes).subspan(before))
+      note = withName(note, file.string(), path.string());
+    return out ? Status{} : Status(std::unexpected(out.error()));
+  };
+  const Status done = isVtkText(format) && isMarked(path) ? unmarked(path, read) : read(path);
+  if (!done) return std::unexpected(done.error());
+  return out;
 }
 
 /// Reads a .vtu file without VTK, unless it holds several steps, which no program writes any more.

@@ -24,6 +24,7 @@ OPTIONAL = {
     "qemu-aarch64": "runs that",
     "docker": "stands in comments' examples",
     "sudo": "for users who are not root; root needs none",
+    "zfp": "stands beside ours in tests/bench/series.py",
     "script": "a test of the tool's colours skips without it",
     "gmsh": "higher_cells_test.py tries its elements of higher degree where it is",
 }

@@ -1,5 +1,5 @@
 import {expect, test} from 'vitest';
-import {largestRoundingError, type FieldInfo} from '../core/protocol/fields';
+import {largestRoundingError, widthOfValues, type FieldInfo} from '../core/protocol/fields';
 
 // the same numbers as in tests/proto/rounding_error_test.cpp
 const field: FieldInfo = {
@@ -23,4 +23,15 @@ test('integersAndConstantsAreExact', () => {
   expect(largestRoundingError({...field, step: 1, isWhole: true})).toBe(0);
   expect(largestRoundingError({...field, range: [-7, -7]})).toBe(0);
   expect(largestRoundingError({...field, range: [0, 0]})).toBeGreaterThan(1);
+});
+
+test('knownErrorsArePartsOfTheWidthOfTheValues', () => {
+  expect(widthOfValues(field)).toBe(30);
+  const magnitudes = {
+    ...field,
+    components: 3,
+    minimum: [-7, 0, 0],
+    range: [0, 9] as [number, number],
+  };
+  expect(widthOfValues(magnitudes)).toBe(Math.sqrt(3) * 30);
 });

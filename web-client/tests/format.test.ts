@@ -32,6 +32,9 @@ test('theErrorOfTheLastLevelIsRoundedUp', () => {
   expect(within(0.0996)).toBe('T is within 0.1 K at the last level');
   expect(within(250)).toBe('T is within 250 K at the last level');
   expect(within(0)).toBe('T is exact at the last level');
+  expect(plain(formatWithin(field, 0.04, 3.41))).toBe(
+    'T is at most 3.5 K off now, as sampled, and within 0.04 K at the last level',
+  );
 });
 
 test('aHundredPercentMeansAllOfIt', () => {

@@ -5,15 +5,13 @@
 
 #include "simplify/read/text/mesh_scanner.h"
 #include "simplify/read/text/plain_numbers.h"
+#include "simplify/read/text/plain_words.h"
 
 namespace qtet {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\f\v";
 constexpr std::uint32_t kLinesBetweenLooks = 1 << 12;
-constexpr std::size_t kShownOfAField = 24;
 
-char capital(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 bool isLetter(char c) { return capital(c) >= 'A' && capital(c) <= 'Z'; }
 
 bool isComment(std::string_view line) { return line.starts_with("**"); }
@@ -41,12 +39,6 @@ std::string_view unquoted(std::string_view text) {
   return text;
 }
 
-std::string shown(std::string_view field) {
-  std::string out(field.substr(0, kShownOfAField));
-  for (char& c : out) c = c < ' ' || c > '~' ? '?' : c;
-  return out;
-}
-
 }  // namespace
 
 std::string abaqusName(std::string_view text) {
@@ -54,12 +46,6 @@ std::string abaqusName(std::string_view text) {
   for (const char c : text)
     if (!isQuote(c) && kBlanks.find(c) == std::string_view::npos) out += capital(c);
   return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
 }
 
 const std::string* AbaqusKeyword::find(std::string_view parameter) const {
@@ -204,12 +190,12 @@ void AbaqusLines::include(const std::string& name) {
   if (!fs::is_regular_file(path, code)) {
     const fs::path beside = root_.parent_path() / name;
     if (!fs::is_regular_file(beside, code))
-      return fail(ErrorCode::kNotFound,
-                  "the included file '" + shown(name) + "' is not there; put it beside this file");
+      return fail(ErrorCode::kNotFound, "the included file '" + shownField(name) +
+                                            "' is not there; put it beside this file");
     path = beside;
   }
   if (std::ranges::any_of(files_, [&](const File& file) { return file.path == path; }))
-    return fail("'" + shown(name) + "' is included within itself");
+    return fail("'" + shownField(name) + "' is included within itself");
   if (files_.size() > kMaxDepth || ++opened_ > kMaxFiles)
     return fail(ErrorCode::kLimitExceeded, "files are included " + std::to_string(kMaxDepth) +
                                                " deep, or more than " + std::to_string(kMaxFiles) +
@@ -219,19 +205,15 @@ void AbaqusLines::include(const std::string& name) {
 
 std::uint32_t AbaqusLines::id(std::size_t field, const char* what) {
   if (failed() || field >= fields_.size() || fields_[field].empty()) return 0;
-  // the largest numbers mean no point (kGhost)
-  const auto value = plainInteger<std::int32_t>(fields_[field]);
-  if (value && *value >= 0) return static_cast<std::uint32_t>(*value);
-  fail("'" + shown(fields_[field]) + "' is where " + what +
-       " should be; the file is damaged, export it again");
+  if (const std::optional<std::uint32_t> value = plainId(fields_[field])) return *value;
+  fail(misplacedField(fields_[field], what));
   return 0;
 }
 
 double AbaqusLines::real(std::size_t field, const char* what) {
   if (failed() || field >= fields_.size() || fields_[field].empty()) return 0;
   if (const std::optional<double> value = fortranReal(fields_[field])) return *value;
-  fail("'" + shown(fields_[field]) + "' is where " + what +
-       " should be; the file is damaged, export it again");
+  fail(misplacedField(fields_[field], what));
   return 0;
 }
 

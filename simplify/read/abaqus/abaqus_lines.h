@@ -16,8 +16,6 @@ namespace qtet {
 
 /// Capital letters, without blanks and quotes: keywords and names are compared so.
 [[nodiscard]] std::string abaqusName(std::string_view text);
-/// Without blanks at its ends.
-[[nodiscard]] std::string_view trimmed(std::string_view text);
 
 /// A line "*KEYWORD, PARAMETER=VALUE, PARAMETER", with the lines that continue it.
 struct AbaqusKeyword {

@@ -5,37 +5,24 @@
 
 #include "simplify/read/text/mesh_scanner.h"
 #include "simplify/read/text/plain_numbers.h"
+#include "simplify/read/text/plain_words.h"
 
 namespace qtet {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kBlanks = " \t\r\f\v";
 constexpr std::uint32_t kLinesBetweenLooks = 1 << 12;
 /// Columns of the name, of a small and of a large field, and of the data of a line.
 constexpr std::size_t kNameColumns = 8, kSmallField = 8, kLargeField = 16, kDataColumns = 64;
 /// A line with a comma this early is in free field.
 constexpr std::size_t kLastCommaOfAName = 9;
 constexpr std::size_t kFieldsOfALine = 8;
-constexpr std::size_t kShownOfAField = 24;
-
-std::string_view withoutBlanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
-}
-
-std::string capitals(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  return out;
-}
 
 /// In capitals, with one blank between words.
 std::string words(std::string_view text) {
   std::string out;
-  for (const char c : capitals(withoutBlanks(text))) {
+  for (const char c : capitals(trimmed(text))) {
     const bool isBlank = kBlanks.find(c) != std::string_view::npos;
     if (!isBlank)
       out += c;
@@ -54,12 +41,6 @@ BulkBegin bulkBegin(std::string_view line) {
   const auto has = [&](std::string_view word) { return text.find(word) != std::string::npos; };
   if (has("SUPER") || has("MODULE") || has("MODEL")) return BulkBegin::kPart;
   return has("BULK") ? BulkBegin::kBulk : BulkBegin::kNone;
-}
-
-std::string shown(std::string_view field) {
-  std::string out(field.substr(0, kShownOfAField));
-  for (char& c : out) c = c < ' ' || c > '~' ? '?' : c;
-  return out;
 }
 
 bool isExponentSign(std::string_view text, std::size_t at) {
@@ -134,7 +115,7 @@ bool BulkCards::nextLine() {
       files_.pop_back();
       continue;
     }
-    const std::string_view text = withoutBlanks(line_);
+    const std::string_view text = trimmed(line_);
     if (text.empty()) continue;
     const std::string begin = words(text.substr(0, 32));
     if (begin.starts_with("ENDDATA") || begin.starts_with("END BULK")) break;
@@ -154,17 +135,17 @@ bool BulkCards::nextLine() {
 void BulkCards::refuseParts() {
   cardFile_ = files_.back().path.string();
   cardLine_ = files_.back().line;
-  fail("'" + shown(withoutBlanks(line_)) +
+  fail("'" + shownField(trimmed(line_)) +
        "' begins the bulk data of one part among several, whose numbers may be the same; export "
        "the parts as files of their own");
 }
 
 /// INCLUDE 'FILE', where the name may go on over lines up to its closing quote.
 void BulkCards::include() {
-  std::string name(withoutBlanks(withoutBlanks(line_).substr(std::string_view("INCLUDE").size())));
+  std::string name(trimmed(trimmed(line_).substr(std::string_view("INCLUDE").size())));
   if (!name.empty() && (name[0] == '\'' || name[0] == '"')) {
     const char quote = name[0];
-    while (name.find(quote, 1) == std::string::npos && rawLine()) name += withoutBlanks(line_);
+    while (name.find(quote, 1) == std::string::npos && rawLine()) name += trimmed(line_);
     const std::size_t end = name.find(quote, 1);
     name = end == std::string::npos ? "" : name.substr(1, end - 1);
   }
@@ -180,7 +161,7 @@ void BulkCards::include() {
   if (name.empty() || !fs::is_regular_file(path, code))
     return refuse(ErrorCode::kNotFound,
                   name.empty() ? "INCLUDE names no file between quotes; correct the line"
-                               : "the included file '" + shown(name) +
+                               : "the included file '" + shownField(name) +
                                      "' is not there; put it beside this file");
   if (files_.size() > kMaxDepth)
     return refuse(ErrorCode::kLimitExceeded, "files are included more than " +
@@ -193,7 +174,7 @@ void BulkCards::include() {
 bool BulkCards::continues() const {
   const char first = line_.front();
   if (first == '+' || first == '*' || first == ',') return true;
-  return withoutBlanks(std::string_view(line_).substr(0, std::min(kNameColumns, line_.find(','))))
+  return trimmed(std::string_view(line_).substr(0, std::min(kNameColumns, line_.find(','))))
       .empty();
 }
 
@@ -218,7 +199,7 @@ bool BulkCards::next() {
 void BulkCards::startCard() {
   const std::string_view text(line_);
   const std::size_t comma = text.find(',');
-  name_ = capitals(withoutBlanks(
+  name_ = capitals(trimmed(
       text.substr(0, comma <= kLastCommaOfAName ? comma : std::min(kNameColumns, text.size()))));
   addFields();
   std::erase(name_, '*');
@@ -242,13 +223,13 @@ void BulkCards::addFree(std::size_t perLine) {
   text.remove_prefix(text.find(',') + 1);
   for (std::size_t i = 0; i < perLine; ++i) {
     const std::size_t end = std::min(text.find(','), text.size());
-    std::string_view field = withoutBlanks(text.substr(0, end));
+    std::string_view field = trimmed(text.substr(0, end));
     const bool isMark = end == text.size() && (field == "+" || field == "*");
     if (fields_.size() < kMaxFields) fields_.emplace_back(isMark ? std::string_view() : field);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   const std::size_t more = text.find(',');
-  if (more != std::string_view::npos && !withoutBlanks(text.substr(more + 1)).empty())
+  if (more != std::string_view::npos && !trimmed(text.substr(more + 1)).empty())
     fail("the line has more than " + std::to_string(perLine + 2) +
          " fields between commas; export the file again");
 }
@@ -265,7 +246,7 @@ bool BulkCards::addOverfull() {
     const std::size_t end = at + kSmallField;
     const bool isOverfull = end < text.size() && (text[end - 1] == '-' || text[end - 1] == '+') &&
                             (isDigit(text[end - 2]) || text[end - 2] == '.') && isDigit(text[end]);
-    found.push_back(withoutBlanks(text.substr(at, kSmallField + (isOverfull ? 1 : 0))));
+    found.push_back(trimmed(text.substr(at, kSmallField + (isOverfull ? 1 : 0))));
     if (isOverfull) ++moved, ++at;
   }
   const bool endsWhole = (text.size() - moved) % kSmallField == 0;
@@ -281,24 +262,20 @@ void BulkCards::addFixed(std::size_t width) {
   const std::string_view text(line_);
   for (std::size_t at = kNameColumns; at < kNameColumns + kDataColumns; at += width)
     if (fields_.size() < kMaxFields)
-      fields_.emplace_back(at < text.size() ? withoutBlanks(text.substr(at, width))
-                                            : std::string_view());
+      fields_.emplace_back(at < text.size() ? trimmed(text.substr(at, width)) : std::string_view());
 }
 
 std::uint32_t BulkCards::id(std::size_t i, const char* what) {
   if (failed() || field(i).empty()) return 0;
-  const auto value = plainInteger<std::int32_t>(field(i));
-  if (value && *value >= 0) return static_cast<std::uint32_t>(*value);
-  fail("'" + shown(field(i)) + "' is where " + what +
-       " should be; the file is damaged, export it again");
+  if (const std::optional<std::uint32_t> value = plainId(field(i))) return *value;
+  fail(misplacedField(field(i), what));
   return 0;
 }
 
 double BulkCards::real(std::size_t i, const char* what) {
   if (failed() || field(i).empty()) return 0;
   if (const std::optional<double> value = nastranReal(field(i))) return *value;
-  fail("'" + shown(field(i)) + "' is where " + what +
-       " should be; the file is damaged, export it again");
+  fail(misplacedField(field(i), what));
   return 0;
 }
 

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "simplify/read/options/byte_order_mark.h"
+
 namespace qtet {
 namespace {
 
@@ -27,7 +29,9 @@ bool isCell(const std::vector<std::string_view>& words) {
 
 class AvsLines {
  public:
-  explicit AvsLines(const std::filesystem::path& path) : path_(path), file_(path) {}
+  explicit AvsLines(const std::filesystem::path& path) : path_(path), file_(path) {
+    passMark(file_);
+  }
 
   Status check() {
     do {

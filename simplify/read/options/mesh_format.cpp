@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "codec/files/unreachable.h"
+#include "simplify/read/options/byte_order_mark.h"
 #include "simplify/read/options/check_avs.h"
 
 namespace qtet {
@@ -87,10 +88,7 @@ Status checkXml(const fs::path& path, const FileEnds& ends, std::string_view wan
 }
 
 Status checkLegacy(const fs::path& path, const FileEnds& ends) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  std::string_view front = ends.front;
-  if (front.starts_with(kByteOrderMark)) front.remove_prefix(kByteOrderMark.size());
-  if (!front.starts_with("# vtk DataFile Version")) {
+  if (!withoutMark(ends.front).starts_with("# vtk DataFile Version")) {
     return fail(ErrorCode::kBadInput,
                 path.string() +
                     " is not a legacy VTK file: its first line is not '# vtk DataFile Version ...'",
@@ -202,6 +200,7 @@ Status checkMeshFile(const fs::path& path, MeshFormat format) {
 
   const Result<FileEnds> ends = readEnds(path, size);
   if (!ends) return std::unexpected(ends.error());
+  if (isUtf16(ends->front)) return utf16Refused(path);
   if (const std::string_view type = rootType(format); !type.empty())
     return checkXml(path, *ends, type);
   if (format == MeshFormat::kAvsUcd) return checkAvs(path);

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "simplify/read/options/xml_place.h"
@@ -127,12 +128,25 @@ bool fits(const XmlElement& element, const Part& part) {
          });
 }
 
+/// Elements in the order in which they came, each once. Within // of another // they come again for
+/// each way that leads to them.
+class Matches {
+ public:
+  void add(const XmlElement& element) {
+    if (seen_.insert(&element).second) list_.push_back(&element);
+  }
+  [[nodiscard]] std::vector<const XmlElement*>& list() { return list_; }
+
+ private:
+  std::set<const XmlElement*> seen_;
+  std::vector<const XmlElement*> list_;
+};
+
 /// The children that the part means, and with // those of all below, in the document's order.
-void addMatches(const XmlElement& element, const Part& part, std::vector<const XmlElement*>& out) {
+void addMatches(const XmlElement& element, const Part& part, Matches& out) {
   std::size_t number = 0;
   for (const auto& child : element.children) {
-    if (fits(*child, part) && (++number == part.number || part.number == 0))
-      out.push_back(child.get());
+    if (fits(*child, part) && (++number == part.number || part.number == 0)) out.add(*child);
     if (part.isAnywhereBelow) addMatches(*child, part, out);
   }
 }
@@ -156,13 +170,14 @@ const XmlElement* firstAt(const XmlElement& root, std::string_view path) {
   while (!path.empty()) {
     const std::optional<Part> part = takePart(path);
     if (!part) return nullptr;
-    std::vector<const XmlElement*> next;
+    Matches next;
     if (std::exchange(isFirst, false)) {
-      if (fits(root, *part) && part->number <= 1) next.push_back(&root);
+      if (fits(root, *part) && part->number <= 1) next.add(root);
       if (part->isAnywhereBelow) addMatches(root, *part, next);
     }
     for (const XmlElement* element : at) addMatches(*element, *part, next);
-    at = std::move(next);
+    at = std::move(next.list());
+    if (at.empty()) return nullptr;
   }
   return at.empty() ? nullptr : at.front();
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "simplify/read/options/byte_order_mark.h"
 #include "simplify/read/process/guarded_folder.h"
 
 namespace qtet {
@@ -86,6 +87,14 @@ Status inflateTo(const fs::path& file, const fs::path& path, std::uint64_t most)
                                   "room");
 }
 
+/// use(file), whose error then names `path` in place of the file.
+Status usedFor(const fs::path& path, const fs::path& file,
+               const std::function<Status(const fs::path&)>& use) {
+  Status used = use(file);
+  if (!used) used.error().message = withName(used.error().message, file.string(), path.string());
+  return used;
+}
+
 }  // namespace
 
 std::uint64_t maxInflatedBytes() {
@@ -118,9 +127,23 @@ Status inflated(const fs::path& path, const std::function<Status(const fs::path&
   if (Status made = folder.made(); !made) return std::unexpected(made.error());
   const fs::path file = folder.path() / path.stem();
   if (Status done = inflateTo(file, path, most); !done) return done;
-  Status used = use(file);
-  if (!used) used.error().message = withName(used.error().message, file.string(), path.string());
-  return used;
+  return usedFor(path, file, use);
+}
+
+Status unmarked(const fs::path& path, const std::function<Status(const fs::path&)>& use) {
+  const GuardedFolder folder("unmark");
+  if (Status made = folder.made(); !made) return std::unexpected(made.error());
+  const fs::path file = folder.path() / path.filename();
+  std::ifstream in(path, std::ios::binary);
+  passMark(in);
+  std::ofstream out(file, std::ios::binary);
+  out << in.rdbuf();
+  out.close();
+  if (!in || !out)
+    return fail(ErrorCode::kIo, "cannot copy " + path.string() +
+                                    " without its byte order mark; let TMPDIR name a folder with "
+                                    "room");
+  return usedFor(path, file, use);
 }
 
 }  // namespace qtet

@@ -1,4 +1,4 @@
-// Mesh files that were compressed whole: NAME.vtu.gz and so on.
+// Mesh files as other bytes: inflated (NAME.vtu.gz), or without a byte order mark.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +22,11 @@ namespace qtet {
 [[nodiscard]] Status inflated(const std::filesystem::path& path,
                               const std::function<Status(const std::filesystem::path&)>& use,
                               std::uint64_t most = maxInflatedBytes());
+
+/// Copies a file without its byte order mark, as `inflated` does. Errors: io, those of `use`.
+/// REQUIRES: isMarked(path).
+[[nodiscard]] Status unmarked(const std::filesystem::path& path,
+                              const std::function<Status(const std::filesystem::path&)>& use);
 
 /// The first `bytes` bytes, or all of them, of a file that gzip may have compressed. Errors: io,
 /// bad-input (it does not inflate), truncated.

@@ -11,8 +11,10 @@
 #include <optional>
 #include <string>
 
+#include "simplify/read/options/byte_order_mark.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/process/guarded_folder.h"
+#include "simplify/read/process/inflate_file.h"
 #include "simplify/read/process/watch_process.h"
 
 namespace qtet {
@@ -236,6 +238,13 @@ std::string lastLineOf(const fs::path& path) {
 }  // namespace
 
 Status throughMeshio(const MeshioInput& input, const std::function<Status(const fs::path&)>& use) {
+  // XDMF names files beside it, and Python's parser of XML passes the mark
+  if (input.kind != "xdmf" && isMarked(input.path))
+    return unmarked(input.path, [&](const fs::path& file) {
+      MeshioInput copy = input;
+      copy.path = file;
+      return throughMeshio(copy, use);
+    });
   const GuardedFolder folder("meshio");
   if (Status made = folder.made(); !made) return std::unexpected(made.error());
   const fs::path words = folder.path() / "words.txt";

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <limits>
 
+#include "simplify/read/options/byte_order_mark.h"
+
 namespace qtet {
 namespace {
 
@@ -144,11 +146,8 @@ Result<std::string> wholeFile(const std::filesystem::path& path) {
   file.seekg(0);
   if (!file.read(text.data(), size))
     return qtet::fail(ErrorCode::kIo, "cannot read " + path.string() + ": " + std::strerror(errno));
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    return qtet::fail(ErrorCode::kBadInput,
-                      path.string() + " is text in UTF-16; save it as UTF-8 or ASCII");
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  if (isUtf16(text)) return utf16Refused(path);
+  text.erase(0, text.size() - withoutMark(text).size());
   return text;
 }
 

@@ -26,6 +26,13 @@ template <class T>
   return value;
 }
 
+/// An integer from 0 to what an int32 holds: the largest numbers mean no point (kGhost).
+[[nodiscard]] inline std::optional<std::uint32_t> plainId(std::string_view text) {
+  const auto value = plainInteger<std::int32_t>(text);
+  if (!value || *value < 0) return std::nullopt;
+  return static_cast<std::uint32_t>(*value);
+}
+
 /// Numbers in a file may be any, also multiples of the size of the library's table. The library's
 /// own hash of an integer is the integer, so all of these would lie in one bucket.
 struct MixedHash {

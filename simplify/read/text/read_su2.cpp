@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "simplify/read/text/mesh_scanner.h"
+#include "simplify/read/text/plain_words.h"
 #include "simplify/read/text/text_readers.h"
 #include "simplify/split/cell_shapes.h"
 
@@ -26,11 +27,7 @@ class Su2 {
 
  private:
   static std::string upper(std::string_view text) {
-    std::string out(text.substr(0, text.find('%')));
-    std::ranges::transform(out, out.begin(), [](char c) {
-      return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    });
-    return out;
+    return capitals(text.substr(0, text.find('%')));
   }
 
   void section(const std::string& key, const std::string& value) {

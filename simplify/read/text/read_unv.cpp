@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <map>
-#include <set>
 
-#include "proto/limits.h"
 #include "simplify/read/text/mesh_scanner.h"
 #include "simplify/read/text/plain_numbers.h"
 #include "simplify/read/text/set_labels.h"
 #include "simplify/read/text/text_readers.h"
+#include "simplify/read/text/unv_numbers.h"
+#include "simplify/read/text/unv_results.h"
 
 namespace qtet {
 namespace {
@@ -40,12 +38,6 @@ constexpr std::uint32_t kMaxNodes = 64;
 constexpr auto kGroups = std::to_array<std::string_view>({"2435", "2452", "2467", "2477"});
 constexpr std::string_view kOldGroups = "752";
 constexpr std::int64_t kElementInGroup = 8;
-/// Where results are, and kinds of their numbers, in dataset 2414.
-constexpr int kAtNodes = 1;
-constexpr int kSingle = 2, kDouble = 4;
-/// A result at fewer than one of so many nodes would take memory that the file's size does not
-/// bound.
-constexpr std::size_t kFewNodes = 16;
 
 /// A group's elements by the file's own numbers.
 struct Group {
@@ -53,18 +45,10 @@ struct Group {
   std::vector<std::uint32_t> elements;
 };
 
-/// A result at nodes: a tuple for each of `nodes`.
-struct Result2414 {
-  std::string type;
-  std::uint32_t components = 1;
-  std::vector<std::uint32_t> nodes;
-  std::vector<double> values;
-};
-
 class Unv {
  public:
   Unv(std::string_view text, const std::filesystem::path& path, ReadReport& report)
-      : in_(text, path), report_(report) {}
+      : in_(text, path), report_(report), results_(in_, report.notes) {}
 
   Result<CellMesh> read(std::chrono::seconds patience) {
     in_.giveUpAfter(patience);
@@ -77,10 +61,8 @@ class Unv {
         elements(dataset == "780");
       else if (dataset == kOldGroups || std::ranges::find(kGroups, dataset) != kGroups.end())
         groups(dataset == kOldGroups);
-      else if (dataset == "2414")
-        result();
-      else
-        skip(dataset);
+      else if (!results_.read(dataset))
+        skipUnvDataset(in_);
     }
     if (in_.failed()) return in_.error();
     // elements may stand before nodes
@@ -88,53 +70,22 @@ class Unv {
       const auto at = numbers_.find(id);
       id = at == numbers_.end() ? kGhost : at->second;
     }
-    for (auto& [name, result] : results_) addResult(name, result);
+    results_.addTo(out_, numbers_);
     addGroups();
     return std::move(out_);
   }
 
  private:
-  /// Passes a dataset that is not read, up to the -1 at its end.
-  void skip(std::string_view dataset) {
-    constexpr auto kResults = std::to_array<std::string_view>({"55", "56", "57", "2415", "2416"});
-    if (std::ranges::find(kResults, dataset) != kResults.end())
-      note("results of a dataset " + std::string(dataset) +
-           " are not read; those at nodes of dataset 2414 are");
-    skip();
-  }
-
-  /// A file may have a thousand datasets of which one thing is to be said.
-  void note(const std::string& text) {
-    if (noted_.insert(text).second) report_.notes.push_back(text);
-  }
-
-  void skip() {
-    while (!in_.atEnd() && in_.line() != "-1") {
-    }
-  }
-
-  /// The next word as a label, or -1 where the dataset ends.
-  std::int64_t label() { return in_.number<std::int64_t>("a label or -1"); }
-
-  double real() {
-    const std::string_view word = in_.word();
-    const std::optional<double> value = fortranReal(word);
-    if (!value)
-      in_.fail(ErrorCode::kBadInput, "'" + std::string(word.substr(0, 20)) +
-                                         "' is no number; the file is damaged, export it again");
-    return value.value_or(0);
-  }
-
   void nodes() {
     while (!in_.failed()) {
-      const std::int64_t node = label();
+      const std::int64_t node = unvLabel(in_);
       if (node == -1) return in_.skipLine();
       in_.skipLine();  // coordinate systems and colour
       Position p{};
-      for (double& x : p) x = real();
+      for (double& x : p) x = unvReal(in_);
       in_.skipLine();
       if (in_.failed()) return;
-      if (!isId(node)) return;
+      if (!isUnvNode(in_, node)) return;
       if (!numbers_.emplace(static_cast<VertexId>(node), static_cast<VertexId>(out_.points.size()))
                .second)
         return in_.fail(ErrorCode::kBadInput, "node " + std::to_string(node) +
@@ -144,19 +95,11 @@ class Unv {
     }
   }
 
-  bool isId(std::int64_t node) {
-    if (node >= 0 && node < std::int64_t{kGhost}) return true;
-    in_.fail(ErrorCode::kBadInput, std::to_string(node) +
-                                       " is no number of a node; the file is damaged, export it "
-                                       "again");
-    return false;
-  }
-
   /// `isOld`: dataset 780, which has two more numbers in an element's first line.
   void elements(bool isOld) {
     std::array<VertexId, kMaxNodes> nodes{};
     while (!in_.failed()) {
-      const std::int64_t element = label();
+      const std::int64_t element = unvLabel(in_);
       if (element == -1) return in_.skipLine();
       const auto descriptor = in_.number<std::uint32_t>("an element's descriptor");
       for (int i = 0; i < (isOld ? 5 : 3); ++i) in_.number<std::int64_t>("a property");
@@ -169,7 +112,7 @@ class Unv {
                                                   " nodes; the file is damaged, export it again");
       for (std::uint32_t i = 0; i < count; ++i) {
         const auto node = in_.number<std::int64_t>("a node's number");
-        if (in_.failed() || !isId(node)) return;
+        if (in_.failed() || !isUnvNode(in_, node)) return;
         nodes[i] = static_cast<VertexId>(node);
       }
       in_.skipLine();
@@ -200,7 +143,7 @@ class Unv {
   /// `isOld`: an entity has two numbers, else four.
   void groups(bool isOld) {
     while (!in_.failed()) {
-      const std::int64_t number = label();
+      const std::int64_t number = unvLabel(in_);
       if (number == -1) return in_.skipLine();
       // the last number of the line
       const std::string_view head = in_.line();
@@ -244,65 +187,13 @@ class Unv {
       out_.fields.push_back(std::move(*field));
   }
 
-  /// Dataset 2414: a result at nodes. Another one of the same name takes its place.
-  void result() {
-    in_.line();  // its number
-    const std::string name(in_.line());
-    const auto place = in_.number<int>("where the results are");
-    in_.skipLine();
-    for (int i = 0; i < 5; ++i) in_.line();
-    std::array<std::int64_t, 6> head{};
-    for (std::int64_t& number : head) number = in_.number<std::int64_t>("a kind of result");
-    in_.skipLine();
-    for (int i = 0; i < 4; ++i) in_.line();
-    if (in_.failed()) return;
-    const std::int64_t type = head[4], components = head[5];
-    if (place != kAtNodes || (type != kSingle && type != kDouble) || components < 1 ||
-        components > kMaxFieldComponents) {
-      note("the results " + name + " are not read: not real numbers at nodes, or too many at each");
-      return skip();
-    }
-    Result2414 out{
-        type == kSingle ? "float32" : "float64", static_cast<std::uint32_t>(components), {}, {}};
-    while (!in_.failed()) {
-      const std::int64_t node = label();
-      if (node == -1) break;
-      if (in_.failed() || !isId(node)) return;
-      out.nodes.push_back(static_cast<std::uint32_t>(node));
-      for (std::int64_t c = 0; c < components; ++c) out.values.push_back(real());
-    }
-    in_.skipLine();
-    if (results_.contains(name)) note("of several results " + name + " the last one is read");
-    results_[name] = std::move(out);
-  }
-
-  void addResult(const std::string& name, const Result2414& result) {
-    if (result.nodes.size() < out_.points.size() / kFewNodes) {
-      note("the results " + name + " are left out: few nodes have them");
-      return;
-    }
-    MeshField field{name, result.components, result.type, {}, "point"};
-    field.values.assign(out_.points.size() * result.components,
-                        std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < result.nodes.size(); ++i) {
-      const auto at = numbers_.find(result.nodes[i]);
-      if (at == numbers_.end()) continue;
-      std::copy_n(result.values.begin() + static_cast<std::ptrdiff_t>(i * result.components),
-                  result.components,
-                  field.values.begin() +
-                      static_cast<std::ptrdiff_t>(std::size_t{at->second} * result.components));
-    }
-    out_.fields.push_back(std::move(field));
-  }
-
   MeshScanner in_;
   ReadReport& report_;
   CellMesh out_;          ///< whose cells name the file's own numbers until all nodes are known
   NumberTable numbers_;   ///< of the file's own nodes
   NumberTable elements_;  ///< of the file's own solids
   std::vector<Group> groups_;
-  std::map<std::string, Result2414> results_;
-  std::set<std::string> noted_;
+  UnvResults results_;
 };
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "simplify/read/text/plain_numbers.h"
+
 namespace qtet {
 namespace {
 
@@ -194,8 +196,7 @@ Result<XdmfNumbers> XdmfItems::fromText(const XmlElement& item) const {
   out.type = typeOf(item);
   std::string_view text = item.text;
   for (std::string_view word = wordOf(text); !word.empty(); word = wordOf(text)) {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    const auto value = numberAt<double>(word);
+    const std::optional<double> value = fortranReal(word);
     if (!value) return bad("'" + std::string(word.substr(0, 20)) + "' in a DataItem is no number");
     out.values.push_back(*value);
   }

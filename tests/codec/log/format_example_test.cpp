@@ -15,14 +15,14 @@
 namespace qtet {
 namespace {
 
-std::string section() {
+std::string section(const std::string& title) {
   std::ifstream file(testing::kSourceFolder + std::string("/codec/EXAMPLE.md"));
   std::stringstream text;
   text << file.rdbuf();
   const std::string page = text.str();
-  const std::size_t first = page.find("## A worked example");
+  const std::size_t first = page.find("## " + title);
   EXPECT_NE(first, std::string::npos);
-  return page.substr(std::min(first, page.size()));
+  return page.substr(std::min(first, page.size()), page.find("\n## ", first) - first);
 }
 
 Bytes dumped(const std::string& text) {
@@ -77,7 +77,7 @@ void expectSame(const Tuples& tuples, const std::vector<std::array<std::int32_t,
 }
 
 TEST(FormatExample, isTheLogThatThePageDescribes) {
-  const std::string text = section();
+  const std::string text = section("A worked example");
   const auto log = LogFile::fromBytes(dumped(text));
   ASSERT_TRUE(log) << log.error().text();
   ASSERT_EQ(log->index().chunks.size(), 2u);
@@ -114,6 +114,22 @@ TEST(FormatExample, isTheLogThatThePageDescribes) {
     digest += kDigits[byte & 15];
   }
   EXPECT_NE(text.find("`" + digest + "`"), std::string::npos) << digest;
+}
+
+TEST(FormatExample, hasTheLiftedBlocksThatThePageDescribes) {
+  const std::string text = section("A lifted block");
+  const auto log = LogFile::fromBytes(dumped(text));
+  ASSERT_TRUE(log) << log.error().text();
+  EXPECT_EQ(log->index().chunks.size(), 2u);
+  const auto block = [&](std::uint32_t chunk) { return log->block(chunk, kFirstFieldPart); };
+  EXPECT_EQ(block(0).size(), 8u);
+  EXPECT_EQ(block(1).size(), 10u);
+  Refiner refiner(log->index());
+  for (std::uint32_t chunk = 0; chunk < 2; ++chunk)
+    ASSERT_TRUE(applyChunk(*log, refiner, chunk, std::array{0u}));
+  const auto told = tuplesIn<7>(text);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_TRUE(std::ranges::equal(refiner.fieldValues(0), told[0]));
 }
 
 }  // namespace

@@ -118,7 +118,24 @@ TEST(Quantise, extentsThatADoubleCannotHoldAreRefused) {
   EXPECT_EQ(quantise(mesh).error().code, ErrorCode::kBadInput);
   mesh = oneCell();
   for (Position& p : mesh.points) p = {p[0] * 1e-310, p[1] * 1e-310, p[2] * 1e-310};
-  EXPECT_FALSE(quantise(mesh));
+  const auto tiny = quantise(mesh);
+  ASSERT_FALSE(tiny);
+  EXPECT_NE(tiny.error().message.find("1e-310 units large"), std::string::npos)
+      << tiny.error().message;
+  for (Position& p : mesh.points) p = {p[0] * 1e300, p[1] * 1e300, p[2] * 1e300};
+  EXPECT_TRUE(quantise(mesh));
+}
+
+TEST(Quantise, valuesBelowTheFinestStepAreNotedWithWhatHelps) {
+  TetMesh mesh = oneCell();
+  mesh.fields = {{"u", 1, "float64", {0, 6e-310, 3e-310, 1e-310}, "point"}};
+  const auto told = quantised(mesh).report.notes;
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NE(told[0].find("span 6e-310"), std::string::npos) << told[0];
+  for (double& value : mesh.fields[0].values) value *= 1e300;
+  const QuantisedMesh larger = quantised(mesh);
+  EXPECT_TRUE(larger.report.notes.empty());
+  EXPECT_EQ(larger.mesh.values[0][1], 4095);
 }
 
 TEST(QuantiseField, vectorsShareAStepAndHaveAMinimumEach) {

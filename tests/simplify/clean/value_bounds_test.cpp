@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -135,6 +136,17 @@ TEST(QuantiseField, aBoundBeyondTheBitsOrTheTypeIsRefusedByNameWithWhatIsPossibl
   const std::string text = within(field, 1e-12).error().message;
   const double told = std::stod(text.substr(text.find("an error of ") + 12));
   EXPECT_TRUE(within(field, told)) << text;
+}
+
+TEST(QuantiseField, theErrorThatIsToldAsPossibleIsPossibleOfTheSmallestDoubles) {
+  for (const double largest : {5e-324, 6e-310, 3e-308, 1e-300}) {
+    const MeshField field = ramp("T", 0, largest);
+    const Result<QuantisedField> out = within(field, 1e-320);
+    ASSERT_FALSE(out) << largest;
+    const std::string& text = out.error().message;
+    const double told = std::strtod(text.c_str() + text.find("an error of ") + 12, nullptr);
+    EXPECT_TRUE(within(field, told)) << text;
+  }
 }
 
 TEST(QuantiseField, aBoundOfWhatIsExactOrConstantHolds) {

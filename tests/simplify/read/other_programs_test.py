@@ -325,9 +325,10 @@ def fluent_meshes_are_read():
     text += "(12 (0 1 6 0 0))\n(12 (2 1 6 1 2))\n(13 (0 1 %x 0 0))\n" % len(faces)
     text += section(3, 2, 1, inner) + section(4, 3, len(inner) + 1, outer)
     text += "(45 (2 fluid fluid)())\n(45 (3 interior inside)())\n(45 (4 wall hull)())\n"
-    for name in ("faces.msh", "faces.cas"):
-        (out / name).write_text(text)
-        is_whole(read(out / name)[0], 1)
+    for mark in ("", "\ufeff"):
+        for name in ("faces.msh", "faces.cas"):
+            (out / name).write_text(mark + text, encoding="utf-8")
+            is_whole(read(out / name)[0], 1)
 
 
 def med_files_with_families_are_read():

@@ -727,14 +727,6 @@ TEST(ReadMedit, otherFormatsOfThatEndingAreKnownByTheirFirstWord) {
   }
 }
 
-TEST(OwnReaders, textInUtf16IsRefused) {
-  for (const std::string mark : {"\xFF\xFE", "\xFE\xFF"}) {
-    const Result<CellMesh> read = cellsIn(fileWith("wide.mesh", mark + meditText("0")));
-    ASSERT_FALSE(read);
-    EXPECT_NE(read.error().message.find("UTF-16"), std::string::npos) << read.error().message;
-  }
-}
-
 TEST(ReadMesh, aPipeIsNotWaitedFor) {
   const fs::path pipe = testing::freshFolder("pipe") / "pipe.inp";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

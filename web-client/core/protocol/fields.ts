@@ -70,6 +70,24 @@ export function largestRoundingError(info: FieldInfo): number {
 }
 
 /**
+ * The width that known errors are parts of (codec/MANIFEST.md, "Known error"): that of the values.
+ * For several components it is the diagonal of the box that the values can have. That is no smaller
+ * than the box that they have.
+ */
+export function widthOfValues({
+  components,
+  instant,
+  minimum,
+  range,
+  step,
+  bits = 0,
+}: FieldInfo): number {
+  const [low, high] = instant?.own.range ?? range;
+  if (components === 1) return high - low;
+  return Math.sqrt(minimum.length) * step * (2 ** bits - 1);
+}
+
+/**
  * The server's key for each field: its name, or `cell:NAME` for the cell field if two fields share
  * a name (proto/PROTOCOL.md).
  */

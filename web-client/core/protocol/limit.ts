@@ -13,17 +13,28 @@ export type Limit =
 export const kFull: Limit = {kind: 'full'};
 
 /**
+ * The known errors of a level. Where it was not measured, those of the last coarser level where it
+ * was. Undefined: the log does not tell.
+ */
+export function errorsOfLevel(
+  levels: readonly LevelInfo[] | undefined,
+  level: number,
+): LevelError | undefined {
+  let error: LevelError | undefined;
+  for (let at = level; at >= 0 && !error; --at) error = levels?.[at]?.error;
+  return error;
+}
+
+/**
  * The known error of a level: the largest of these fields', or the boundary's if there are none.
- * Where it was not measured, that of the last coarser level where it was. Null: the log does not
- * tell.
+ * Null: the log does not tell.
  */
 export function errorOfLevel(
   levels: readonly LevelInfo[] | undefined,
   level: number,
   fields: readonly number[],
 ): number | null {
-  let error: LevelError | undefined;
-  for (let at = level; at >= 0 && !error; --at) error = levels?.[at]?.error;
+  const error = errorsOfLevel(levels, level);
   if (!error) return null;
   if (fields.length === 0) return error.toOriginal.mean;
   return Math.max(...fields.map((field) => error.fields[field]?.mean ?? 0));

@@ -37,13 +37,21 @@ export function formatError(error: number): string {
   return `${percent.toExponential(1).replaceAll('-', '\u2212')}\u202f%`;
 }
 
-/** "T is within 0.05 K at the last level", with two digits, rounded up. */
-export function formatWithin(info: FieldInfo, error: number): string {
+/**
+ * "T is within 0.05 K at the last level", with two digits, rounded up. Before it, the largest error
+ * of the level on the screen, as sampled; 0 where that is the last one, or not known.
+ */
+export function formatWithin(info: FieldInfo, error: number, now = 0): string {
   const name = instantName(info.name)?.series ?? info.name;
-  if (error === 0) return `${name} is exact at the last level`;
-  const digit = 10 ** (Math.floor(Math.log10(error)) - 1);
-  const bound = `${Number((Math.ceil(error / digit) * digit).toPrecision(2))}`;
-  return `${name} is within ${bound}${info.unit ? `\u202f${info.unit}` : ''} at the last level`;
+  const bound = (of: number): string => {
+    const digit = 10 ** (Math.floor(Math.log10(of)) - 1);
+    const rounded = `${Number((Math.ceil(of / digit) * digit).toPrecision(2))}`;
+    return `${rounded}${info.unit ? `\u202f${info.unit}` : ''}`;
+  };
+  const last = error === 0 ? 'exact' : `within ${bound(error)}`;
+  return now === 0
+    ? `${name} is ${last} at the last level`
+    : `${name} is at most ${bound(now)} off now, as sampled, and ${last} at the last level`;
 }
 
 /** "4 s", "2 min", "1.5 h". */

@@ -3,8 +3,8 @@
 
 import type {LevelBytes} from '../../core/decode/plan';
 import type {Statistics} from '../../core/decode/statistics';
-import {largestRoundingError} from '../../core/protocol/fields';
-import {errorOfLevel, type Limit} from '../../core/protocol/limit';
+import {largestRoundingError, widthOfValues} from '../../core/protocol/fields';
+import {errorOfLevel, errorsOfLevel, type Limit} from '../../core/protocol/limit';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {StreamState} from '../../core/session/worker_messages';
 import {untilBeat} from '../page/beat';
@@ -160,8 +160,16 @@ export class ProgressPanel {
 
   private showError(error: string): void {
     const all = this.manifest!.fields;
-    // while another mesh comes, the numbers may be those of the mesh before
-    const shown = this.fields.flatMap((f) => all[f] ?? []);
+    const {levels} = this.manifest!;
+    const level = this.statistics!.level;
+    const measured = level < levels.length - 1 ? errorsOfLevel(levels, level) : undefined;
+    const within = (field: number): string[] => {
+      const info = all[field];
+      // while another mesh comes, the numbers may be those of the mesh before
+      if (!info) return [];
+      const now = (measured?.fields[field]?.max ?? 0) * widthOfValues(info);
+      return [formatWithin(info, largestRoundingError(info), now)];
+    };
     const label = labelName(this.fields, all);
     const left = this.part('.error-left');
     setText(left, label === null ? error : `${error} of the volume`);
@@ -169,7 +177,7 @@ export class ProgressPanel {
       left,
       'title',
       label === null
-        ? shown.map((field) => formatWithin(field, largestRoundingError(field))).join('\n')
+        ? this.fields.flatMap(within).join('\n')
         : `${error} of the volume has another ${label}`,
     );
   }

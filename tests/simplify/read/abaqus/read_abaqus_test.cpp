@@ -13,6 +13,7 @@
 #include "simplify/read/abaqus/placement.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/simplify/read/text_reader.h"
 #include "tests/simplify/split/cell_grids.h"
 
 namespace qtet {
@@ -25,20 +26,8 @@ namespace fs = std::filesystem;
 const std::string kCorners = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n";
 const std::string kTetrahedron = kCorners + "*ELEMENT, TYPE=C3D4, ELSET=E\n1, 1, 2, 3, 4\n";
 
-Result<CellMesh> readText(const std::string& text, ReadReport& report) {
-  return readAbaqus(fileWith("model.inp", text), report);
-}
-Result<CellMesh> readText(const std::string& text) {
-  ReadReport report;
-  return readText(text, report);
-}
-
-/// The message of the error, which there must be.
-std::string refusalOf(const std::string& text) {
-  const Result<CellMesh> read = readText(text);
-  EXPECT_FALSE(read) << text;
-  return read ? "" : read.error().message;
-}
+const testing::TextReader kAbaqus{
+    "model.inp", [](const fs::path& path, ReadReport& report) { return readAbaqus(path, report); }};
 
 double volumeOf(const std::string& text) {
   const Result<ReadMesh> read = readMesh(fileWith("model.inp", text));
@@ -111,7 +100,7 @@ TEST(ReadAbaqus, everyShapeFillsItsVolume) {
 
 /// A wrong order of the nodes on edges would fold the cell.
 TEST(ReadAbaqus, nodesOnEdgesStandWhereVtkHasThem) {
-  const auto read = readText(elementOf("C3D20", withMiddles(kCube, kEdgesOfCube)));
+  const auto read = kAbaqus.read(elementOf("C3D20", withMiddles(kCube, kEdgesOfCube)));
   ASSERT_TRUE(read) << read.error().text();
   ASSERT_EQ(read->cell(0).size(), 20u);
   for (std::size_t e = 0; e < kEdgesOfCube.size(); ++e)
@@ -132,15 +121,16 @@ TEST(ReadAbaqus, keywordsCommentsAndNumbersAreAsFreeAsAbaqusHasThem) {
 TEST(ReadAbaqus, otherElementsAreCountedAndUnknownOnesRefused) {
   ReadReport report;
   const auto read =
-      readText(kTetrahedron +
-                   "*ELEMENT, TYPE=S4R\n2, 1, 2, 3, 4\n*ELEMENT, TYPE=SPRINGA\n3, 1, "
-                   "2\n*ELEMENT, TYPE=CONN3D2\n4, 1, 99\n*ELEMENT, TYPE=T3D2\n5, 1, 2\n",
-               report);
+      kAbaqus.read(kTetrahedron +
+                       "*ELEMENT, TYPE=S4R\n2, 1, 2, 3, 4\n*ELEMENT, TYPE=SPRINGA\n3, 1, "
+                       "2\n*ELEMENT, TYPE=CONN3D2\n4, 1, 99\n*ELEMENT, TYPE=T3D2\n5, 1, 2\n",
+                   report);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->cells(), 1u);
   EXPECT_EQ(report.ignoredCells, 4u);
   for (const char* type : {"U1", "C3D7", "NOVEL8", "C3D8X2", ""}) {
-    const std::string said = refusalOf(kCorners + "*ELEMENT, TYPE=" + type + "\n1, 1, 2, 3, 4\n");
+    const std::string said =
+        kAbaqus.refusalOf(kCorners + "*ELEMENT, TYPE=" + type + "\n1, 1, 2, 3, 4\n");
     EXPECT_NE(said.find("line 6: elements of type " + std::string(type)), std::string::npos)
         << said;
   }
@@ -150,14 +140,15 @@ TEST(ReadAbaqus, lineGasketsAreNoVolumesAndF3D4IsRefused) {
   for (const char* type : {"GK3D4L", "GK3D4LN", "GK3D6L", "GK3D6LN"}) {
     ReadReport report;
     const auto read =
-        readText(kTetrahedron + "*ELEMENT, TYPE=" + type + "\n2, 1, 2, 3, 4\n", report);
+        kAbaqus.read(kTetrahedron + "*ELEMENT, TYPE=" + type + "\n2, 1, 2, 3, 4\n", report);
     ASSERT_TRUE(read) << read.error().text();
     EXPECT_EQ(read->cells(), 1u) << type;
     EXPECT_EQ(report.ignoredCells, 1u) << type;
   }
   EXPECT_NEAR(volumeOf(elementOf("GK3D6N", kPrism)), 0.5, 1e-12);
-  EXPECT_NE(refusalOf(kCorners + "*ELEMENT, TYPE=f3d4\n1, 1, 2, 3, 4\n").find("flat in Abaqus"),
-            std::string::npos);
+  EXPECT_NE(
+      kAbaqus.refusalOf(kCorners + "*ELEMENT, TYPE=f3d4\n1, 1, 2, 3, 4\n").find("flat in Abaqus"),
+      std::string::npos);
 }
 
 TEST(ReadAbaqus, nodesForThePressureInPoresAreLeftOut) {
@@ -167,33 +158,35 @@ TEST(ReadAbaqus, nodesForThePressureInPoresAreLeftOut) {
   EXPECT_NEAR(volumeOf(elementOf("COH3D6P", prism)), 0.5, 1e-12);
   EXPECT_NEAR(volumeOf(elementOf("COH3D8P", cube)), 1, 1e-12);
   EXPECT_NEAR(volumeOf(elementOf("COD3D8P", cube)), 1, 1e-12);
-  EXPECT_NE(refusalOf(elementOf("COH3D8", cube)).find("has 12 nodes"), std::string::npos);
+  EXPECT_NE(kAbaqus.refusalOf(elementOf("COH3D8", cube)).find("has 12 nodes"), std::string::npos);
 }
 
 TEST(ReadAbaqus, whatMakesNodesAndIsNotUnderstoodIsRefusedByName) {
   for (const std::string keyword : {"NFILL", "NCOPY, CHANGE NUMBER=1", "ELCOPY", "N MAP"}) {
-    const std::string said = refusalOf(kTetrahedron + "*" + keyword + "\n1, 2\n"),
+    const std::string said = kAbaqus.refusalOf(kTetrahedron + "*" + keyword + "\n1, 2\n"),
                       name = abaqusName(keyword.substr(0, keyword.find(',')));
     EXPECT_NE(said.find("line 8: *" + name), std::string::npos) << said;
   }
-  EXPECT_NE(refusalOf(kCorners + "*NGEN, LINE=C\n1, 2\n").find("LINE=C"), std::string::npos);
+  EXPECT_NE(kAbaqus.refusalOf(kCorners + "*NGEN, LINE=C\n1, 2\n").find("LINE=C"),
+            std::string::npos);
 }
 
 TEST(ReadAbaqus, numbersThatContradictAreRefusedWithBoth) {
-  EXPECT_NE(
-      refusalOf(kCorners + "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3, 9\n").find("element 5 names node 9"),
-      std::string::npos);
-  EXPECT_TRUE(readText(kTetrahedron + "*NODE\n2, 1, 0, 0\n"));
-  EXPECT_NE(refusalOf(kTetrahedron + "*NODE\n2, 1, 0, 0.5\n").find("line 9: node 2"),
+  EXPECT_NE(kAbaqus.refusalOf(kCorners + "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3, 9\n")
+                .find("element 5 names node 9"),
             std::string::npos);
-  EXPECT_NE(refusalOf(kTetrahedron + "*ELEMENT, TYPE=C3D4\n1, 1, 2, 4, 3\n")
+  EXPECT_TRUE(kAbaqus.read(kTetrahedron + "*NODE\n2, 1, 0, 0\n"));
+  EXPECT_NE(kAbaqus.refusalOf(kTetrahedron + "*NODE\n2, 1, 0, 0.5\n").find("line 9: node 2"),
+            std::string::npos);
+  EXPECT_NE(kAbaqus.refusalOf(kTetrahedron + "*ELEMENT, TYPE=C3D4\n1, 1, 2, 4, 3\n")
                 .find("line 9: element 1 is there already"),
             std::string::npos);
-  EXPECT_NE(
-      refusalOf(kCorners + "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3,\n*STEP\n").find("ends after 3 nodes"),
-      std::string::npos);
-  EXPECT_NE(refusalOf(kCorners + "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3, 4, 1\n").find("has 5 nodes"),
+  EXPECT_NE(kAbaqus.refusalOf(kCorners + "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3,\n*STEP\n")
+                .find("ends after 3 nodes"),
             std::string::npos);
+  EXPECT_NE(
+      kAbaqus.refusalOf(kCorners + "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3, 4, 1\n").find("has 5 nodes"),
+      std::string::npos);
 }
 
 TEST(ReadAbaqus, everyTruncationIsAnErrorOrAMesh) {
@@ -201,7 +194,7 @@ TEST(ReadAbaqus, everyTruncationIsAnErrorOrAMesh) {
                            "*ELSET, ELSET=S, GENERATE\n1, 1, 1\n*END PART\n*ASSEMBLY\n*INSTANCE, "
                            "NAME=I, PART=P\n1, 2, 3\n0, 0, 0, 0, 0, 1, 90\n*END INSTANCE\n";
   for (std::size_t length = 0; length < text.size(); ++length) {
-    const auto read = readText(text.substr(0, length));
+    const auto read = kAbaqus.read(text.substr(0, length));
     if (read) continue;
     EXPECT_FALSE(read.error().message.empty());
   }
@@ -290,7 +283,7 @@ TEST(ReadAbaqus, elementsInAnyOrderAreFoundByNumber) {
 }
 
 TEST(ReadAbaqus, instancesAreMovedAndThenTurned) {
-  const auto read = readText(
+  const auto read = kAbaqus.read(
       "*PART, NAME=P\n" + kTetrahedron +
       "*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=First, PART=p\n*END INSTANCE\n*INSTANCE, "
       "NAME=Second, PART=P\n2., 0., 0.\n0., 0., 0., 0., 0., 1., 90.\n*END INSTANCE\n*INSTANCE, "
@@ -313,13 +306,13 @@ TEST(ReadAbaqus, instancesOfAHugePartAreBounded) {
                      "*NGEN\n1, 2\n*ELGEN\n1, 1000000, 0, 1\n*END PART\n";
   for (int i = 0; i < 200; ++i)
     text += "*INSTANCE, NAME=I" + std::to_string(i) + ", PART=P\n*END INSTANCE\n";
-  const auto read = readText(text);
+  const auto read = kAbaqus.read(text);
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, ErrorCode::kLimitExceeded) << read.error().text();
-  EXPECT_NE(refusalOf(kCorners + "*NODE\n2000000000, 1, 1, 1\n*NGEN\n1, 2000000000, 1\n")
+  EXPECT_NE(kAbaqus.refusalOf(kCorners + "*NODE\n2000000000, 1, 1, 1\n*NGEN\n1, 2000000000, 1\n")
                 .find("too many nodes"),
             std::string::npos);
-  EXPECT_NE(refusalOf(kTetrahedron + "*ELGEN\n1, 2000000000, 0, 1, 2000000000, 0, 1\n")
+  EXPECT_NE(kAbaqus.refusalOf(kTetrahedron + "*ELGEN\n1, 2000000000, 0, 1, 2000000000, 0, 1\n")
                 .find("too many elements"),
             std::string::npos);
 }
@@ -333,10 +326,10 @@ std::string twoBlocks() {
 
 TEST(ReadAbaqus, sectionsGiveMaterialsByName) {
   const auto read =
-      readText(twoBlocks() +
-               "*MATERIAL, NAME=steel\n*ELSET, ELSET=odd, GENERATE\n1, 9, 2\n*ELSET, "
-               "ELSET=alsoOdd\nodd,\n*SOLID SECTION, ELSET=ALSOODD, MATERIAL=Steel\n,\n"
-               "*SOLID SECTION, ELSET=right, MATERIAL=Water\n");
+      kAbaqus.read(twoBlocks() +
+                   "*MATERIAL, NAME=steel\n*ELSET, ELSET=odd, GENERATE\n1, 9, 2\n*ELSET, "
+                   "ELSET=alsoOdd\nodd,\n*SOLID SECTION, ELSET=ALSOODD, MATERIAL=Steel\n,\n"
+                   "*SOLID SECTION, ELSET=right, MATERIAL=Water\n");
   ASSERT_TRUE(read) << read.error().text();
   const MeshField *material = fieldOf(*read, "Material"), *set = fieldOf(*read, "ElementSet");
   ASSERT_TRUE(material && set);
@@ -348,7 +341,7 @@ TEST(ReadAbaqus, sectionsGiveMaterialsByName) {
 
 TEST(ReadAbaqus, fieldsThatAreTheSameEverywhereAreLeftOut) {
   const auto read =
-      readText(kTetrahedron + "*SOLID SECTION, ELSET=E, MATERIAL=Steel\n*ELSET, ELSET=F\n1\n");
+      kAbaqus.read(kTetrahedron + "*SOLID SECTION, ELSET=E, MATERIAL=Steel\n*ELSET, ELSET=F\n1\n");
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_TRUE(read->fields.empty());
 }
@@ -361,7 +354,7 @@ TEST(ReadAbaqus, setsOfTheAssemblyNameInstances) {
   for (const char* set :
        {"*ELSET, ELSET=S, INSTANCE=P-2\n1\n", "*ELSET, ELSET=S\nP-2.1\n",
         "*ELSET, ELSET=S, INSTANCE=P-2\nE\n", "*ELSET, ELSET=S\nP-2.E, P-2.1\n"}) {
-    const auto read = readText(instances + set + "*END ASSEMBLY\n");
+    const auto read = kAbaqus.read(instances + set + "*END ASSEMBLY\n");
     ASSERT_TRUE(read) << read.error().text();
     const MeshField* field = fieldOf(*read, "ElementSet");
     ASSERT_TRUE(field) << set;
@@ -378,7 +371,7 @@ TEST(ReadAbaqus, namesInQuotesHaveBlanksCommasAndDots) {
        {"*ELSET, ELSET=S, INSTANCE=\"P, 2\"\n1\n", "*ELSET, ELSET=S, INSTANCE='P, 2'\n\"Set 1\"\n",
         "*ELSET, ELSET=S\nnone, \"P, 2\".\"Set 1\", \"no, ne\"\n",
         "*ELSET, ELSET=S\n\"P, 2.Set 1\"\n", "*ELSET, ELSET=S\n\"P, 2\".1, o'ne\n"}) {
-    const auto read = readText(instances + set + "*END ASSEMBLY\n");
+    const auto read = kAbaqus.read(instances + set + "*END ASSEMBLY\n");
     ASSERT_TRUE(read) << read.error().text();
     const MeshField* field = fieldOf(*read, "ElementSet");
     ASSERT_TRUE(field) << set;
@@ -389,7 +382,7 @@ TEST(ReadAbaqus, namesInQuotesHaveBlanksCommasAndDots) {
 
 TEST(ReadAbaqus, setsThatNameEachOtherEnd) {
   const auto read =
-      readText(twoBlocks() + "*ELSET, ELSET=a\nb, 1\n*ELSET, ELSET=b\na, a, nothing\n");
+      kAbaqus.read(twoBlocks() + "*ELSET, ELSET=a\nb, 1\n*ELSET, ELSET=b\na, a, nothing\n");
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_TRUE(fieldOf(*read, "ElementSet"));
 }
@@ -411,24 +404,25 @@ TEST(ReadAbaqus, incrementsThatAreLeftOutAreOne) {
   const std::string points = kCorners + "5, 1, 1, 1\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n";
   for (const char* line :
        {"1, 2", "1, 2,,", "1, 2, , 1", "1, , , , 2, ,\n", "1, 2, 1, 1, 1, , ,"}) {
-    const auto read = readText(points + "*ELGEN\n" + line + "\n");
+    const auto read = kAbaqus.read(points + "*ELGEN\n" + line + "\n");
     ASSERT_TRUE(read) << line << read.error().text();
     ASSERT_EQ(read->cells(), 2u) << line;
     EXPECT_TRUE(std::ranges::equal(read->cell(1), std::array{1, 2, 3, 4})) << line;
   }
-  EXPECT_NE(refusalOf(points + "*ELGEN\n1, 2, 1, 0\n").find("element 1 is there already"),
+  EXPECT_NE(kAbaqus.refusalOf(points + "*ELGEN\n1, 2, 1, 0\n").find("element 1 is there already"),
             std::string::npos);
 }
 
 TEST(ReadAbaqus, anIncrementThatPassesTheLastNodeIsRefused) {
   const std::string ends = kTetrahedron + "*NODE\n10, 0, 0, 0\n20, 1, 0, 0\n*NGEN\n";
-  EXPECT_TRUE(readText(ends + "10, 20, 5\n20, 10, 5\n10, 10, 3\n"));
+  EXPECT_TRUE(kAbaqus.read(ends + "10, 20, 5\n20, 10, 5\n10, 10, 3\n"));
   for (const char* line : {"10, 20, 3", "20, 10, 11"})
-    EXPECT_NE(refusalOf(ends + line + "\n").find("line 12: *NGEN from node"), std::string::npos);
+    EXPECT_NE(kAbaqus.refusalOf(ends + line + "\n").find("line 12: *NGEN from node"),
+              std::string::npos);
 }
 
 TEST(ReadAbaqus, cylindersAndLocalSystemsPlaceNodes) {
-  const auto read = readText(
+  const auto read = kAbaqus.read(
       "*NODE, SYSTEM=C\n1, 2, 90, 3\n*NODE, SYSTEM=S\n2, 2, 90, 0\n3, 2, 0, 90\n*SYSTEM\n1, 0, 0, "
       "1, "
       "5, 9\n*NODE\n4, 1, 0, 0\n*SYSTEM\n0, 0, 0, 0, 0, 1\n0, 1, 0\n*NODE\n5, 1, 2, 3\n*SYSTEM\n"
@@ -437,8 +431,8 @@ TEST(ReadAbaqus, cylindersAndLocalSystemsPlaceNodes) {
   const std::vector<Position> wanted{{0, 2, 3}, {0, 2, 0},  {0, 0, 2},
                                      {1, 1, 0}, {-3, 2, 1}, {1, 2, 3}};
   EXPECT_EQ(read->points, wanted);
-  EXPECT_NE(refusalOf("*SYSTEM\n0, 0, 0, 0, 0, 0\n").find("no axes"), std::string::npos);
-  EXPECT_NE(refusalOf("*NODE, SYSTEM=Q\n1, 0\n").find("SYSTEM=Q"), std::string::npos);
+  EXPECT_NE(kAbaqus.refusalOf("*SYSTEM\n0, 0, 0, 0, 0, 0\n").find("no axes"), std::string::npos);
+  EXPECT_NE(kAbaqus.refusalOf("*NODE, SYSTEM=Q\n1, 0\n").find("SYSTEM=Q"), std::string::npos);
 }
 
 TEST(ReadAbaqus, aTurnIsTheSineAndCosineOfDegrees) {

@@ -55,7 +55,7 @@ TEST(FieldFiles, valuesHaveARoomThatFewBytesCannotPass) {
 TEST(FieldFiles, anEmptyFileIsLeftOutWithANote) {
   const fs::path folder = testing::freshFolder("empty-field");
   writeFoamField(folder / "T", "volScalarField", "uniform 1");
-  std::ofstream(folder / "p");
+  const std::ofstream empty(folder / "p");
   const Result<CellMesh> mesh = withFields(folder);
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_EQ(namesIn(*mesh), Names{"cell:T:1"});

@@ -9,39 +9,29 @@
 #include "simplify/read/nastran/coordinate_systems.h"
 #include "simplify/read/read_mesh.h"
 #include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/simplify/read/text_reader.h"
 
 namespace qtet {
 namespace {
 
-using testing::fileWith;
 namespace fs = std::filesystem;
 
 const std::string kCorners =
     "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nGRID,4,,0.,0.,1.\n";
 const std::string kTetrahedron = kCorners + "CTETRA,1,1,1,2,3,4\n";
 
-Result<CellMesh> readText(const std::string& text, ReadReport& report) {
-  return readNastran(fileWith("model.bdf", text), report);
-}
-Result<CellMesh> readText(const std::string& text) {
-  ReadReport report;
-  return readText(text, report);
-}
-
-std::string refusalOf(const std::string& text) {
-  const Result<CellMesh> read = readText(text);
-  EXPECT_FALSE(read) << text;
-  return read ? "" : read.error().message;
-}
+const testing::TextReader kNastran{"model.bdf", [](const fs::path& path, ReadReport& report) {
+                                     return readNastran(path, report);
+                                   }};
 
 void expectRefused(const std::string& text, const std::string& said) {
-  const std::string message = refusalOf(text);
+  const std::string message = kNastran.refusalOf(text);
   EXPECT_NE(message.find(said), std::string::npos) << message;
 }
 
 /// The mesh's points as its four corners should be.
 void expectCorners(const std::string& text) {
-  const Result<CellMesh> read = readText(text);
+  const Result<CellMesh> read = kNastran.read(text);
   ASSERT_TRUE(read) << text << read.error().message;
   EXPECT_EQ(read->points, (std::vector<Position>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}))
       << text;
@@ -82,7 +72,7 @@ TEST(ReadNastran, exponentsMayHaveNoLetter) {
 
 TEST(ReadNastran, anExponentMayStandBehindItsField) {
   const auto place = [](const std::string& line) {
-    const Result<CellMesh> read = readText(line + "\n");
+    const Result<CellMesh> read = kNastran.read(line + "\n");
     return read ? read->points.front() : Position{-1, -1, -1};
   };
   //                 name    number  system  x       y       z
@@ -106,7 +96,7 @@ TEST(ReadNastran, hexahedraGoOnOverLinesWithoutAMark) {
         "CHEXA          1       1       1       2       3       4       5       6+H1\n"
         "+H1            7       8\n",
         "CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n", "CHEXA,1,1,1,2,3,4,5,6\n,7,8\n"}) {
-    const Result<CellMesh> read = readText(cube + element);
+    const Result<CellMesh> read = kNastran.read(cube + element);
     ASSERT_TRUE(read) << element << read.error().message;
     EXPECT_EQ(read->types, std::vector<std::uint8_t>{kHexahedronCell});
     EXPECT_EQ(read->vertices, (std::vector<VertexId>{0, 1, 2, 3, 4, 5, 6, 7}));
@@ -118,16 +108,16 @@ TEST(ReadNastran, nodesOnUprightEdgesComeLast) {
   for (int i = 1; i <= 20; ++i)
     text += "GRID," + std::to_string(i) + ",," + std::to_string(i) + ".,0.,0.\n";
   const auto hex =
-      readText(text + "CHEXA,1,1,1,2,3,4,5,6\n,7,8,9,10,11,12,13,14\n,15,16,17,18,19,20\n");
+      kNastran.read(text + "CHEXA,1,1,1,2,3,4,5,6\n,7,8,9,10,11,12,13,14\n,15,16,17,18,19,20\n");
   ASSERT_TRUE(hex) << hex.error().message;
   EXPECT_EQ(hex->types, std::vector<std::uint8_t>{kQuadraticHexahedronCell});
   EXPECT_EQ(hex->vertices, (std::vector<VertexId>{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,
                                                   10, 11, 16, 17, 18, 19, 12, 13, 14, 15}));
-  const auto wedge = readText(text + "CPENTA,1,1,1,2,3,4,5,6\n,7,8,9,10,11,12,13,14\n,15\n");
+  const auto wedge = kNastran.read(text + "CPENTA,1,1,1,2,3,4,5,6\n,7,8,9,10,11,12,13,14\n,15\n");
   ASSERT_TRUE(wedge) << wedge.error().message;
   EXPECT_EQ(wedge->vertices,
             (std::vector<VertexId>{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11}));
-  const auto pyramid = readText(text + "CPYRAM,1,1,1,2,3,4,5,CORDM\n");
+  const auto pyramid = kNastran.read(text + "CPYRAM,1,1,1,2,3,4,5,CORDM\n");
   ASSERT_TRUE(pyramid) << pyramid.error().message;
   EXPECT_EQ(pyramid->types, std::vector<std::uint8_t>{kPyramidCell});
   expectRefused(text + "CTETRA,5,1,1,2,3,4,5,6\n", "CTETRA 5 has nodes on 2 of its 6 edges");
@@ -135,7 +125,7 @@ TEST(ReadNastran, nodesOnUprightEdgesComeLast) {
 }
 
 Position placeOf(const std::string& cards) {
-  const Result<CellMesh> read = readText(cards);
+  const Result<CellMesh> read = kNastran.read(cards);
   EXPECT_TRUE(read) << read.error().message;
   return read ? read->points.back() : Position{};
 }
@@ -178,18 +168,18 @@ TEST(ReadNastran, systemsThatSayNoPlaceAreRefused) {
               ",0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n";
     return text + "GRID,1," + std::to_string(systems) + ",1.,2.,3.\n";
   };
-  EXPECT_TRUE(readText(chain(PlacedGrids::kMaxDepth - 1)));
-  EXPECT_TRUE(readText(chain(PlacedGrids::kMaxDepth)));
+  EXPECT_TRUE(kNastran.read(chain(PlacedGrids::kMaxDepth - 1)));
+  EXPECT_TRUE(kNastran.read(chain(PlacedGrids::kMaxDepth)));
   expectRefused(chain(PlacedGrids::kMaxDepth + 1), "more than 64 deep");
 }
 
 TEST(ReadNastran, otherElementsAreCountedAndOtherVolumesRefused) {
   ReadReport report;
   const auto read =
-      readText(kTetrahedron +
-                   "PSOLID,1,1\nCQUAD4,7,1,1,2,3,4\nCBAR,8,1,1,2\nRBE2,9,1,123,2,3,4\n"
-                   "FORCE,1,1,,1.\nMAT1,1,2.1+5,,.3\n",
-               report);
+      kNastran.read(kTetrahedron +
+                        "PSOLID,1,1\nCQUAD4,7,1,1,2,3,4\nCBAR,8,1,1,2\nRBE2,9,1,123,2,3,4\n"
+                        "FORCE,1,1,,1.\nMAT1,1,2.1+5,,.3\n",
+                    report);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(report.ignoredCells, 3u);
   EXPECT_TRUE(read->fields.empty());
@@ -200,7 +190,7 @@ TEST(ReadNastran, otherElementsAreCountedAndOtherVolumesRefused) {
 
 TEST(ReadNastran, propertiesAreALabel) {
   const auto read =
-      readText(kCorners + "GRID,5,,1.,1.,1.\nCTETRA,1,3,1,2,3,4\nCTETRA,2,9,2,3,4,5\n");
+      kNastran.read(kCorners + "GRID,5,,1.,1.,1.\nCTETRA,1,3,1,2,3,4\nCTETRA,2,9,2,3,4,5\n");
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->fields.size(), 1u);
   EXPECT_EQ(read->fields[0].name, "nastran:ref");
@@ -262,7 +252,7 @@ TEST(ReadNastran, includedFilesAreRead) {
 TEST(ReadNastran, anyTruncationIsAnErrorOrAMesh) {
   const std::string whole = "CORD2C,7,0,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n" + kTetrahedron;
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    const auto read = readText(whole.substr(0, length));
+    const auto read = kNastran.read(whole.substr(0, length));
     if (read) {
       for (const VertexId v : read->vertices) EXPECT_LT(v, read->points.size());
     } else {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "codec/files/vtu_writer.h"
 #include "simplify/clean/clean_mesh.h"
+#include "simplify/log/write_mesh.h"
 #include "simplify/read/check_mesh.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/samples/samples.h"

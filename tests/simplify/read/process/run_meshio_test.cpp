@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "tests/support/meshes.h"
 
@@ -55,6 +56,18 @@ TEST(RunMeshio, aProgramThatWritesOnIsWaitedFor) {
   const Status done = throughMeshio({.path = "beam.med", .kind = "", .patience = 2s}, neverUsed);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("last words"), std::string::npos) << done.error().message;
+}
+
+TEST(RunMeshio, aByteOrderMarkIsTakenOffTheTextButNotOffXdmf) {
+  const FakePython python("head -c 6 \"$3\"; exit 1");
+  const fs::path file = testing::freshFolder("marked") / "mesh.off";
+  std::ofstream(file) << "\xEF\xBB\xBFOFF 4 4\n";
+  for (const auto& [kind, begins] : {std::pair("", ": OFF 4 "), {"xdmf", ": \xEF\xBB\xBFOFF"}}) {
+    const Status done = throughMeshio({.path = file, .kind = kind}, neverUsed);
+    ASSERT_FALSE(done);
+    EXPECT_NE(done.error().message.find(begins), std::string::npos) << done.error().message;
+    EXPECT_TRUE(done.error().message.starts_with(file.string())) << done.error().message;
+  }
 }
 
 TEST(RunMeshio, aProgramThatTheSystemEndsIsTold) {

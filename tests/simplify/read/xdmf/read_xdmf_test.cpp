@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/simplify/mesh/tet_meshes.h"
 
 namespace qtet {
@@ -135,6 +137,16 @@ TEST(ReadXdmf, aHyperslabIsAPartOfAnArray) {
   expectRefused(slab("0 0 1 1 1 4", "4 4"), "other Dimensions than numbers");
   expectRefused(slab("0 0 1 1 1 4", "12"), "three for each of the 1 Dimensions");
   expectRefused(slab("0 -1 1 1 1 4", "3 4"), "hyperslab");
+}
+
+TEST(ReadXdmf, aNumberThatNoDoubleHoldsIsZeroOrMissing) {
+  const CellMesh mesh = meshOf(tetrahedron(
+      kIds, kXyz,
+      "<Attribute Name='u'><DataItem Dimensions='4'>1e-400 6e-310 1e400 +1.5D0</DataItem>"
+      "</Attribute>"));
+  ASSERT_EQ(mesh.fields.size(), 1u);
+  EXPECT_EQ(mesh.fields[0].values,
+            (std::vector<double>{0, 6e-310, std::numeric_limits<double>::infinity(), 1.5}));
 }
 
 TEST(ReadXdmf, whatIsNotReadIsNamed) {
