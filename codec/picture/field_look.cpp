@@ -11,9 +11,9 @@ namespace {
 
 /// Without a field, and where a value is missing.
 constexpr Colour kPlain = {0.72, 0.74, 0.78};
-/// The shares of the values below and above the middle ones. If these take less than kMinMiddle of
-/// the range, the colours span them alone.
-constexpr double kTail = 0.02, kMinMiddle = 0.4;
+/// The shares of the volume with values below and above the middle ones. If these take less than
+/// kMinMiddle of the range, the colours span them alone, as in web-client/core/picture/spread.ts.
+constexpr double kTail = 0.02, kMinMiddle = 0.7;
 /// So many whole numbers count as labels without a word of the log.
 constexpr double kMaxLabels = 20;
 /// So many labels have a colour of their own: those of kLabels, then darker ones.
@@ -43,6 +43,21 @@ Colour labelColour(std::int64_t label) {
   return out;
 }
 
+/// Six times the volume.
+double volumeOf(const LatticeMesh& mesh, std::size_t cell) {
+  const auto& corners = mesh.tetrahedra[cell];
+  const auto side = [&](std::size_t corner, std::size_t axis) {
+    return static_cast<double>(mesh.points[corners[corner]][axis]) -
+           static_cast<double>(mesh.points[corners[0]][axis]);
+  };
+  double volume = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t next = (axis + 1) % 3, last = (axis + 2) % 3;
+    volume += side(1, axis) * (side(2, next) * side(3, last) - side(2, last) * side(3, next));
+  }
+  return std::abs(volume);
+}
+
 }  // namespace
 
 FieldLook::FieldLook(const LatticeMesh& mesh, std::size_t field, bool isLabel) {
@@ -70,20 +85,28 @@ double FieldLook::at(std::size_t index) const {
 }
 
 std::array<double, 2> FieldLook::automaticRange(const LatticeMesh& mesh) const {
-  std::vector<bool> occurs(values_->size() / field_->components);
+  std::vector<double> volumes(values_->size() / field_->components);
   for (std::size_t cell = 0; cell < mesh.tetrahedra.size(); ++cell) {
-    if (ofCells()) occurs[cell] = true;
+    const double volume = volumeOf(mesh, cell);
+    if (ofCells()) volumes[cell] = volume;
     if (ofCells()) continue;
-    for (const VertexId v : mesh.tetrahedra[cell]) occurs[v] = true;
+    for (const VertexId v : mesh.tetrahedra[cell]) volumes[v] += volume / 4;
   }
-  std::vector<double> values;
-  for (std::size_t i = 0; i < occurs.size(); ++i)
-    if (occurs[i] && !std::isnan(at(i))) values.push_back(at(i));
+  /// Value and volume.
+  std::vector<std::array<double, 2>> values;
+  double total = 0;
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    if (volumes[i] == 0 || std::isnan(at(i))) continue;
+    values.push_back({at(i), volumes[i]});
+    total += volumes[i];
+  }
   if (values.empty()) return {0, 1};
   std::ranges::sort(values);
   const auto quantile = [&](double share) {
-    return values[static_cast<std::size_t>(
-        std::floor(share * static_cast<double>(values.size() - 1) + 0.5))];
+    double rest = share * total;
+    std::size_t i = 0;
+    while (i + 1 < values.size() && values[i][1] <= rest) rest -= values[i++][1];
+    return values[i][0];
   };
   const double low = quantile(kTail), high = quantile(1 - kTail);
   if (low < high && high - low < kMinMiddle) return {low, high};

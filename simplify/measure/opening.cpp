@@ -23,7 +23,7 @@ constexpr double kUniform = 16;
 constexpr double kBetter = 1.5;
 /// Instants that are looked at: the two ends and others at equal distances.
 constexpr std::size_t kLookedAt = 8;
-/// As web-client/core/picture/spread.ts: the tails of the values, and when they hide the others.
+/// The tails of the values, and when they hide the others.
 constexpr double kTail = 0.02, kMinMiddle = 0.4;
 /// The values' span has so many bins when the tails are looked for.
 constexpr std::size_t kBins = 1 << 12;

@@ -15,8 +15,9 @@ namespace qtet {
 ///
 /// The number of colours is 1 / sum of p^2 (inverse Simpson index), where p is the share of
 /// the area that has one of 256 colours. The colours span the values. If the middle 96 % of them
-/// take less than 0.4 of that, they span these, as the viewer's automatic range does. The colours
-/// of an instant span the values of its whole series. Nothing but + - * / and sqrt decides.
+/// take less than 0.4 of that, they span these. The viewer's automatic range counts volumes, and
+/// cuts earlier. The colours of an instant span the values of its whole series. Nothing but
+/// + - * / and sqrt decides.
 [[nodiscard]] std::optional<Opening> openingOf(const LatticeMesh& mesh,
                                                const std::optional<Focus>& focus = std::nullopt);
 

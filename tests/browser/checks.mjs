@@ -259,6 +259,7 @@ async function showsIsosurfacesAndThresholds({server, browser}) {
   );
   assert.equal(new URL(page.url()).searchParams.get('iso'), 'Pressure=1,2.5');
   await page.locator('qtet-viewer select[name=field]').selectOption('Pressure');
+  await page.evaluate(() => window.qtetViewer.setAttribute('range', 'full'));
   await viewer.waitForState('complete');
   await viewer.settle();
   const marks = page.locator('qtet-viewer .legend-bar i');

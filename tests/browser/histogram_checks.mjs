@@ -18,7 +18,7 @@ const handle = (viewer, which) =>
 const rangeOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.getAttribute('range'));
 
 async function setsTheRangeByItsHandles(context) {
-  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none');
+  const viewer = await opened(context, 'mesh=fin&field=Pressure&clip=none&range=full');
   const {page} = viewer;
   const low = handle(viewer, 'first');
   await low.waitFor();

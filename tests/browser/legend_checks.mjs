@@ -352,7 +352,32 @@ async function listsLabels(context) {
   assert.deepEqual(viewer.problems, []);
 }
 
+/** A few high values would take the colours of all others. */
+async function opensTheEndsOfACutRange(context) {
+  const {server, browser} = context;
+  const values = {Even: (x) => x, Skewed: (x, y, z) => ((x * y * z) / 6) ** 16};
+  await serveMesh(context, 'skewed', linearBox(3, values));
+  const viewer = await browser.open(`${server.url}?mesh=skewed&field=Skewed`, kSmallDesktop);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  const {page} = viewer;
+  const ends = () =>
+    page.locator('qtet-viewer .legend-bar').evaluate((bar) => [...bar.classList].slice(1));
+  assert.deepEqual(await ends(), ['open-above']);
+  assert.match(await viewer.text('.legend-note'), /^Middle 96\u202f% by volume; arrows/);
+  await viewer.screenshot('legend-open');
+  await page.evaluate(() => window.qtetViewer.setAttribute('range', 'full'));
+  await viewer.settle();
+  assert.deepEqual(await ends(), []);
+  await page.evaluate(() => window.qtetViewer.removeAttribute('range'));
+  await page.evaluate(() => window.qtetViewer.setAttribute('field', 'Even'));
+  await viewer.settle();
+  assert.deepEqual(await ends(), []);
+  assert.deepEqual(viewer.problems, []);
+}
+
 export const legendChecks = {
+  opensTheEndsOfACutRange,
   listsLabels,
   coloursBothSidesOfZero,
   movesAndCentresByKeys,

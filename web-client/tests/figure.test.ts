@@ -23,6 +23,7 @@ const kLegend: LegendTexts = {
   factor: '',
   gradient: '',
   ticks: [],
+  openEnds: [false, false],
   marks: [],
   labels: [],
   notes: [],

@@ -30,14 +30,38 @@ const scaleOf = (value: (vertex: number) => number): FieldScale =>
   );
 
 describe('the middle of the values', () => {
-  test('leavesTwoPerCentOutAtEachEnd', () => {
-    // of 101 values two lie below the 2nd percentile, and two above the 98th
-    const cells = Uint32Array.from({length: 4 * 26}, (_, corner) => corner % 101);
-    const middle = middleOf(
-      scaleOf((v) => (v < 2 ? v : v > 98 ? 900 + v : 400 + v)),
-      cells,
+  const near = (value: number): unknown => expect.closeTo(value, 6) as unknown;
+
+  test('leavesTwoPerCentOfTheVolumeOutAtEachEnd', () => {
+    // 100 cells alike, of which two have low values and two high ones
+    const cells = Uint32Array.from({length: 4 * 100}, (_, corner) => tetrahedra[corner % 4]!);
+    const values = Int32Array.from({length: 100}, (_, cell) =>
+      cell < 2 ? cell : cell > 97 ? 900 + cell : 400 + cell,
     );
-    expect(middle).toEqual([0.402, 0.498]);
+    const ofCells = new FieldScale(values, {...field, association: 'cell'});
+    expect(middleOf(ofCells, {points, tetrahedra: cells})).toEqual([near(0.402), near(0.998)]);
+  });
+
+  test('countsValuesByTheirVolumeAndNotByTheirVertices', () => {
+    // 60 small cells beside a large one: most vertices have a hundredth of the volume
+    const corners = [0, 0, 0, 60, 0, 0, 0, 60, 0, 0, 0, 60];
+    const small = [100, 0, 0, 103, 0, 0, 100, 3, 0, 100, 0, 3];
+    const places = Int32Array.from([...corners, ...Array<number[]>(60).fill(small).flat()]);
+    const cells = Uint32Array.from({length: places.length / 3}, (_, vertex) => vertex);
+    const values = Int32Array.from(cells, (vertex) => (vertex < 4 ? 100 + vertex : 900));
+    const scale = new FieldScale(values, field);
+    const middle = middleOf(scale, {points: places, tetrahedra: cells});
+    expect(middle).toEqual([near(0.1), near(0.103)]);
+    const none = {points: places, tetrahedra: new Uint32Array(0)};
+    expect(middleOf(scale, none)).toEqual([0, 1]);
+  });
+
+  test('isOneValueWhereNearlyAllOfTheVolumeHasIt', () => {
+    const [from, to] = middleOf(
+      scaleOf((v) => (v === 0 ? 1000 : 0)),
+      {points, tetrahedra},
+    );
+    expect(from).toBe(to);
   });
 });
 

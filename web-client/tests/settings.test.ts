@@ -235,9 +235,15 @@ describe('an automatic range', () => {
   ): ReturnType<typeof shownRange> =>
     shownRange({...readSettings(() => null), ...settings}, [0, 100], middle);
   test('leavesTheTailsOutIfTheyWouldHideTheRest', () => {
-    expect(auto([10, 20])).toMatchObject({low: 10, high: 20, isMiddle: true});
-    expect(auto([10, 60])).toMatchObject({low: 0, high: 100});
+    expect(auto([10, 20])).toMatchObject({low: 10, high: 20, openEnds: [true, true]});
+    expect(auto([10, 79])).toMatchObject({low: 10, high: 79, openEnds: [true, true]});
+    expect(auto([10, 80])).toMatchObject({low: 0, high: 100});
     expect(auto([5, 5])).toMatchObject({low: 0, high: 100});
+  });
+  test('isOpenWhereValuesLieBeyond', () => {
+    expect(auto([0.09, 50])).toMatchObject({low: 0, high: 50, openEnds: [false, true]});
+    expect(auto([50, 99.91])).toMatchObject({low: 50, high: 100, openEnds: [true, false]});
+    expect(auto([10, 80]).openEnds).toBeUndefined();
   });
   test('isWholeIfThatIsAskedFor', () => {
     expect(auto([10, 20], {range: 'full'})).toMatchObject({low: 0, high: 100});

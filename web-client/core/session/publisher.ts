@@ -298,7 +298,7 @@ export class Publisher {
       middle:
         ofSeries ??
         (scale && !info?.instant
-          ? keptOf(this.middles, display, () => middleOf(scale, mesh.tetrahedra))
+          ? keptOf(this.middles, display, () => middleOf(scale, mesh))
           : [0, 1]),
       ...(volume && scale
         ? {amounts: keptOf(this.amounts, display, () => amountsOf(scale, mesh))}

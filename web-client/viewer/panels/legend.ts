@@ -66,6 +66,7 @@ export class Legend {
     this.part('.legend-bar').style.background = range.labels
       ? labelGradient(range.labels, reversed)
       : colorGradient(map, reversed, 33);
+    this.openEnds(range, settings);
     this.part('.legend-bar').replaceChildren(
       ...marked
         .map((value) => placeOn(range, value))
@@ -75,6 +76,17 @@ export class Legend {
     this.part('.legend-ticks').replaceChildren(
       ...ticks.map(({at, label}) => placed('span', at, label)),
     );
+  }
+
+  /** An arrow beyond each end that is open, in the colour of the values there. */
+  private openEnds(range: ShownRange, settings: Settings): void {
+    const bar = this.part('.legend-bar');
+    const colorOf = colorsOf(range, settings);
+    [range.low, range.high].forEach((end, i) => {
+      const color = range.openEnds?.[i] ? colorOf(end) : '';
+      bar.style.setProperty(i === 0 ? '--below' : '--above', color);
+      bar.classList.toggle(i === 0 ? 'open-below' : 'open-above', color !== '');
+    });
   }
 
   private list(
@@ -142,9 +154,9 @@ function ticksOf({labels, logarithmic, low, high}: ShownRange): Ticks {
 
 /** A note on values that the colours do not tell apart. */
 function noteOf(range: ShownRange): string {
-  const {hides, isMiddle, low} = range;
+  const {hides, openEnds, low} = range;
   const linear = linearPart(range);
-  if (isMiddle) return '2nd to 98th percentile; a few values lie outside';
+  if (openEnds) return 'Middle 96\u202f% by volume; arrows: values beyond';
   if (hides === 'all') return 'No values above 0: the scale is linear';
   if (linear > 0) return `Linear from ${formatValue(-linear)} to ${formatValue(linear)}`;
   return hides === 'low' ? `Values below ${formatValue(low)} have the first colour` : '';

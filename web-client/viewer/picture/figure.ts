@@ -15,6 +15,8 @@ const kSmallText = 12.5;
 const kLine = 1.4;
 const kBarWidth = 380;
 const kBarHeight = 12;
+/** Between the bar and the arrow that says that values lie beyond. */
+const kArrowGap = 2;
 const kAxis = 34;
 /** Texts leave at least this share of the height to the mesh. */
 const kMinFree = 0.4;
@@ -51,6 +53,8 @@ export interface LegendTexts {
   /** A CSS gradient. */
   gradient: string;
   ticks: {at: number; label: string}[];
+  /** Values lie beyond the first, and the last end. */
+  openEnds: [boolean, boolean];
   marks: number[];
   /** They are listed instead of a bar; none: the bar is drawn. */
   labels: LabelText[];
@@ -76,6 +80,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   if (legend.hidden) return null;
   const part = (name: string): HTMLElement => legend.querySelector<HTMLElement>(`.legend-${name}`)!;
   const text = (name: string): string => (part(name).hidden ? '' : part(name).textContent);
+  const isOpen = (end: string): boolean => part('bar').classList.contains(`open-${end}`);
   const at = (its: HTMLElement): number => parseFloat(its.style.left) / 100;
   const time = legend.querySelector<HTMLElement>('.time')!;
   const notes = [
@@ -93,6 +98,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
       at: at(its as HTMLElement),
       label: its.textContent,
     })),
+    openEnds: [isOpen('below'), isOpen('above')],
     marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
     labels: part('labels').hidden ? [] : [...part('labels').children].flatMap(labelOf),
     notes: notes.filter(Boolean),
@@ -277,8 +283,11 @@ function drawBar(pen: Pen, legend: LegendTexts, {left, top, width}: Place): numb
   for (const stop of stopsOf(legend.gradient)) gradient.addColorStop(...stop);
   context.fillStyle = gradient;
   context.beginPath();
-  context.roundRect(left, top, width, kBarHeight, kBarHeight / 2);
+  const [below, above] = legend.openEnds.map((isOpen) => (isOpen ? 0 : kBarHeight / 2));
+  context.roundRect(left, top, width, kBarHeight, [below!, above!, above!, below!]);
   context.fill();
+  if (legend.openEnds[0]) drawArrow(context, left - kArrowGap, top, -kBarHeight);
+  if (legend.openEnds[1]) drawArrow(context, left + width + kArrowGap, top, kBarHeight);
   for (const at of legend.marks) drawMark(context, left + at * width, top);
   const y = top + kBarHeight;
   for (const {at, label} of legend.ticks) {
@@ -288,6 +297,20 @@ function drawBar(pen: Pen, legend: LegendTexts, {left, top, width}: Place): numb
     pen.write(label, kSmallText, x, y + 6 + kSmallText, {align: 'center', soft: true});
   }
   return y + 6 + kSmallText;
+}
+
+/** Values lie beyond this end. It has the gradient's colour there. */
+function drawArrow(
+  context: OffscreenCanvasRenderingContext2D,
+  x: number,
+  top: number,
+  long: number,
+): void {
+  context.beginPath();
+  context.moveTo(x, top);
+  context.lineTo(x + long, top + kBarHeight / 2);
+  context.lineTo(x, top + kBarHeight);
+  context.fill();
 }
 
 /** The value of an isosurface or the end of a threshold. */

@@ -149,15 +149,28 @@ export interface ShownRange {
   hides: 'none' | 'low' | 'all';
   /** Whole numbers from low + 0.5 on, each with a colour of its own. */
   labels?: number;
-  /** A few values lie outside. */
-  isMiddle?: boolean;
+  /** Few values lie outside. The first and the last end are open if some lie beyond them. */
+  openEnds?: [boolean, boolean];
   /** Some values are missing: the legend explains their colour. */
   hasMissing: boolean;
 }
 
+/** An end of the colours that is nearer to that of all values becomes it: half of a colour. */
+const kAtEnd = 1 / 512;
+
+function middleRange(
+  extent: [number, number],
+  middle: [number, number],
+): Omit<ShownRange, 'hasMissing'> {
+  const least = kAtEnd * (middle[1] - middle[0]);
+  const openEnds = [middle[0] - extent[0] > least, extent[1] - middle[1] > least] as const;
+  const [low, high] = openEnds.map((isOpen, end) => (isOpen ? middle : extent)[end]!);
+  return {low: low!, high: high!, logarithmic: false, hides: 'none', openEnds: [...openEnds]};
+}
+
 /**
  * `extent` is the range of the values that occur, `middle` that of most of them. An automatic range
- * is `middle` (`isMiddle`) if the few others would take most of the colours. A logarithmic range
+ * is `middle` if the few others would take too many colours. A logarithmic range
  * from 0 starts at a ten-thousandth of its end. `hides` then says what this hides, or why there is
  * none. One from below 0 is linear about 0 (log_scale.ts).
  */
@@ -167,7 +180,7 @@ export function shownRange(
   middle: [number, number] = extent,
 ): Omit<ShownRange, 'hasMissing'> {
   if (range === 'auto' && !logarithmic && tailsHide(middle, extent))
-    return {low: middle[0], high: middle[1], logarithmic, hides: 'none', isMiddle: true};
+    return middleRange(extent, middle);
   const max = Math.max(Math.abs(extent[0]), Math.abs(extent[1]));
   const isWhole = typeof range === 'string' && range !== 'symmetric';
   const [low, high] = isWhole ? extent : range === 'symmetric' ? [-max, max] : range;
