@@ -77,7 +77,7 @@ const cameraOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.camera
 const attributes = (viewer, ...names) =>
   viewer.page.evaluate((its) => its.map((name) => window.qtetViewer.getAttribute(name)), names);
 
-/** The mesh is in the middle of its picture, whatever lies over the canvas. */
+/** The mesh is in the middle between title and legend, whatever lies over the canvas. */
 async function makesAPictureToPublish(context) {
   const viewer = await opened(context, 'mesh=fin&field=Density&clip=none');
   const before = await cameraOf(viewer);
@@ -100,13 +100,24 @@ async function makesAPictureToPublish(context) {
   const [left, right, top, bottom] = meshBounds(made);
   const said = [left, right, top, bottom].map((share) => share.toFixed(3)).join(', ');
   assert.ok(Math.abs((left + right) / 2 - 0.5) < 0.02, said);
-  assert.ok(Math.abs((top + bottom) / 2 - 0.5) < 0.04, said);
-  assert.ok(right - left > 0.6 || bottom - top > 0.55, said);
+  assert.ok(Math.abs((top + bottom) / 2 - 0.46) < 0.03, said);
+  assert.ok(right - left > 0.7 || bottom - top > 0.6, said);
   // 380 units of the legend's 3.125 pixels, in the middle
   assert.ok(hasBelow(made, 1500 - 580, [68, 1, 84]), 'the first colour of the legend');
   assert.ok(hasBelow(made, 1500 + 580, [253, 231, 37]), 'the last colour of the legend');
   assert.deepEqual(await cameraOf(viewer), before);
   assert.deepEqual(viewer.problems, []);
+  // A mesh that was turned, and is small on the screen, is as large in its picture.
+  await viewer.page.evaluate(() => {
+    const {cameraState} = window.qtetViewer;
+    const [x, y, z, ...target] = cameraState;
+    window.qtetViewer.cameraState = [1.4 * y, 1.4 * -x, 1.4 * z, ...target];
+  });
+  await viewer.settle();
+  const turned = meshBounds(
+    readPng(await picture(viewer, 'picture-turned', {width: 1280, height: 800})),
+  );
+  assert.ok(turned[1] - turned[0] > 0.7 || turned[3] - turned[2] > 0.6, `turned: ${turned}`);
   return `the mesh's bounds: ${said}; ${(shot.length / 1e6).toFixed(1)} MB`;
 }
 

@@ -62,29 +62,33 @@ describe('stops of a gradient', () => {
 describe('the frame of a figure', () => {
   test('leavesRoomForWhatStandsRoundTheMesh', () => {
     const none = {...kFigure, title: '', hasLegend: false};
-    expect(frameOf(none, kLegend, kCanvas).margin).toBe(0);
-    expect(frameOf({...none, hasLegend: true}, null, kCanvas).margin).toBe(0);
-    const titled = frameOf({...none, title: 'fin'}, kLegend, kCanvas).margin;
-    const whole = frameOf(kFigure, kLegend, kCanvas).margin;
-    expect(titled).toBeGreaterThan(0.05);
-    expect(whole).toBeGreaterThan(titled);
-    const noted = frameOf(kFigure, {...kLegend, notes: ['No value']}, kCanvas).margin;
+    const below = (legend: LegendTexts): number => frameOf(kFigure, legend, kCanvas).insets.bottom;
+    expect(frameOf(none, kLegend, kCanvas).insets).toEqual({left: 0, right: 0, top: 0, bottom: 0});
+    const unnamed = frameOf({...none, hasLegend: true}, null, kCanvas);
+    expect(unnamed.insets.bottom).toBe(0);
+    const titled = frameOf({...none, title: 'fin'}, kLegend, kCanvas).insets;
+    expect(titled.top).toBeGreaterThan(0.05);
+    expect(titled.bottom).toBe(0);
+    const whole = below(kLegend);
+    expect(whole).toBeGreaterThan(titled.top);
+    const noted = below({...kLegend, notes: ['No value']});
     expect(noted).toBeGreaterThan(whole);
     expect(noted).toBeLessThan(0.2);
     const labels = Array.from({length: 12}, (_, i) => ({
       text: `a winding made of copper ${i}`,
       color: 'red',
     }));
-    const listed = frameOf(kFigure, {...kLegend, labels}, kCanvas).margin;
+    const listed = below({...kLegend, labels});
     expect(listed).toBeGreaterThan(noted);
-    const short = labels.map((its) => ({...its, text: '1'}));
-    expect(frameOf(kFigure, {...kLegend, labels: short}, kCanvas).margin).toBeLessThan(listed);
+    expect(below({...kLegend, labels: labels.map((its) => ({...its, text: '1'}))})).toBeLessThan(
+      listed,
+    );
   });
   test('growsWithThePictureSoThatItLooksTheSame', () => {
     const twice = {...kFigure, width: 6000, height: 4000};
     expect(unitOf(twice)).toBeCloseTo(2 * unitOf(kFigure));
-    expect(frameOf(twice, kLegend, kCanvas).margin).toBeCloseTo(
-      frameOf(kFigure, kLegend, kCanvas).margin,
+    expect(frameOf(twice, kLegend, kCanvas).insets.bottom).toBeCloseTo(
+      frameOf(kFigure, kLegend, kCanvas).insets.bottom,
     );
     expect(frameOf(twice, kLegend, kCanvas).pixelRatio).toBeCloseTo(
       2 * frameOf(kFigure, kLegend, kCanvas).pixelRatio,
@@ -92,7 +96,8 @@ describe('the frame of a figure', () => {
   });
   test('leavesMostOfALowPictureToTheMesh', () => {
     const low = {...kFigure, width: 6000, height: 300};
-    expect(frameOf(low, kLegend, kCanvas).margin).toBeCloseTo(0.3);
+    const {top, bottom} = frameOf(low, kLegend, kCanvas).insets;
+    expect(top + bottom).toBeCloseTo(0.6);
   });
 });
 

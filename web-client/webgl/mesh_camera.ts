@@ -192,34 +192,68 @@ export class MeshCamera {
     this.changed();
   }
 
-  /** A camera for a part of another picture, as View.render says. REQUIRES: hasMesh. */
-  lensFor({width, height, margin}: Frame, part: Part): Lens {
-    const {lens: seen, direction, fitted} = this.orbit;
-    const lens = seen.clone();
+  /**
+   * A camera for a part of another picture, as View.render says. A moved camera stays, and its
+   * picture is enlarged. REQUIRES: hasMesh.
+   */
+  lensFor({width, height, insets}: Frame, part: Part): Lens {
+    const {orbit, size} = this;
+    const lens = orbit.fitted ? orbit.lens.clone() : this.uncovered();
+    const [freeWidth, freeHeight] = freeOf(insets);
+    const middle = middleOf(insets, width, height);
+    let scale = 1;
     let full = {width, height};
-    if (fitted) {
-      const insets = {left: 0, right: 0, top: margin, bottom: margin};
+    let from = [width / 2, height / 2];
+    if (orbit.fitted) {
       const {distance, target} = this.framing(insets, width / height);
-      lens.eye = sum(scaled(direction, distance), target);
+      lens.eye = sum(scaled(orbit.direction, distance), target);
     } else {
-      const [freeWidth, freeHeight] = freeOf(this.insets);
-      const {size} = this;
-      const scale = Math.min(
-        width / (size.width * freeWidth),
-        (height * (1 - 2 * margin)) / (size.height * freeHeight),
-      );
+      const area = this.shownArea(lens);
+      scale = Math.min((width * freeWidth) / area.width, (height * freeHeight) / area.height);
       full = {width: scale * size.width, height: scale * size.height};
+      from = [area.x + lens.part!.x, area.y + lens.part!.y];
     }
     lens.setPart({
       fullWidth: full.width,
       fullHeight: full.height,
-      x: (full.width - width) / 2 + part.x,
-      y: (full.height - height) / 2 + part.y,
+      x: scale * from[0]! - middle[0] + part.x,
+      y: scale * from[1]! - middle[1] + part.y,
       width: part.width,
       height: part.height,
     });
-    this.orbit.setDepths(lens);
+    orbit.setDepths(lens);
     return lens;
+  }
+
+  /**
+   * The part of the canvas that another picture shows, in pixels. `x` and `y` are its middle. It is
+   * the mesh's if all of it lies between the insets, else all between them. REQUIRES: `lens` is
+   * uncovered().
+   */
+  private shownArea(lens: Lens): {x: number; y: number; width: number; height: number} {
+    const {insets, size} = this;
+    const {width, height} = size;
+    const [freeWidth, freeHeight] = freeOf(insets);
+    const [x, y] = middleOf(insets, width, height);
+    const free = {x, y, width: freeWidth * width, height: freeHeight * height};
+    this.orbit.setDepths(lens);
+    const {toCanvas} = this.sightOf(lens);
+    const places = this.outline.map((point) => transformed(toCanvas, point));
+    const isSeen = places.every(
+      ([across, up, depth]) =>
+        Math.abs(((across + 1) / 2) * width - x) <= free.width / 2 &&
+        Math.abs(((1 - up) / 2) * height - y) <= free.height / 2 &&
+        Math.abs(depth) <= 1,
+    );
+    if (!isSeen) return free;
+    const [left, right] = endsOf(places.map(([across]) => ((across + 1) / 2) * width));
+    const [top, bottom] = endsOf(places.map(([, up]) => ((1 - up) / 2) * height));
+    return {
+      x: (left + right) / 2,
+      y: (top + bottom) / 2,
+      width: Math.max(1, right - left) / kFill,
+      height: Math.max(1, bottom - top) / kFill,
+    };
   }
 
   /** From where a camera sees lattice coordinates. */
@@ -341,6 +375,15 @@ const freeOf = ({left, right, top, bottom}: Insets): [number, number] => [
   1 - left - right,
   1 - top - bottom,
 ];
+
+/** The middle of the free area, in pixels. */
+const middleOf = (
+  {left, right, top, bottom}: Insets,
+  width: number,
+  height: number,
+): [number, number] => [((1 + left - right) / 2) * width, ((1 + top - bottom) / 2) * height];
+
+const endsOf = (places: number[]): [number, number] => [Math.min(...places), Math.max(...places)];
 
 const areSame = (a: Insets, b: Insets): boolean =>
   (Object.keys(a) as (keyof Insets)[]).every((side) => a[side] === b[side]);

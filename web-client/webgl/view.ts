@@ -23,8 +23,8 @@ export interface Frame {
   /** In pixels. */
   width: number;
   height: number;
-  /** The share of the height that stays free above the mesh, and below it, below 0.5. */
-  margin: number;
+  /** The shares round the mesh that stay free. */
+  insets: Insets;
   /** How many pixels a cell's edge takes where it takes one on the canvas. */
   pixelRatio: number;
   /** It will lie on a dark ground: lines beside the mesh are light. */
@@ -124,8 +124,8 @@ export interface View {
   /** The current picture on `background` (a CSS colour). */
   picture(background: string): Promise<Blob>;
   /**
-   * The mesh of now in a picture of another size. A fitted mesh is fitted to it, else it shows all
-   * that lies between the insets, in the middle.
+   * The mesh of now in a picture of another size, fitted between its insets. A mesh that is not
+   * wholly seen between those of the canvas is not fitted: all that lies there is shown.
    */
   render(frame: Frame): Promise<Tile[]>;
   dispose(): void;

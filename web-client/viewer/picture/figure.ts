@@ -155,12 +155,14 @@ export function frameOf(
   const {width, height, title, hasLegend} = figure;
   const above = title ? kTitle * kLine : 0;
   const below = hasLegend && legend ? legendHeight(legend, freeWidth(figure)) : 0;
-  const most = Math.max(above, below);
-  const margin = most > 0 ? ((most + kGap) * unitOf(figure)) / height : 0;
+  const [top, bottom] = [above, below].map((its) =>
+    its > 0 ? ((its + kGap) * unitOf(figure)) / height : 0,
+  );
+  const share = Math.min(1, (1 - kMinFree) / Math.max(top! + bottom!, Number.MIN_VALUE));
   return {
     width,
     height,
-    margin: Math.min(margin, (1 - kMinFree) / 2),
+    insets: {left: 0, right: 0, top: share * top!, bottom: share * bottom!},
     pixelRatio: Math.sqrt((width * height) / (canvas.clientWidth * canvas.clientHeight)),
   };
 }

@@ -1,4 +1,5 @@
 // The address of a view in the PNG that shows it: an iTXt chunk (PNG, third edition, 11.3.3.4).
+// Beside it stand the colour space and the size in print.
 
 import {QtetError} from '../../core/protocol/errors';
 import {crc32} from './crc32';
@@ -11,16 +12,28 @@ const kHeadBytes = 8 + 25;
 const kFrameBytes = 12;
 /** Behind the keyword: its end, no compression, no language, no translated keyword. */
 const kPlain = [0, 0, 0, 0, 0];
+/** The rendering intent of sRGB: perceptual (11.3.2.5). */
+const kPerceptual = 0;
+/** 300 dots an inch, as print wants them; then the unit, which is the metre (11.3.4.3). */
+const kPixelsPerMetre = 11811;
+const kMetre = 1;
 /** No browser takes a longer address. */
 const kMaxTextBytes = 1 << 16;
 /** The largest picture of the dialog has 133 MB before compression. */
 const kMaxBytes = 1 << 28;
 
-/** `png` with the address. REQUIRES: a canvas made it. */
+/** `png` with the address, colour space and size. REQUIRES: a canvas of sRGB made it. */
 export function withView(png: Blob, address: string): Blob {
   const text = new TextEncoder().encode(address);
-  const chunk = chunkOf('iTXt', [...bytesOf(kKeyword), ...kPlain, ...text]);
-  return new Blob([png.slice(0, kHeadBytes), chunk, png.slice(kHeadBytes)], {type: 'image/png'});
+  const density = [0, 8, 16, 24].map((bits) => (kPixelsPerMetre >>> (24 - bits)) & 255);
+  const chunks = [
+    chunkOf('iTXt', [...bytesOf(kKeyword), ...kPlain, ...text]),
+    chunkOf('sRGB', [kPerceptual]),
+    chunkOf('pHYs', [...density, ...density, kMetre]),
+  ];
+  return new Blob([png.slice(0, kHeadBytes), ...chunks, png.slice(kHeadBytes)], {
+    type: 'image/png',
+  });
 }
 
 /** The address in a PNG. Throws a QtetError with a sentence if there is none. */
