@@ -81,6 +81,7 @@ async function hasRoomForFingers(context) {
     assert.ok(width >= 44 && height >= 44, `${width} x ${height}`);
   }
   await viewer.settle();
+  assert.equal(await viewer.text('.histogram .what'), '√ of vertices');
   await viewer.screenshot('histogram-phone');
   assert.deepEqual(viewer.problems, []);
 }

@@ -10,7 +10,6 @@ import {
   kMinApart,
   movedRange,
   nearestEnd,
-  needsLogarithm,
   shareOf,
 } from '../viewer/panels/histogram_axis';
 import type {ShownRange} from '../viewer/settings/settings';
@@ -118,11 +117,9 @@ test('aPointerTakesTheNearerHandle', () => {
   expect(nearestEnd(kLinear, [5, 5], 0.6)).toBe(1);
 });
 
-test('barsAreLogarithmicOnlyIfOneHidesTheOthers', () => {
-  expect(needsLogarithm([50, 49, 1])).toBe(false);
-  expect(needsLogarithm([51, 48, 1])).toBe(true);
-  expect(needsLogarithm([7, 0, 0])).toBe(false);
-  expect(heightsOf([10, 5, 0, 6])).toEqual([1, 0.5, 0, 0.6]);
-  const [high, low] = heightsOf([1e6, 1]) as [number, number];
-  expect([high, low > 0.03]).toEqual([1, true]);
+test('barsAreAsHighAsSquareRoots', () => {
+  expect(heightsOf([100, 25, 0, 1])).toEqual([1, 0.5, 0, 0.1]);
+  // one that holds anything is seen
+  expect(heightsOf([1e6, 1])).toEqual([1, 0.03]);
+  expect(heightsOf([0, 0])).toEqual([0, 0]);
 });

@@ -9,9 +9,6 @@ import type {ShownRange} from '../settings/settings';
 export const kMinApart = 1 / 200;
 /** A value that a handle writes is as fine as this share of the axis, which is below a pixel. */
 const kFine = 1e-4;
-/** Above this share of all values in one bar, the others are too low to be seen. */
-const kHidingShare = 0.5;
-
 export type End = 0 | 1;
 
 /** All values that occur and both ends of the range, as far as a logarithm has them. */
@@ -52,19 +49,14 @@ export function nearestEnd(axis: Axis, range: readonly [number, number], share: 
   return Math.abs(share - high) < Math.abs(share - low) || (low === high && share > low) ? 1 : 0;
 }
 
-/** One bar holds so many of the values that the others are seen only by their logarithms. */
-export function needsLogarithm(counts: readonly number[]): boolean {
-  const sum = counts.reduce((all, count) => all + count, 0);
-  const filled = counts.filter((count) => count > 0).length;
-  return filled > 1 && Math.max(...counts) > kHidingShare * sum;
-}
-
-/** Heights in [0, 1]; a bar that holds anything is seen. */
+/**
+ * Heights in [0, 1], as the square roots of the counts: one bar hides no others. A bar that holds
+ * anything is seen.
+ */
 export function heightsOf(counts: readonly number[]): number[] {
   const kLowest = 0.03;
-  const height = needsLogarithm(counts) ? Math.log1p : (count: number): number => count;
-  const max = height(Math.max(...counts));
-  return counts.map((count) => (count > 0 ? Math.max(kLowest, height(count) / max) : 0));
+  const max = Math.max(...counts);
+  return counts.map((count) => (count > 0 ? Math.max(kLowest, Math.sqrt(count / max)) : 0));
 }
 
 /** The outline of the bars for SVG: each is one wide, and 1 high at most. */

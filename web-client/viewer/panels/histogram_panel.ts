@@ -18,7 +18,6 @@ import {
   kViewBox,
   movedRange,
   nearestEnd,
-  needsLogarithm,
   shareOf,
   type End,
 } from './histogram_axis';
@@ -163,8 +162,8 @@ export class HistogramPanel {
     this.showValues(counted);
   }
 
-  /** The middle, the lowest and the highest value, and a word on the bars. */
-  private showValues({extent, middle, counts}: Histogram): void {
+  /** The middle, the lowest and the highest value, and the title of the bars. */
+  private showValues({extent, middle}: Histogram): void {
     const {axis, host} = this;
     const {color} = host.mesh.snapshot!;
     const band = find(this.root, '.middle');
@@ -180,8 +179,8 @@ export class HistogramPanel {
       span.textContent = texts[i]!;
     });
     const {association} = host.mesh.manifest!.fields[color!.field]!;
-    const what = association === 'cell' ? 'Cells' : 'Vertices';
-    find(this.root, '.what').textContent = needsLogarithm(counts) ? `${what}, log count` : what;
+    const counted = association === 'cell' ? 'cells' : 'vertices';
+    find(this.root, '.what').textContent = `√ of ${counted}`;
   }
 
   private write([low, high]: readonly [number, number]): void {
