@@ -264,10 +264,12 @@ async function givesItsNumbersAway({server, browser}) {
   await plotAcrossTheMiddle(viewer);
   const saved = page.waitForEvent('download');
   await page.getByRole('button', {name: 'Save as CSV'}).click();
-  const rows = readFileSync(await (await saved).path(), 'utf8').split('\r\n');
-  assert.equal(rows[0], '"distance","x","y","z","Density"');
+  const download = await saved;
+  assert.match(download.suggestedFilename(), /^fin_Density_line-[-\d.]+-to-[-\d.]+\.csv$/);
+  const rows = readFileSync(await download.path(), 'utf8').split('\r\n');
+  assert.equal(rows[0], '"distance","x","y","z","Density","mesh"');
   assert.ok(rows.length > 2, `${rows.length} rows`);
-  for (const row of rows.slice(1)) assert.match(row, /^([-\d.e]+,){4}[-\d.e]*$/);
+  for (const row of rows.slice(1)) assert.match(row, /^([-\d.e]+,){4}[-\d.e]*,"fin"$/);
   const places = rows.slice(1).map((row) => row.split(',').slice(0, 4).map(Number));
   places.slice(1).forEach(([at, ...position], i) => {
     const [before, ...from] = places[i];

@@ -96,7 +96,7 @@ async function makesAMovieOfASeries(context) {
   const saved = page.waitForEvent('download');
   await pressByKeyboard(page, dialog.getByRole('button', {name: 'Save movie'}));
   const download = await saved;
-  assert.equal(download.suggestedFilename(), 'movie.webm');
+  assert.equal(download.suggestedFilename(), 'movie_Density_clip-y-0.5.webm');
   const file = readFileSync(await download.path());
   writeFileSync(join(viewer.out, 'movie.webm'), file);
   await dialog.waitFor({state: 'hidden'});

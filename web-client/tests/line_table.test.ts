@@ -48,6 +48,23 @@ test('eachRowOverTimeIsAnInstantWithItsComponents', async () => {
   ]);
 });
 
+test('theLastColumnsSayWhereTheValuesComeFrom', async () => {
+  const places: LineValues[] = [0, 1].map((at) => ({
+    at,
+    position: [1, 2, 3],
+    fields: [{field: 0, values: [5]}],
+  }));
+  const same = [
+    ['time [s]', 0.5],
+    ['mesh', '=a'],
+  ] as const;
+  expect((await tableOf(places, kFields, same).text()).split('\r\n')).toEqual([
+    '"distance","x","y","z","p","time [s]","mesh"',
+    `0,1,2,3,5,0.5,"'=a"`,
+    `1,1,2,3,5,0.5,"'=a"`,
+  ]);
+});
+
 test('noNameIsAFormulaAndNumbersAreNumbers', async () => {
   for (const name of ['=1+1', '+a', '-a', '@a', '\ta', '\ra']) {
     const places = [{at: -1, position: [0, 0, 0], fields: [{field: 0, values: [-1.5]}]}];

@@ -1,6 +1,6 @@
 import {expect, test} from 'vitest';
 import {openView, parametersIn} from '../viewer/picture/open_view';
-import {withView} from '../viewer/picture/png_view';
+import {withTexts} from '../viewer/picture/png_view';
 import type {Page} from '../viewer/page/page';
 
 test('onlyParametersOfAViewAreTakenFromAnAddress', () => {
@@ -34,7 +34,7 @@ async function opened(file: Blob, shown: string): Promise<string[]> {
   return log;
 }
 
-const picture = (address: string): Blob => withView(new Blob([kPng]), address);
+const picture = (address: string): Blob => withTexts(new Blob([kPng]), address);
 const kPng = Uint8Array.from(
   atob(
     'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNgAAAAAgABSK+kcQAAAABJRU5ErkJggg==',

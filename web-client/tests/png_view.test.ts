@@ -1,6 +1,6 @@
 import {deflateSync} from 'node:zlib';
 import {describe, expect, test} from 'vitest';
-import {viewIn, withView} from '../viewer/picture/png_view';
+import {viewIn, withTexts} from '../viewer/picture/png_view';
 
 const kAddress = 'https://a.org/v/?mesh=fin&field=Größe&camera=1%2C2';
 const kSignature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
@@ -41,13 +41,13 @@ const text = (...parts: string[]): Uint8Array => new TextEncoder().encode(parts.
 
 describe('the address of a view', () => {
   test('comesBackFromThePictureThatItWasPutInto', async () => {
-    expect(await viewIn(withView(png(), kAddress))).toBe(kAddress);
-    expect(await viewIn(withView(png(), ''))).toBe('');
+    expect(await viewIn(withTexts(png(), kAddress))).toBe(kAddress);
+    expect(await viewIn(withTexts(png(), ''))).toBe('');
   });
 
   test('standsInAChunkAsTheStandardSaysAndTheRestStays', async () => {
     const plain = await bytesOf(png());
-    const bytes = await bytesOf(withView(png(), kAddress));
+    const bytes = await bytesOf(withTexts(png(), kAddress));
     const its = chunk('iTXt', text('qtet-view', '\0', '', '', kAddress));
     const rest = [
       ...chunk('sRGB', Uint8Array.of(0)),
@@ -56,6 +56,16 @@ describe('the address of a view', () => {
       ...plain.slice(33),
     ];
     expect([...bytes]).toEqual([...plain.slice(0, 33), ...its, ...rest]);
+  });
+
+  test('hasTextsBesideItInLatin1OrElseInUnicode', async () => {
+    const bytes = await bytesOf(withTexts(png(), kAddress, {Title: 'Größe', Description: '流 x'}));
+    const whole = Buffer.from(bytes).toString('latin1');
+    const latin = Uint8Array.from('Title\0Größe', (letter) => letter.charCodeAt(0));
+    expect(whole).toContain(Buffer.from(chunk('tEXt', latin)).toString('latin1'));
+    const unicode = chunk('iTXt', text('Description', '\0', '', '', '流 x'));
+    expect(whole).toContain(Buffer.from(unicode).toString('latin1'));
+    expect(await viewIn(new Blob([bytes]))).toBe(kAddress);
   });
 
   test('isFoundBetweenChunksOfOthers', async () => {
@@ -81,11 +91,11 @@ describe('the address of a view', () => {
     await refused(png(chunk('iTXt', text('qtet-view', '\x01', '', '', 'x'))), /compressed/);
     await refused(png(chunk('iTXt', text('qtet-view', '\0', 'de', '', 'x'))), /language/);
     const long = 'x'.repeat(70000);
-    await refused(withView(png(), long), /longer than an address/);
+    await refused(withTexts(png(), long), /longer than an address/);
   });
 
   test('isNeverWrongWhereverThePictureIsCutOff', async () => {
-    const whole = await bytesOf(withView(png(), kAddress));
+    const whole = await bytesOf(withTexts(png(), kAddress));
     const end = 33 + 12 + 'qtet-view'.length + 5 + Buffer.byteLength(kAddress);
     for (let length = 0; length < end; ++length)
       await refused(new Blob([whole.slice(0, length)]), length < 8 ? /nor a PNG/ : /cut off/);
@@ -93,7 +103,7 @@ describe('the address of a view', () => {
   });
 
   test('isNeverWrongWhicheverBitOfItsChunkIsFlipped', async () => {
-    const whole = await bytesOf(withView(png(), kAddress));
+    const whole = await bytesOf(withTexts(png(), kAddress));
     const end = 33 + 12 + 'qtet-view'.length + 5 + Buffer.byteLength(kAddress);
     for (let bit = 8 * 33; bit < 8 * end; ++bit) {
       const damaged = whole.slice();

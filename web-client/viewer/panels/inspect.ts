@@ -25,6 +25,8 @@ const kFirstHints: Record<Tool, string> = {
 const kClickPixels = 5;
 /** Places are shown to this share of the lattice's span. */
 const kPlaceShare = 1e-4;
+/** Those of a place in a file's name. */
+const kPlaceDigits = 4;
 
 export interface InspectHost extends OverTimeHost {
   /** Null while it has another mesh than the one in the picture. */
@@ -239,16 +241,39 @@ export class Inspect {
     if (hasPlot) await this.card.drawPlot(probe, fieldTitle, format);
   }
 
+  /** The file's name, and its last columns, say where the values come from. */
   private async saveTable(): Promise<void> {
-    const {client, manifest} = this.host;
-    const {tableOf, timeTableOf} = await import('./probe_plot'); // the plot has loaded it
+    const {client, manifest, mesh} = this.host;
+    const tables = await import('./probe_plot'); // the plot has loaded it
+    const {fileNameOf, originOf, tableOf, timeTableOf, timeTitle} = tables;
+    const {fields, units} = manifest!;
+    const unit = units?.get('');
+    const places = this.points.map(({position, rest}) => rest?.position ?? position);
+    const place = places.map((its) =>
+      its.map((x) => Number(x.toPrecision(kPlaceDigits))).join(' '),
+    );
+    const origin = originOf(this.root, mesh, place.join(' to '));
     if (this.overTime.isOpen) {
-      const {fields, units} = manifest!;
-      return save(timeTableOf(this.overTime.table(), fields, units?.get('')), 'over-time.csv');
+      const at = places[0]!.map((x, axis) => ['xyz'[axis]!, x] as const);
+      const table = timeTableOf(this.overTime.table(), fields, unit, [
+        ...at,
+        ['mesh', origin.mesh],
+      ]);
+      return save(table, fileNameOf({...origin, time: '', place: `at ${origin.place}`}, 'csv'));
     }
     const [from, to] = this.points.map(({lattice}) => lattice);
-    const places = await client?.line(from!, to!);
-    if (places) save(tableOf(places, manifest!.fields), 'line.csv');
+    const values = await client?.line(from!, to!);
+    if (!values) return;
+    const {color} = this.host;
+    const time = color && fields[color.field]!.instant?.time;
+    const same = [
+      ...(time === undefined || time === null ? [] : [[timeTitle(unit), time] as const]),
+      ['mesh', origin.mesh] as const,
+    ];
+    save(
+      tableOf(values, fields, same),
+      fileNameOf({...origin, place: `line ${origin.place}`}, 'csv'),
+    );
   }
 
   /** Rounds to a ten-thousandth of the lattice's span. */

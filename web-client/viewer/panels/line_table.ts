@@ -7,18 +7,25 @@ import {scalarTitle} from './panel';
 /** More are noise of the arithmetic: a float has nine, and a large coordinate some more. */
 const kDigits = 12;
 
+/** Columns behind the others, by their titles. They say the same in each row. */
+export type Same = readonly (readonly [title: string, value: string | number])[];
+
 /**
  * Each row is a place: distance, position, and each component of the fields that are here. Behind a
  * label with names stands the value's name.
  */
-export function tableOf(places: readonly LineValues[], infos: readonly FieldInfo[]): Blob {
+export function tableOf(
+  places: readonly LineValues[],
+  infos: readonly FieldInfo[],
+  same: Same = [],
+): Blob {
   const here = places.find(({fields}) => fields.length > 0)?.fields ?? [];
   const titles = here.flatMap(({field, values}) => titlesOf(field, values, infos));
   const rows = places.map(({at, position, fields}) => {
     const values = fields.flatMap((its) => withNames(its.values, infos[its.field]!));
     return [at, ...position, ...titles.map((_, i) => values[i] ?? NaN)];
   });
-  return csvOf([['distance', 'x', 'y', 'z', ...titles], ...rows]);
+  return csvOf([['distance', 'x', 'y', 'z', ...titles], ...rows], same);
 }
 
 /** By instant its time, and one value a component; none of an instant that is not here. */
@@ -34,6 +41,7 @@ export function timeTableOf(
   {field, times, values}: TimeTable,
   infos: readonly FieldInfo[],
   timeUnit?: string,
+  same: Same = [],
 ): Blob {
   const info = infos[field]!;
   const titles = titlesOf(field, info.minimum, infos);
@@ -41,8 +49,10 @@ export function timeTableOf(
     const its = withNames(values[i]!, info);
     return [time, ...titles.map((_, component) => its[component] ?? NaN)];
   });
-  return csvOf([[timeUnit ? `time [${timeUnit}]` : 'time', ...titles], ...rows]);
+  return csvOf([[timeTitle(timeUnit), ...titles], ...rows], same);
 }
+
+export const timeTitle = (unit?: string): string => (unit ? `time [${unit}]` : 'time');
 
 function titlesOf(
   field: number,
@@ -61,8 +71,13 @@ function withNames(values: readonly number[], info: FieldInfo): (string | number
 
 const hasNames = ({labels}: FieldInfo): boolean => labels !== undefined && labels.size > 0;
 
-function csvOf(table: (string | number)[][]): Blob {
-  return new Blob([table.map((row) => row.map(cell).join(',')).join('\r\n')], {type: 'text/csv'});
+/** The first row has the titles. */
+function csvOf(table: (string | number)[][], same: Same): Blob {
+  const rows = table.map((row, i) => [
+    ...row,
+    ...same.map(([title, value]) => (i > 0 ? value : title)),
+  ]);
+  return new Blob([rows.map((row) => row.map(cell).join(',')).join('\r\n')], {type: 'text/csv'});
 }
 
 /**

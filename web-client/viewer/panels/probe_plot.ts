@@ -7,7 +7,8 @@ import type {Probe} from '../../core/session/inspector';
 import {formatTo} from '../page/format';
 import {adopt} from '../page/trusted';
 
-export {tableOf, timeTableOf} from './line_table';
+export {tableOf, timeTableOf, timeTitle} from './line_table';
+export {fileNameOf, originOf} from '../page/origin';
 
 const kHeight = 170;
 /** The readout shows this share of the ranges. */

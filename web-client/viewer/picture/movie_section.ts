@@ -75,7 +75,7 @@ export class MovieSection {
         signal: ends.signal,
         progress: (done, count) => this.tell(done, count),
       });
-      save(movie, `${this.movies.name}.${movie.type === 'video/webm' ? 'webm' : 'zip'}`);
+      save(movie, this.movies.fileName(movie.type === 'video/webm' ? 'webm' : 'zip'));
     } catch (thrown) {
       said = ends.signal.aborted ? 'Cancelled' : `The movie cannot be made. ${errorText(thrown)}`;
     }

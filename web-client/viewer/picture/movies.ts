@@ -2,6 +2,7 @@
 
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
+import {cutOf, fileNameOf, originOf} from '../page/origin';
 import type {Page} from '../page/page';
 import {refusalOf, type Figure} from './figure';
 import {film, type Filming, type Sink} from './film';
@@ -49,6 +50,17 @@ export class Movies {
 
   get name(): string {
     return find(this.page.root, '.mesh-name').textContent;
+  }
+
+  /** That of a saved movie, which has all times. */
+  fileName(ending: string): string {
+    const {host, page} = this;
+    const origin = originOf(
+      page.root,
+      host.mesh,
+      cutOf((name) => page.read(name), host.mesh),
+    );
+    return fileNameOf({...origin, time: ''}, ending);
   }
 
   async make({framesPerSecond = kFramesPerSecond, ...options}: MovieOptions): Promise<Blob> {

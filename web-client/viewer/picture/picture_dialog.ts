@@ -4,6 +4,7 @@
 import {errorText} from '../../core/protocol/errors';
 import type {View} from '../../webgl/view';
 import {find, onClick} from '../page/find';
+import {fileNameOf, textOf, type Origin} from '../page/origin';
 import type {Page} from '../page/page';
 import {save} from '../page/save';
 import {setMarkup} from '../page/trusted';
@@ -12,7 +13,7 @@ import {refusalOf, type Figure, type Ground} from './figure';
 import {kMovieMarkup, MovieSection} from './movie_section';
 import type {Movies} from './movies';
 import {drawPage} from './page_figure';
-import {withView} from './png_view';
+import {withTexts} from './png_view';
 
 const kSizes = [
   ['', 'As on the screen'],
@@ -70,6 +71,8 @@ ${kMovieMarkup}
 
 export interface PictureHost {
   readonly view: View | null;
+  /** That of a picture of now. */
+  readonly origin: Origin;
   openView(file: Blob): void;
 }
 
@@ -165,18 +168,22 @@ export class PictureDialog {
 
   private async make(figure: Figure): Promise<Blob> {
     const {page} = this;
-    const {view} = this.host;
+    const {origin, view} = this.host;
     if (!view) throw new Error('the graphics have not started');
     const address = linkTo(publicAddress(location.href), page.view);
     const canvas = await drawPage(page, view, figure);
-    return withView(await canvas.convertToBlob({type: 'image/png'}), address);
+    return withTexts(await canvas.convertToBlob({type: 'image/png'}), address, {
+      Title: figure.title || origin.mesh,
+      Description: textOf(origin),
+      Software: 'qtet',
+    });
   }
 
   private async save(making: Promise<Blob>): Promise<string> {
     const opening = this.openings;
     const picture = await making;
     if (!this.dialog.open || opening !== this.openings) return '';
-    save(picture, `${this.meshName}.png`);
+    save(picture, fileNameOf(this.host.origin, 'png'));
     this.dialog.close();
     this.page.announce('Saved');
     return '';

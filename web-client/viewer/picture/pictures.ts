@@ -1,6 +1,7 @@
 // Pictures and movies that are made, and pictures that open their view again. It is loaded at the
 // first of them.
 
+import {cutOf, originOf} from '../page/origin';
 import type {Page} from '../page/page';
 import {Movies, type MovieHost, type MovieOptions} from './movies';
 import {openView, type OpenHost} from './open_view';
@@ -18,6 +19,13 @@ export class Pictures {
     const dialogHost = {
       get view() {
         return host.view;
+      },
+      get origin() {
+        return originOf(
+          page.root,
+          host.mesh,
+          cutOf((name) => page.read(name), host.mesh),
+        );
       },
       openView: (file: Blob) => void this.open(file),
     };

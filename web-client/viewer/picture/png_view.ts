@@ -1,5 +1,5 @@
 // The address of a view in the PNG that shows it: an iTXt chunk (PNG, third edition, 11.3.3.4).
-// Beside it stand the colour space and the size in print.
+// Beside it stand the colour space, the size in print, and texts for people.
 
 import {QtetError} from '../../core/protocol/errors';
 import {crc32} from './crc32';
@@ -22,14 +22,20 @@ const kMaxTextBytes = 1 << 16;
 /** The largest picture of the dialog has 133 MB before compression. */
 const kMaxBytes = 1 << 28;
 
-/** `png` with the address, colour space and size. REQUIRES: a canvas of sRGB made it. */
-export function withView(png: Blob, address: string): Blob {
-  const text = new TextEncoder().encode(address);
+/** Only these letters stand in a tEXt chunk. */
+const kLatin = /^[\n\x20-\x7e\xa1-\xff]*$/;
+
+/**
+ * `png` with the address, colour space, size, and `texts` by their keywords. REQUIRES: a canvas of
+ * sRGB made it.
+ */
+export function withTexts(png: Blob, address: string, texts: Record<string, string> = {}): Blob {
   const density = [0, 8, 16, 24].map((bits) => (kPixelsPerMetre >>> (24 - bits)) & 255);
   const chunks = [
-    chunkOf('iTXt', [...bytesOf(kKeyword), ...kPlain, ...text]),
+    chunkOf('iTXt', [...bytesOf(kKeyword), ...kPlain, ...bytesOf(address)]),
     chunkOf('sRGB', [kPerceptual]),
     chunkOf('pHYs', [...density, ...density, kMetre]),
+    ...Object.entries(texts).map(([keyword, its]) => textChunk(keyword, its)),
   ];
   return new Blob([png.slice(0, kHeadBytes), ...chunks, png.slice(kHeadBytes)], {
     type: 'image/png',
@@ -73,6 +79,17 @@ export async function viewIn(file: Blob): Promise<string> {
   return refuse(
     `The PNG picture is cut off: a chunk at byte ${at} ends behind byte ${png.length}.`,
   );
+}
+
+/** tEXt, which all programs read, where its letters are enough; else iTXt. */
+function textChunk(keyword: string, text: string): Uint8Array<ArrayBuffer> {
+  return kLatin.test(text)
+    ? chunkOf('tEXt', [
+        ...bytesOf(keyword),
+        0,
+        ...Array.from(text, (letter) => letter.charCodeAt(0)),
+      ])
+    : chunkOf('iTXt', [...bytesOf(keyword), ...kPlain, ...bytesOf(text)]);
 }
 
 function chunkOf(type: string, data: readonly number[]): Uint8Array<ArrayBuffer> {
