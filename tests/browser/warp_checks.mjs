@@ -202,7 +202,36 @@ async function playsAMotion(context) {
   assert.deepEqual(viewer.problems, []);
 }
 
+/** The cube leaves its corner to a warped mesh that leans into it. */
+async function keepsTheCubeBesideAWarpedMesh(context) {
+  const {server} = context;
+  for (const [name, lean] of [
+    ['left', -1.2],
+    ['right', 1.2],
+  ]) {
+    const Displacement = (x, y, z) => [lean * (z - 1.5), 0, 0];
+    await serveMesh(context, `leaning-${name}`, linearBox(3, {Displacement}));
+    const viewer = await opened({...context, server}, `mesh=leaning-${name}&warp=off&clip=none`);
+    const {page} = viewer;
+    const sideOf = async () => {
+      await page.evaluate(() => window.qtetViewer.look('-y'));
+      await viewer.settle();
+      const box = await page.locator('qtet-viewer .orientation-cube').boundingBox();
+      return box.x < 400 ? 'left' : 'right';
+    };
+    assert.equal(await sideOf(), 'left');
+    await page.evaluate(() => window.qtetViewer.setAttribute('warp', 'Displacement'));
+    await page.evaluate(() => window.qtetViewer.setAttribute('warp-scale', '1'));
+    await viewer.settle();
+    const side = await sideOf();
+    await viewer.screenshot(`cube-beside-${name}`);
+    assert.equal(side, name === 'left' ? 'right' : 'left', `the mesh leans to the ${name}`);
+    assert.deepEqual(viewer.problems, []);
+  }
+}
+
 export const warpChecks = {
+  keepsTheCubeBesideAWarpedMesh,
   deformsABeam,
   isDeformedWhereItPassesAnEdge,
   opensARunWhereItShowsMost,

@@ -210,11 +210,13 @@ export class Later {
   /** Must be called after every frame. */
   follow(): void {
     this.panels.follow();
-    const {pose} = this.host.view ?? {};
+    const {view} = this.host;
+    const {pose} = view ?? {};
     const seen = pose?.toCanvas.join() ?? '';
     if (!pose || seen === this.seen) return;
     this.seen = seen;
     this.cube.turn(pose.axes);
+    this.cube.avoid(pose.outline.map((point) => view!.project(point)));
     this.hover.hide();
   }
 }

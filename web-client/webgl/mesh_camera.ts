@@ -286,6 +286,7 @@ export class MeshCamera {
       axes: lens.axes,
       camera: state,
       fitted,
+      outline: fitted ? this.outline : [],
       direction: scaled(lens.axes[2], -1),
       frameMs,
     };

@@ -16,6 +16,8 @@ export interface Pose {
   camera: CameraState;
   /** The user has not turned or zoomed: the whole mesh is in the picture. */
   fitted: boolean;
+  /** Lattice points between which lies all that was seen of a fitted mesh; else none. */
+  outline: readonly Vector[];
   /** The direction of the camera, as a unit normal in lattice coordinates. */
   direction: Vector;
   /** The time of the last frame on the thread that draws. */

@@ -1,6 +1,8 @@
 // The cube in the corner, which turns with the camera. A face looks along its axis: by a click, or
 // by the keyboard, where arrows go from face to face.
 
+import type {Point} from '../page/card_place';
+import {isFree} from './cube_place';
 import {dot, type Vector} from '../../core/protocol/geometry';
 import {kDirections, type Direction} from '../../webgl/directions';
 import type {Axes} from '../../webgl/lens';
@@ -128,6 +130,21 @@ export class OrientationCube {
       this.svg.append(
         ...places.sort((a, b) => a.near - b.near).map(({direction}) => this.faces.get(direction)!),
       );
+  }
+
+  /** Goes to the other side if the mesh, which lies between these places, is here. */
+  avoid(places: readonly Point[]): void {
+    if (places.length === 0) return; // once the user has moved the mesh, the cube stays
+    const {svg} = this;
+    const whole = (svg.getRootNode() as ShadowRoot).host.getBoundingClientRect();
+    const isFreeAt = (isAside: boolean): boolean => {
+      svg.classList.toggle('aside', isAside);
+      const {left, right, top, bottom} = svg.getBoundingClientRect();
+      const [x, y] = [whole.left, whole.top];
+      const place = {left: left - x, right: right - x, top: top - y, bottom: bottom - y};
+      return isFree(place, places);
+    };
+    if (!isFreeAt(false) && !isFreeAt(true)) svg.classList.remove('aside');
   }
 
   private press(event: KeyboardEvent, at: Direction, look: (direction: Direction) => void): void {
