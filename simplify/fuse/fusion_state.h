@@ -20,6 +20,9 @@ class FusionState {
   /// REQUIRES: as FusionMesh and FusionCost.
   FusionState(const LatticeMesh& lattice, std::size_t regionField, const CostOptions& cost,
               Workers& workers);
+  /// A part of a mesh, as FusionCost takes it.
+  FusionState(const LatticeMesh& part, std::size_t regionField, const CostFrame& frame,
+              std::span<const double> quadrics);
   FusionState(const FusionState&) = delete;
   FusionState& operator=(const FusionState&) = delete;
 
@@ -38,6 +41,11 @@ class FusionState {
 
   /// Fuses the prey into a vertex at `point`. REQUIRES: as FusionMesh::fuse.
   void fuse(const Prey& prey, const LatticePoint& point, const Star& star, std::uint32_t level);
+
+  /// A fusion that a part did, whose quadric is not known yet. REQUIRES: as FusionMesh::fuse; no
+  /// candidates.
+  void adopt(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level);
+  void setQuadric(VertexId v, std::span<const double> quadric) { cost_.setQuadric(v, quadric); }
 
   [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels) {
     return mesh_.takeHistory(levels);

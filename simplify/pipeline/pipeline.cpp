@@ -155,7 +155,9 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
 
 /// Simplifies by the algorithm asked for; the paper's leaves its figures in the report.
 Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run& run) {
-  if (run.options.algorithm != Algorithm::kPaper) return simplify(std::move(mesh), options);
+  if (run.options.algorithm != Algorithm::kPaper)
+    return run.options.parts ? simplifyInParts(std::move(mesh), options, *run.options.parts)
+                             : simplify(std::move(mesh), options);
   Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);
   if (!fused) return std::unexpected(fused.error());
   run.report.paper = fused->figures;

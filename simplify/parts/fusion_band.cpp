@@ -1,0 +1,205 @@
+#include "simplify/parts/fusion_band.h"
+
+#include <algorithm>
+#include <cassert>
+#include <compare>
+#include <numeric>
+#include <utility>
+
+namespace qtet {
+namespace {
+
+/// A band ends at the price at which the whole mesh, without seams, would have one in so many of
+/// its cells left. With 3, levels at a half of the cells have 1.3 to 1.7 times the error of one
+/// piece. Dear cells inside of parts go before cheap ones at their seams.
+constexpr double kBandFactor = 1.7;
+/// That price is found in one part of so many, and in so many at least.
+constexpr std::size_t kSampledOneIn = 8, kMinSampled = 10;
+/// All sampled parts together are asked down to a number of cells. Each goes on to this share of
+/// its own, since what is cheap differs from part to part.
+constexpr double kSampledTo = 0.5;
+/// A level of the whole removes this share of its cells, or as many as a part's level that ends it.
+constexpr double kLevelShare = 0.05;
+
+/// Cheap levels come first, those of a part in their order: by the largest key of it so far.
+struct LevelOfPart {
+  float key = 0;
+  std::uint32_t part = 0, level = 0;
+  std::size_t removed = 0;
+  auto operator<=>(const LevelOfPart&) const = default;
+};
+
+std::vector<LevelOfPart> inOrder(std::span<const std::vector<PartLevel>> parts) {
+  std::vector<LevelOfPart> out;
+  for (std::uint32_t p = 0; p < parts.size(); ++p) {
+    float key = 0;
+    for (std::uint32_t l = 0; l < parts[p].size(); ++l) {
+      key = std::max(key, parts[p][l].key);
+      out.push_back({key, p, l, parts[p][l].removed});
+    }
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+/// The fusions of the parts with these numbers.
+std::vector<PartFusions> fuseParts(const FusionState& whole, const FusionFrame& frame,
+                                   const FusionOptions& options, Workers& workers,
+                                   const CutMesh& cut, std::span<const std::size_t> chosen,
+                                   const auto& endOf) {
+  std::vector<PartFusions> out(chosen.size());
+  std::vector<PartNumbers> numbers(workers.count());
+  workers.forEach(chosen.size(), 1, [&](std::size_t worker, std::size_t i) {
+    const std::vector<CellId>& cells = cut.parts[chosen[i]];
+    numbers[worker].resize(whole.mesh().vertexSlots(), kGhost);
+    out[i] =
+        fusePart(whole, frame, options, cells, cut.isSeam, endOf(cells.size()), numbers[worker]);
+  });
+  return out;
+}
+
+std::vector<std::vector<PartLevel>> takeLevels(std::vector<PartFusions>& parts) {
+  std::vector<std::vector<PartLevel>> out;
+  for (PartFusions& part : parts) out.push_back(std::move(part.levels));
+  return out;
+}
+
+/// The key at which all of the sampled parts' cells are down to this share of them; their largest
+/// if they never are.
+float keyAt(std::span<const std::vector<PartLevel>> sampled, std::size_t cells, double share) {
+  const double most = share * static_cast<double>(cells);
+  float key = 0;
+  for (const LevelOfPart& level : inOrder(sampled)) {
+    if (static_cast<double>(cells) <= most) break;
+    cells -= level.removed;
+    key = level.key;
+  }
+  return key;
+}
+
+/// Where the band ends. A part whose seams stay has more cells at that price:
+/// 1 - (1 - 1 / factor) (1 - 2 (1 - share of inner vertices)).
+float endOfBand(const FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
+                Workers& workers, const CutMesh& cut) {
+  const double inner = std::max(0.0, 1 - 2 * (1 - cut.innerShare));
+  const double share = 1 - (1 - 1 / kBandFactor) * inner;
+  const std::size_t step =
+      std::clamp<std::size_t>(cut.parts.size() / kMinSampled, 1, kSampledOneIn);
+  std::vector<std::size_t> chosen;
+  std::size_t cells = 0;
+  for (std::size_t p = 0; p < cut.parts.size(); p += step)
+    chosen.push_back(p), cells += cut.parts[p].size();
+  std::vector<PartFusions> sampled =
+      fuseParts(whole, frame, options, workers, cut, chosen, [&](std::size_t own) {
+        return PartEnd{.cells =
+                           static_cast<std::size_t>(kSampledTo * share * static_cast<double>(own))};
+      });
+  return keyAt(takeLevels(sampled), cells, share);
+}
+
+/// Does to the whole what parts did, level by level.
+class Replay {
+ public:
+  Replay(FusionState& whole, std::span<const PartFusions> parts) : whole_(whole), parts_(parts) {
+    for (const PartFusions& part : parts) vertices_.push_back(part.vertices);
+    done_.resize(parts.size());
+  }
+
+  /// So many fusions of the part, the next ones.
+  void fuse(std::size_t part, std::size_t count, std::uint32_t level) {
+    for (; count > 0; --count) fuse(part, parts_[part].history.fusions[done_[part]++], level);
+  }
+
+  void takeQuadrics() {
+    const std::size_t stride = whole_.cost().quadric(0).size();
+    for (std::size_t p = 0; p < parts_.size(); ++p)
+      for (std::size_t i = 0; i < parts_[p].left.size(); ++i)
+        whole_.setQuadric(vertices_[p][parts_[p].left[i]],
+                          std::span(parts_[p].quadrics).subspan(i * stride, stride));
+  }
+
+ private:
+  void fuse(std::size_t part, const Fusion& fusion, std::uint32_t level) {
+    const PartFusions& own = parts_[part];
+    const FusionHistory& h = own.history;
+    std::vector<VertexId>& vertices = vertices_[part];
+    Prey prey{fusion.k, {}};
+    for (std::size_t i = 0; i < fusion.k; ++i) prey.vertex[i] = vertices[fusion.prey[i]];
+    star_.affected.clear(), star_.deleted.clear();
+    for (std::size_t i = 0; i < fusion.affectedCount; ++i)
+      star_.affected.push_back(own.cells[h.affectedCells[fusion.firstAffected + i]]);
+    for (std::size_t i = 0; i < fusion.deletedCount; ++i)
+      star_.deleted.push_back(own.cells[h.deletedCells[fusion.firstDeleted + i]]);
+    const auto labels =
+        h.affectedLabels.begin() + static_cast<std::ptrdiff_t>(fusion.firstAffected);
+    star_.labels.assign(labels, labels + fusion.affectedCount);
+    values_.clear();
+    for (std::size_t f = 0; f < h.fields.size(); ++f) {
+      if (isCellField(h.fields[f])) continue;
+      const std::size_t n = h.fields[f].components;
+      const auto first = h.values[f].begin() + static_cast<std::ptrdiff_t>(fusion.fused * n);
+      values_.insert(values_.end(), first, first + static_cast<std::ptrdiff_t>(n));
+    }
+    assert(fusion.fused == vertices.size());
+    vertices.push_back(static_cast<VertexId>(whole_.mesh().vertexSlots()));
+    whole_.adopt(prey, {h.points[fusion.fused], values_}, star_, level);
+  }
+
+  FusionState& whole_;
+  std::span<const PartFusions> parts_;
+  std::vector<std::vector<VertexId>> vertices_;  // of the whole, by part and its own number
+  std::vector<std::size_t> done_;                // fusions, by part
+  Star star_;
+  std::vector<std::int32_t> values_;
+};
+
+}  // namespace
+
+std::vector<std::vector<std::uint32_t>> levelsOfTheWhole(
+    std::span<const std::vector<PartLevel>> parts, std::size_t cells) {
+  std::vector<std::vector<std::uint32_t>> out(parts.size());
+  std::uint32_t now = 0;
+  std::size_t removed = 0;  // in level `now`
+  for (const LevelOfPart& level : inOrder(parts)) {
+    if (static_cast<double>(removed) >= kLevelShare * static_cast<double>(cells)) {
+      ++now;
+      cells -= removed;
+      removed = 0;
+    }
+    std::vector<std::uint32_t>& own = out[level.part];
+    own.push_back(own.empty() ? now : std::max(now, own.back() + 1));
+    removed += level.removed;
+  }
+  return out;
+}
+
+std::uint32_t fuseBand(FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
+                       Workers& workers, const CutMesh& cut, std::uint32_t levels) {
+  const PartEnd end{.key = endOfBand(whole, frame, options, workers, cut)};
+  std::vector<std::size_t> all(cut.parts.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<PartFusions> done =
+      fuseParts(whole, frame, options, workers, cut, all, [&](std::size_t) { return end; });
+  const std::vector<std::vector<PartLevel>> ofParts = takeLevels(done);
+  const auto numbers = levelsOfTheWhole(ofParts, whole.mesh().liveTetrahedra());
+  Replay replay(whole, done);
+  std::vector<std::size_t> next(done.size(), 0);
+  bool isThere = true;
+  for (std::uint32_t level = 0; isThere; ++level) {
+    isThere = false;
+    for (std::size_t p = 0; p < done.size(); ++p) {
+      if (next[p] == numbers[p].size()) continue;
+      isThere = true;
+      if (numbers[p][next[p]] == level)
+        replay.fuse(p, ofParts[p][next[p]++].fusions, levels + level);
+    }
+    workers.throwIfStopped();
+  }
+  replay.takeQuadrics();
+  std::uint32_t count = 0;
+  for (const std::vector<std::uint32_t>& own : numbers)
+    if (!own.empty()) count = std::max(count, own.back() + 1);
+  return levels + count;
+}
+
+}  // namespace qtet
