@@ -48,12 +48,6 @@ class FusionCost {
   [[nodiscard]] std::span<const double> quadric(VertexId v) const {
     return std::span(quadrics_).subspan(at(v), stride_);
   }
-  /// The vertex that the prey became takes its quadric from a part. REQUIRES: instead of fuse, once
-  /// each fusion; room for it.
-  void adopt(const Prey& prey, VertexId fused) { slot_[fused] = slot_[prey.vertex[0]]; }
-  void setQuadric(VertexId v, std::span<const double> quadric) {
-    std::ranges::copy(quadric, quadrics_.begin() + static_cast<std::ptrdiff_t>(at(v)));
-  }
 
   /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best
   /// values for each point.

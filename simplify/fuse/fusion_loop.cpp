@@ -68,16 +68,16 @@ Result<std::uint32_t> FusionLoop::run(std::size_t target) {
   return levels_;
 }
 
-std::vector<PartLevel> FusionLoop::runPart(const PartEnd& end,
-                                           std::span<const std::uint8_t> isSeam) {
-  std::vector<PartLevel> out;
+PartLevels FusionLoop::runPart(const PartEnd& end, std::span<const std::uint8_t> isSeam) {
+  PartLevels out;
   target_ = end.cells;
   fusions_.keepOff(isSeam);
   open_.findAll();
-  for (std::size_t before = live(); before > target_ && runLevel(end.key); before = live()) {
+  for (std::size_t before = live(); runLevel(end.key); before = live()) {
     if (fusions_.fused().empty()) break;
-    out.push_back({queue_.limit(), fusions_.fused().size(), before - live()});
-    if (!isWorth(end.leastShare, before)) break;
+    out.levels.push_back({queue_.limit(), fusions_.fused().size(), before - live()});
+    out.isCut = live() <= target_;
+    if (out.isCut || !isWorth(end.leastShare, before)) break;
   }
   return out;
 }
@@ -96,13 +96,12 @@ bool FusionLoop::runLevels() {
   return true;
 }
 
-/// False when nothing is left to try, or nothing up to that key.
+/// False when nothing is left to try, or the level would end beyond that key.
 bool FusionLoop::runLevel(float lastKey) {
   open_.fill(queue_.refill());
   if (queue_.entries().empty()) return false;
   queue_.begin(kLevelQuantile);
-  if (queue_.nextKey() > lastKey) return false;
-  queue_.endBy(lastKey);
+  if (queue_.limit() > lastKey) return false;
   fusions_.begin(levels_);
   decider_.run(queue_, fusions_, target_);
   if (!fusions_.fused().empty()) ++levels_;

@@ -35,8 +35,9 @@ struct FusionFrame {
 
 /// Where the fusions of a part end.
 struct PartEnd {
-  float key = std::numeric_limits<float>::infinity();  ///< nothing dearer is fused
-  std::size_t cells = 0;                               ///< so many tetrahedra are left
+  /// No level ends at a dearer key.
+  float key = std::numeric_limits<float>::infinity();
+  std::size_t cells = 0;  ///< so many tetrahedra are left
   /// Or behind a level that removes less than this fraction of the tetrahedra: flags say of each
   /// vertex in each level whether it splits.
   double leastShare = 0.01;
@@ -47,6 +48,13 @@ struct PartLevel {
   float key = 0;  ///< where it ended
   std::size_t fusions = 0;
   std::size_t removed = 0;  ///< tetrahedra
+};
+
+/// The levels of a part. `isCut`: so many tetrahedra were left within the last one, which may go
+/// on.
+struct PartLevels {
+  std::vector<PartLevel> levels;
+  bool isCut = false;
 };
 
 /// How far simplifying is, 0..1. Removal is geometric, so it is the logarithm of what is left.
@@ -63,8 +71,7 @@ class FusionLoop {
   [[nodiscard]] Result<std::uint32_t> run(std::size_t target);
   /// A part of a mesh. No fusion with a vertex of `isSeam` in its link goes outside: the boundary
   /// of the part beside it is not known here.
-  [[nodiscard]] std::vector<PartLevel> runPart(const PartEnd& end,
-                                               std::span<const std::uint8_t> isSeam);
+  [[nodiscard]] PartLevels runPart(const PartEnd& end, std::span<const std::uint8_t> isSeam);
 
  private:
   bool runLevels();

@@ -43,24 +43,28 @@ void FusionState::fuse(const Prey& prey, const LatticePoint& point, const Star& 
                        std::uint32_t level) {
   for (const VertexId v : star.link)
     if (v != kGhost) mesh_.prefetchVertex(v);
-  const auto fused = static_cast<VertexId>(mesh_.vertexSlots());
-  cost_.makeRoom(fused + std::size_t{1});
-  changes_.resize(fused + std::size_t{1});
   for (const VertexId v : prey.vertices()) candidates_.forget(v);
   std::array<double, kMaxCostComponents> room;
   const auto values = std::span(room).first(cost_.components());
   cost_.valuesAt(prey, point, values);
   findIntegers(prey, point, values);
-  cost_.fuse(prey, fused, point, values);
-  mesh_.fuse(prey, {point, integers_}, star, level);
+  fuse(prey, {point, integers_}, values, star, level);
 }
 
-void FusionState::adopt(const Prey& prey, const FusedVertex& what, const Star& star,
-                        std::uint32_t level) {
+void FusionState::fuse(const Prey& prey, const FusedVertex& what, const Star& star,
+                       std::uint32_t level) {
+  std::array<double, kMaxCostComponents> room;
+  const auto values = std::span(room).first(cost_.components());
+  cost_.valuesAt(prey, what.point, values);
+  fuse(prey, what, values, star, level);
+}
+
+void FusionState::fuse(const Prey& prey, const FusedVertex& what, std::span<const double> values,
+                       const Star& star, std::uint32_t level) {
   const auto fused = static_cast<VertexId>(mesh_.vertexSlots());
   cost_.makeRoom(fused + std::size_t{1});
   changes_.resize(fused + std::size_t{1});
-  cost_.adopt(prey, fused);
+  cost_.fuse(prey, fused, what.point, values);
   mesh_.fuse(prey, what, star, level);
 }
 

@@ -42,16 +42,16 @@ class FusionState {
   /// Fuses the prey into a vertex at `point`. REQUIRES: as FusionMesh::fuse.
   void fuse(const Prey& prey, const LatticePoint& point, const Star& star, std::uint32_t level);
 
-  /// A fusion that a part did, whose quadric is not known yet. REQUIRES: as FusionMesh::fuse; no
-  /// candidates.
-  void adopt(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level);
-  void setQuadric(VertexId v, std::span<const double> quadric) { cost_.setQuadric(v, quadric); }
+  /// The same with these integers. REQUIRES: no candidates.
+  void fuse(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level);
 
   [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels) {
     return mesh_.takeHistory(levels);
   }
 
  private:
+  void fuse(const Prey& prey, const FusedVertex& what, std::span<const double> values,
+            const Star& star, std::uint32_t level);
   void findIntegers(const Prey& prey, const LatticePoint& point, std::span<const double> values);
 
   FusionMesh mesh_;

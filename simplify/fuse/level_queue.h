@@ -25,9 +25,6 @@ class LevelQueue {
     limit_ = sorter_.keepCheapest(entries_, quantile);
   }
 
-  /// The level ends at this key already, if that is less.
-  void endBy(float key) { limit_ = std::min(limit_, key); }
-
   /// Cheapest first.
   [[nodiscard]] std::span<const QueueEntry> entries() const { return entries_; }
   /// The key where the level ends.

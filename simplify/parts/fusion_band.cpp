@@ -58,9 +58,9 @@ std::vector<PartFusions> fuseParts(const FusionState& whole, const FusionFrame& 
   return out;
 }
 
-std::vector<std::vector<PartLevel>> takeLevels(std::vector<PartFusions>& parts) {
+std::vector<std::vector<PartLevel>> levelsOf(std::span<const PartFusions> parts) {
   std::vector<std::vector<PartLevel>> out;
-  for (PartFusions& part : parts) out.push_back(std::move(part.levels));
+  for (const PartFusions& part : parts) out.push_back(part.levels);
   return out;
 }
 
@@ -77,24 +77,62 @@ float keyAt(std::span<const std::vector<PartLevel>> sampled, std::size_t cells, 
   return key;
 }
 
-/// Where the band ends. A part whose seams stay has more cells at that price:
+/// Some parts, and the price that they tell.
+struct Sample {
+  std::vector<std::size_t> chosen;
+  std::vector<PartFusions> parts;
+  float key = 0;  ///< where the band ends
+};
+
+/// A part whose seams stay has more cells at the band's price:
 /// 1 - (1 - 1 / factor) (1 - 2 (1 - share of inner vertices)).
-float endOfBand(const FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
+Sample sampleOf(const FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
                 Workers& workers, const CutMesh& cut) {
   const double inner = std::max(0.0, 1 - 2 * (1 - cut.innerShare));
   const double share = 1 - (1 - 1 / kBandFactor) * inner;
   const std::size_t step =
       std::clamp<std::size_t>(cut.parts.size() / kMinSampled, 1, kSampledOneIn);
-  std::vector<std::size_t> chosen;
+  Sample out;
   std::size_t cells = 0;
   for (std::size_t p = 0; p < cut.parts.size(); p += step)
-    chosen.push_back(p), cells += cut.parts[p].size();
-  std::vector<PartFusions> sampled =
-      fuseParts(whole, frame, options, workers, cut, chosen, [&](std::size_t own) {
-        return PartEnd{.cells =
-                           static_cast<std::size_t>(kSampledTo * share * static_cast<double>(own))};
-      });
-  return keyAt(takeLevels(sampled), cells, share);
+    out.chosen.push_back(p), cells += cut.parts[p].size();
+  out.parts = fuseParts(whole, frame, options, workers, cut, out.chosen, [&](std::size_t own) {
+    return PartEnd{.cells =
+                       static_cast<std::size_t>(kSampledTo * share * static_cast<double>(own))};
+  });
+  out.key = keyAt(levelsOf(out.parts), cells, share);
+  return out;
+}
+
+/// Takes the levels of the part from the first one on that ends beyond the key. False: it was cut
+/// before.
+bool endAt(float key, PartFusions& part) {
+  const auto dear =
+      std::ranges::find_if(part.levels, [&](const PartLevel& level) { return level.key > key; });
+  if (dear == part.levels.end() && part.isCut) return false;
+  part.levels.erase(dear, part.levels.end());
+  return true;
+}
+
+/// The fusions of all parts, up to the key of a sample of them.
+std::vector<PartFusions> fuseAll(const FusionState& whole, const FusionFrame& frame,
+                                 const FusionOptions& options, Workers& workers,
+                                 const CutMesh& cut) {
+  Sample sample = sampleOf(whole, frame, options, workers, cut);
+  std::vector<PartFusions> out(cut.parts.size());
+  std::vector<std::uint8_t> isDone(cut.parts.size(), 0);
+  for (std::size_t i = 0; i < sample.chosen.size(); ++i) {
+    isDone[sample.chosen[i]] = endAt(sample.key, sample.parts[i]);
+    if (isDone[sample.chosen[i]]) out[sample.chosen[i]] = std::move(sample.parts[i]);
+  }
+  std::vector<std::size_t> others;
+  for (std::size_t p = 0; p < cut.parts.size(); ++p)
+    if (!isDone[p]) others.push_back(p);
+  std::vector<PartFusions> rest =
+      fuseParts(whole, frame, options, workers, cut, others,
+                [&](std::size_t) { return PartEnd{.key = sample.key}; });
+  for (std::size_t i = 0; i < others.size(); ++i) out[others[i]] = std::move(rest[i]);
+  return out;
 }
 
 /// Does to the whole what parts did, level by level.
@@ -108,14 +146,6 @@ class Replay {
   /// So many fusions of the part, the next ones.
   void fuse(std::size_t part, std::size_t count, std::uint32_t level) {
     for (; count > 0; --count) fuse(part, parts_[part].history.fusions[done_[part]++], level);
-  }
-
-  void takeQuadrics() {
-    const std::size_t stride = whole_.cost().quadric(0).size();
-    for (std::size_t p = 0; p < parts_.size(); ++p)
-      for (std::size_t i = 0; i < parts_[p].left.size(); ++i)
-        whole_.setQuadric(vertices_[p][parts_[p].left[i]],
-                          std::span(parts_[p].quadrics).subspan(i * stride, stride));
   }
 
  private:
@@ -142,7 +172,7 @@ class Replay {
     }
     assert(fusion.fused == vertices.size());
     vertices.push_back(static_cast<VertexId>(whole_.mesh().vertexSlots()));
-    whole_.adopt(prey, {h.points[fusion.fused], values_}, star_, level);
+    whole_.fuse(prey, {h.points[fusion.fused], values_}, star_, level);
   }
 
   FusionState& whole_;
@@ -175,12 +205,8 @@ std::vector<std::vector<std::uint32_t>> levelsOfTheWhole(
 
 std::uint32_t fuseBand(FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
                        Workers& workers, const CutMesh& cut, std::uint32_t levels) {
-  const PartEnd end{.key = endOfBand(whole, frame, options, workers, cut)};
-  std::vector<std::size_t> all(cut.parts.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  std::vector<PartFusions> done =
-      fuseParts(whole, frame, options, workers, cut, all, [&](std::size_t) { return end; });
-  const std::vector<std::vector<PartLevel>> ofParts = takeLevels(done);
+  const std::vector<PartFusions> done = fuseAll(whole, frame, options, workers, cut);
+  const std::vector<std::vector<PartLevel>> ofParts = levelsOf(done);
   const auto numbers = levelsOfTheWhole(ofParts, whole.mesh().liveTetrahedra());
   Replay replay(whole, done);
   std::vector<std::size_t> next(done.size(), 0);
@@ -195,7 +221,6 @@ std::uint32_t fuseBand(FusionState& whole, const FusionFrame& frame, const Fusio
     }
     workers.throwIfStopped();
   }
-  replay.takeQuadrics();
   std::uint32_t count = 0;
   for (const std::vector<std::uint32_t>& own : numbers)
     if (!own.empty()) count = std::max(count, own.back() + 1);

@@ -81,7 +81,9 @@ PartFusions fusePart(const FusionState& whole, const FusionFrame& frame,
                      PartNumbers& numbers) {
   const std::size_t regionField = options.regionField.value_or(FusionMesh::kNoRegions);
   const PartMesh part(whole.mesh(), cells, regionField, numbers);
-  PartFusions out{part.vertices(), part.cells(), {}, {}, {}, {}};
+  PartFusions out;
+  out.vertices = part.vertices();
+  out.cells = part.cells();
   std::vector<double> quadrics;
   std::vector<VertexId> kept;
   std::vector<std::uint8_t> isOwnSeam;
@@ -96,13 +98,9 @@ PartFusions fusePart(const FusionState& whole, const FusionFrame& frame,
   FusionOptions own = options;
   own.progress = {};
   Workers alone(1, options.stop);
-  out.levels = FusionLoop(state, frame, own, alone).runPart(end, isOwnSeam);
-  for (auto v = static_cast<VertexId>(out.vertices.size()); v < state.mesh().vertexSlots(); ++v) {
-    if (!state.mesh().alive(v)) continue;
-    out.left.push_back(v);
-    const auto quadric = state.cost().quadric(v);
-    out.quadrics.insert(out.quadrics.end(), quadric.begin(), quadric.end());
-  }
+  PartLevels done = FusionLoop(state, frame, own, alone).runPart(end, isOwnSeam);
+  out.levels = std::move(done.levels);
+  out.isCut = done.isCut;
   out.history = state.takeHistory(static_cast<std::uint32_t>(out.levels.size()));
   return out;
 }

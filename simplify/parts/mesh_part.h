@@ -19,9 +19,7 @@ struct PartFusions {
   std::vector<CellId> cells;
   FusionHistory history;
   std::vector<PartLevel> levels;
-  /// FusionCost::quadric of the fused vertices that are left, in order of `left`.
-  std::vector<VertexId> left;
-  std::vector<double> quadrics;
+  bool isCut = false;  ///< PartLevels::isCut
 };
 inline constexpr CellId kNoCell = ~CellId{0};
 

@@ -74,11 +74,10 @@ class PartAndWhole : public ::testing::Test {
       if (other.state.mesh().alive(v) && (!isMine[v] || cut.isSeam[v])) others.push_back(v);
     other.state.keep(others);
     const std::size_t before = other.state.mesh().fusions();
-    const std::vector<PartLevel> levels =
-        FusionLoop(other.state, other.frame, options_, other.workers)
-            .runPart({.key = 1e6f, .leastShare = 0}, cut.isSeam);
+    const PartLevels done = FusionLoop(other.state, other.frame, options_, other.workers)
+                                .runPart({.key = 1e6f, .leastShare = 0}, cut.isSeam);
     ASSERT_GT(alone.history.fusions.size(), 10u);
-    EXPECT_EQ(alone.levels.size(), levels.size());
+    EXPECT_EQ(alone.levels.size(), done.levels.size());
     const FusionHistory all = other.state.takeHistory(1);
     std::vector<VertexId> numbers = alone.vertices;
     for (std::size_t i = 0; i < alone.history.fusions.size(); ++i) {
