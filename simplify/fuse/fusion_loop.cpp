@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include "proto/limits.h"
 #include "simplify/mesh/moved_place.h"
@@ -79,6 +80,7 @@ PartLevels FusionLoop::runPart(const PartEnd& end, std::span<const std::uint8_t>
     out.isCut = live() <= target_;
     if (out.isCut || !isWorth(end.leastShare, before)) break;
   }
+  out.wentOutside = std::move(fusions_.wentOutside());
   return out;
 }
 

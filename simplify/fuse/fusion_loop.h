@@ -54,6 +54,7 @@ struct PartLevel {
 /// on.
 struct PartLevels {
   std::vector<PartLevel> levels;
+  std::vector<std::uint8_t> wentOutside;  ///< LevelFusions::wentOutside
   bool isCut = false;
 };
 

@@ -29,6 +29,9 @@ class LevelFusions {
   /// Does the fusion and touches its star. REQUIRES: no vertex of the prey is locked.
   void carryOut(const Proposal& proposal);
 
+  /// By fusion of all levels: whether it went outside of the boundary as it was.
+  [[nodiscard]] std::vector<std::uint8_t>& wentOutside() { return wentOutside_; }
+
   /// The fused vertices of the level.
   [[nodiscard]] std::span<const VertexId> fused() const { return fused_; }
   /// The link of fused()[i], in which nothing changes until the level ends.
@@ -47,6 +50,7 @@ class LevelFusions {
   LiveBoundary* boundary_;
   std::span<const std::uint8_t> isSeam_;
   std::uint32_t level_ = 0;
+  std::vector<std::uint8_t> wentOutside_;
   std::vector<VertexId> fused_;
   std::vector<VertexId> links_;  // of fused_, back to back
   std::vector<std::size_t> linkEnds_;

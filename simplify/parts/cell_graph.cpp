@@ -2,6 +2,7 @@
 
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/face_groups.h"
+#include "simplify/mesh/fusion_mesh.h"
 
 namespace qtet {
 namespace {

@@ -6,9 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "simplify/mesh/fusion_mesh.h"
+#include "codec/mesh/mesh.h"
 
 namespace qtet {
+
+class FusionMesh;
 
 /// Rows as METIS takes them: those beside cell i are `beside` from begins[i] to begins[i + 1].
 /// `weights`, one a neighbour, say what it costs to cut there.
@@ -22,7 +24,7 @@ struct CellGraph {
                                     std::span<const std::uint8_t> old);
 
 /// Cuts the cells of a graph into at most so many parts: the part of each cell. The same graph
-/// gives the same parts. Threads may do so at once. REQUIRES: parts >= 2.
+/// gives the same parts. It is called by one thread at a time. REQUIRES: parts >= 2.
 using Partitioner =
     std::function<std::vector<std::uint32_t>(const CellGraph& graph, std::uint32_t parts)>;
 

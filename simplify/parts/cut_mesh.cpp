@@ -11,53 +11,70 @@ namespace {
 /// The live tetrahedra in blocks, cut by planes across the longest side of what is cut.
 class Blocks {
  public:
-  Blocks(const FusionMesh& mesh, std::size_t count) : mesh_(mesh) {
-    std::vector<CellId> cells;
+  Blocks(const FusionMesh& mesh, std::size_t count) {
+    std::vector<Cell> cells;
     cells.reserve(mesh.liveTetrahedra());
-    for (CellId c = 0; c < mesh.firstGhost(); ++c)
-      if (mesh.isLive(c)) cells.push_back(c);
-    cut(std::move(cells), count);
+    for (CellId c = 0; c < mesh.firstGhost(); ++c) {
+      if (!mesh.isLive(c)) continue;
+      Cell& cell = cells.emplace_back(Cell{{}, c});
+      for (const VertexId v : mesh.cell(c))
+        for (std::size_t axis = 0; axis < 3; ++axis) cell.middle[axis] += mesh.point(v)[axis];
+    }
+    cut(cells, count);
   }
 
   [[nodiscard]] std::vector<std::vector<CellId>> take() { return std::move(blocks_); }
 
  private:
-  /// Four times the middle of a cell along an axis.
-  [[nodiscard]] std::uint64_t middle(CellId c, std::size_t axis) const {
-    std::uint64_t sum = 0;
-    for (const VertexId v : mesh_.cell(c)) sum += mesh_.point(v)[axis];
-    return sum;
-  }
+  struct Cell {
+    std::array<std::uint32_t, 3> middle;  // four times its coordinates
+    CellId cell;
+  };
 
-  [[nodiscard]] std::size_t longestAxis(std::span<const CellId> cells) const {
-    std::array<std::uint64_t, 3> length{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto [least, most] =
-          std::ranges::minmax(cells, {}, [&](CellId c) { return middle(c, axis); });
-      length[axis] = middle(most, axis) - middle(least, axis);
-    }
+  static std::size_t longestAxis(std::span<const Cell> cells) {
+    std::array<std::uint32_t, 3> low = cells.front().middle, high = low, length{};
+    for (const Cell& cell : cells)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], cell.middle[axis]);
+        high[axis] = std::max(high[axis], cell.middle[axis]);
+      }
+    for (std::size_t axis = 0; axis < 3; ++axis) length[axis] = high[axis] - low[axis];
     return static_cast<std::size_t>(std::ranges::max_element(length) - length.begin());
   }
 
-  void cut(std::vector<CellId> cells, std::size_t count) {
+  void cut(std::span<Cell> cells, std::size_t count) {
     if (count <= 1 || cells.size() <= 1) {
-      std::ranges::sort(cells);
-      blocks_.push_back(std::move(cells));
+      std::vector<CellId>& block = blocks_.emplace_back();
+      for (const Cell& cell : cells) block.push_back(cell.cell);
+      std::ranges::sort(block);
       return;
     }
     const std::size_t axis = longestAxis(cells), first = count / 2;
-    const auto key = [&](CellId c) { return std::pair(middle(c, axis), c); };
-    const auto at = cells.begin() + static_cast<std::ptrdiff_t>(cells.size() * first / count);
-    std::ranges::nth_element(cells, at, {}, key);
-    std::vector<CellId> rest(at, cells.end());
-    cells.erase(at, cells.end());
-    cut(std::move(cells), first);
-    cut(std::move(rest), count - first);
+    const std::size_t at = cells.size() * first / count;
+    std::ranges::nth_element(cells, cells.begin() + static_cast<std::ptrdiff_t>(at),
+                             [axis](const Cell& a, const Cell& b) {
+                               return a.middle[axis] != b.middle[axis]
+                                          ? a.middle[axis] < b.middle[axis]
+                                          : a.cell < b.cell;
+                             });
+    cut(cells.first(at), first);
+    cut(cells.subspan(at), count - first);
   }
 
-  const FusionMesh& mesh_;
   std::vector<std::vector<CellId>> blocks_;
 };
+
+void takeParts(std::span<const CellId> block, std::span<const std::uint32_t> partOf,
+               std::uint32_t count, CutMesh& out) {
+  std::vector<std::vector<CellId>> parts(count);
+  assert(partOf.size() == block.size());
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    assert(partOf[i] < count);
+    parts[partOf[i]].push_back(block[i]);
+  }
+  for (std::vector<CellId>& part : parts)
+    if (!part.empty()) out.parts.push_back(std::move(part));
+}
 
 /// The vertices of several parts, and their share.
 void findSeams(const FusionMesh& mesh, CutMesh& out) {
@@ -84,24 +101,27 @@ CutMesh cutMesh(const FusionMesh& mesh, const Partitioner& partition, std::size_
   std::size_t count = (cells + blockCells - 1) / blockCells;
   if (count > 1) count += band % 2;
   const std::vector<std::vector<CellId>> blocks = Blocks(mesh, count).take();
-  std::vector<std::vector<std::vector<CellId>>> parts(blocks.size());
-  workers.forEach(blocks.size(), 1, [&](std::size_t, std::size_t b) {
-    const std::vector<CellId>& block = blocks[b];
-    const std::size_t wanted = (block.size() + cellsOfAPart / 2) / cellsOfAPart;
-    parts[b].resize(std::max<std::size_t>(wanted, 1));
-    if (wanted < 2) {
-      parts[b][0] = block;
-      return;
-    }
-    const std::vector<std::uint32_t> partOf =
-        partition(cellGraphOf(mesh, block, old), static_cast<std::uint32_t>(wanted));
-    assert(partOf.size() == block.size());
-    for (std::size_t i = 0; i < block.size(); ++i) parts[b][partOf[i]].push_back(block[i]);
-  });
+  const auto wanted = [&](std::size_t b) {
+    return (blocks[b].size() + cellsOfAPart / 2) / cellsOfAPart;
+  };
   CutMesh out;
-  for (std::vector<std::vector<CellId>>& ofBlock : parts)
-    for (std::vector<CellId>& part : ofBlock)
-      if (!part.empty()) out.parts.push_back(std::move(part));
+  // The partitioner takes one block after the other: METIS shares its random numbers, and the
+  // handlers of signals, among all threads.
+  for (std::size_t first = 0; first < blocks.size(); first += workers.count()) {
+    const std::size_t together = std::min(workers.count(), blocks.size() - first);
+    std::vector<CellGraph> graphs(together);
+    workers.forEach(together, 1, [&](std::size_t, std::size_t i) {
+      if (wanted(first + i) > 1) graphs[i] = cellGraphOf(mesh, blocks[first + i], old);
+    });
+    for (std::size_t i = 0; i < together; ++i) {
+      const std::vector<CellId>& block = blocks[first + i];
+      const auto parts = static_cast<std::uint32_t>(std::max<std::size_t>(wanted(first + i), 1));
+      std::vector<std::uint32_t> partOf(block.size(), 0);
+      if (parts > 1) partOf = partition(graphs[i], parts);
+      graphs[i] = {};
+      takeParts(block, partOf, parts, out);
+    }
+  }
   findSeams(mesh, out);
   return out;
 }

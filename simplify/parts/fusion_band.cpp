@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <compare>
-#include <numeric>
+#include <optional>
 #include <utility>
 
 namespace qtet {
@@ -60,7 +61,7 @@ std::vector<PartFusions> fuseParts(const FusionState& whole, const FusionFrame& 
 
 std::vector<std::vector<PartLevel>> levelsOf(std::span<const PartFusions> parts) {
   std::vector<std::vector<PartLevel>> out;
-  for (const PartFusions& part : parts) out.push_back(part.levels);
+  for (const PartFusions& part : parts) out.push_back(part.done.levels);
   return out;
 }
 
@@ -77,6 +78,11 @@ float keyAt(std::span<const std::vector<PartLevel>> sampled, std::size_t cells, 
   return key;
 }
 
+/// This share of a part's cells, and no fewer.
+std::size_t cellsOf(double share, std::size_t own) {
+  return static_cast<std::size_t>(std::ceil(share * static_cast<double>(own)));
+}
+
 /// Some parts, and the price that they tell.
 struct Sample {
   std::vector<std::size_t> chosen;
@@ -87,7 +93,7 @@ struct Sample {
 /// A part whose seams stay has more cells at the band's price:
 /// 1 - (1 - 1 / factor) (1 - 2 (1 - share of inner vertices)).
 Sample sampleOf(const FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
-                Workers& workers, const CutMesh& cut) {
+                Workers& workers, const CutMesh& cut, double goal) {
   const double inner = std::max(0.0, 1 - 2 * (1 - cut.innerShare));
   const double share = 1 - (1 - 1 / kBandFactor) * inner;
   const std::size_t step =
@@ -97,8 +103,7 @@ Sample sampleOf(const FusionState& whole, const FusionFrame& frame, const Fusion
   for (std::size_t p = 0; p < cut.parts.size(); p += step)
     out.chosen.push_back(p), cells += cut.parts[p].size();
   out.parts = fuseParts(whole, frame, options, workers, cut, out.chosen, [&](std::size_t own) {
-    return PartEnd{.cells =
-                       static_cast<std::size_t>(kSampledTo * share * static_cast<double>(own))};
+    return PartEnd{.cells = cellsOf(std::max(kSampledTo * share, goal), own)};
   });
   out.key = keyAt(levelsOf(out.parts), cells, share);
   return out;
@@ -106,7 +111,7 @@ Sample sampleOf(const FusionState& whole, const FusionFrame& frame, const Fusion
 
 /// Takes the levels of the part from the first one on that ends beyond the key. False: it was cut
 /// before.
-bool endAt(float key, PartFusions& part) {
+bool endAt(float key, PartLevels& part) {
   const auto dear =
       std::ranges::find_if(part.levels, [&](const PartLevel& level) { return level.key > key; });
   if (dear == part.levels.end() && part.isCut) return false;
@@ -116,53 +121,68 @@ bool endAt(float key, PartFusions& part) {
 
 /// The fusions of all parts, up to the key of a sample of them.
 std::vector<PartFusions> fuseAll(const FusionState& whole, const FusionFrame& frame,
-                                 const FusionOptions& options, Workers& workers,
-                                 const CutMesh& cut) {
-  Sample sample = sampleOf(whole, frame, options, workers, cut);
+                                 const FusionOptions& options, Workers& workers, const CutMesh& cut,
+                                 std::size_t target) {
+  const double goal = static_cast<double>(target) /
+                      static_cast<double>(std::max<std::size_t>(whole.mesh().liveTetrahedra(), 1));
+  Sample sample = sampleOf(whole, frame, options, workers, cut, goal);
   std::vector<PartFusions> out(cut.parts.size());
   std::vector<std::uint8_t> isDone(cut.parts.size(), 0);
   for (std::size_t i = 0; i < sample.chosen.size(); ++i) {
-    isDone[sample.chosen[i]] = endAt(sample.key, sample.parts[i]);
+    isDone[sample.chosen[i]] = endAt(sample.key, sample.parts[i].done);
     if (isDone[sample.chosen[i]]) out[sample.chosen[i]] = std::move(sample.parts[i]);
   }
   std::vector<std::size_t> others;
   for (std::size_t p = 0; p < cut.parts.size(); ++p)
     if (!isDone[p]) others.push_back(p);
-  std::vector<PartFusions> rest =
-      fuseParts(whole, frame, options, workers, cut, others,
-                [&](std::size_t) { return PartEnd{.key = sample.key}; });
+  std::vector<PartFusions> rest = fuseParts(
+      whole, frame, options, workers, cut, others,
+      [&](std::size_t own) { return PartEnd{.key = sample.key, .cells = cellsOf(goal, own)}; });
   for (std::size_t i = 0; i < others.size(); ++i) out[others[i]] = std::move(rest[i]);
   return out;
 }
 
-/// Does to the whole what parts did, level by level.
+/// Does to the whole what parts did, level by level. Parts do not know of each other's boundary.
+/// Where a fusion that goes outside would meet it, its part ends.
 class Replay {
  public:
-  Replay(FusionState& whole, std::span<const PartFusions> parts) : whole_(whole), parts_(parts) {
+  Replay(FusionState& whole, const FusionFrame& frame, std::span<const PartFusions> parts)
+      : whole_(whole), parts_(parts) {
     for (const PartFusions& part : parts) vertices_.push_back(part.vertices);
     done_.resize(parts.size());
+    if (frame.allowed) boundary_.emplace(whole.mesh());
   }
 
-  /// So many fusions of the part, the next ones.
-  void fuse(std::size_t part, std::size_t count, std::uint32_t level) {
-    for (; count > 0; --count) fuse(part, parts_[part].history.fusions[done_[part]++], level);
+  void beginLevel() {
+    if (boundary_) boundary_->beginLevel();
+  }
+
+  /// The part's next level. The number of its fusions that were done.
+  std::size_t fuse(std::size_t part, const PartLevel& own, std::uint32_t level) {
+    std::size_t count = 0;
+    while (count < own.fusions && fuse(part, level)) ++count;
+    return count;
   }
 
  private:
-  void fuse(std::size_t part, const Fusion& fusion, std::uint32_t level) {
+  /// False: it would meet the boundary.
+  bool fuse(std::size_t part, std::uint32_t level) {
     const PartFusions& own = parts_[part];
     const FusionHistory& h = own.history;
+    const Fusion& fusion = h.fusions[done_[part]];
     std::vector<VertexId>& vertices = vertices_[part];
-    Prey prey{fusion.k, {}};
+    Prey& prey = proposal_.prey;
+    Star& star = proposal_.star;
+    prey = {fusion.k, {}};
     for (std::size_t i = 0; i < fusion.k; ++i) prey.vertex[i] = vertices[fusion.prey[i]];
-    star_.affected.clear(), star_.deleted.clear();
+    star.affected.clear(), star.deleted.clear();
     for (std::size_t i = 0; i < fusion.affectedCount; ++i)
-      star_.affected.push_back(own.cells[h.affectedCells[fusion.firstAffected + i]]);
+      star.affected.push_back(own.cells[h.affectedCells[fusion.firstAffected + i]]);
     for (std::size_t i = 0; i < fusion.deletedCount; ++i)
-      star_.deleted.push_back(own.cells[h.deletedCells[fusion.firstDeleted + i]]);
+      star.deleted.push_back(own.cells[h.deletedCells[fusion.firstDeleted + i]]);
     const auto labels =
         h.affectedLabels.begin() + static_cast<std::ptrdiff_t>(fusion.firstAffected);
-    star_.labels.assign(labels, labels + fusion.affectedCount);
+    star.labels.assign(labels, labels + fusion.affectedCount);
     values_.clear();
     for (std::size_t f = 0; f < h.fields.size(); ++f) {
       if (isCellField(h.fields[f])) continue;
@@ -170,16 +190,25 @@ class Replay {
       const auto first = h.values[f].begin() + static_cast<std::ptrdiff_t>(fusion.fused * n);
       values_.insert(values_.end(), first, first + static_cast<std::ptrdiff_t>(n));
     }
+    proposal_.where.point = h.points[fusion.fused];
+    const auto fused = static_cast<VertexId>(whole_.mesh().vertexSlots());
+    if (boundary_) {
+      if (own.done.wentOutside[done_[part]] && boundary_->isMetBy(proposal_)) return false;
+      boundary_->decideOn(proposal_, fused);
+    }
     assert(fusion.fused == vertices.size());
-    vertices.push_back(static_cast<VertexId>(whole_.mesh().vertexSlots()));
-    whole_.fuse(prey, {h.points[fusion.fused], values_}, star_, level);
+    vertices.push_back(fused);
+    ++done_[part];
+    whole_.fuse(prey, {proposal_.where.point, values_}, star, level);
+    return true;
   }
 
   FusionState& whole_;
   std::span<const PartFusions> parts_;
   std::vector<std::vector<VertexId>> vertices_;  // of the whole, by part and its own number
   std::vector<std::size_t> done_;                // fusions, by part
-  Star star_;
+  std::optional<LiveBoundary> boundary_;
+  Proposal proposal_;
   std::vector<std::int32_t> values_;
 };
 
@@ -204,27 +233,31 @@ std::vector<std::vector<std::uint32_t>> levelsOfTheWhole(
 }
 
 std::uint32_t fuseBand(FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
-                       Workers& workers, const CutMesh& cut, std::uint32_t levels) {
-  const std::vector<PartFusions> done = fuseAll(whole, frame, options, workers, cut);
+                       Workers& workers, const CutMesh& cut, std::size_t target,
+                       std::uint32_t levels) {
+  const std::vector<PartFusions> done = fuseAll(whole, frame, options, workers, cut, target);
   const std::vector<std::vector<PartLevel>> ofParts = levelsOf(done);
   const auto numbers = levelsOfTheWhole(ofParts, whole.mesh().liveTetrahedra());
-  Replay replay(whole, done);
+  Replay replay(whole, frame, done);
   std::vector<std::size_t> next(done.size(), 0);
-  bool isThere = true;
-  for (std::uint32_t level = 0; isThere; ++level) {
-    isThere = false;
+  std::size_t open = done.size();  // parts with levels to come
+  for (std::uint32_t number = 0; open > 0; ++number) {
+    open = 0;
+    std::size_t count = 0;
+    replay.beginLevel();
     for (std::size_t p = 0; p < done.size(); ++p) {
-      if (next[p] == numbers[p].size()) continue;
-      isThere = true;
-      if (numbers[p][next[p]] == level)
-        replay.fuse(p, ofParts[p][next[p]++].fusions, levels + level);
+      if (next[p] < numbers[p].size() && numbers[p][next[p]] == number) {
+        const PartLevel& own = ofParts[p][next[p]++];
+        const std::size_t fused = replay.fuse(p, own, levels);
+        count += fused;
+        if (fused < own.fusions) next[p] = numbers[p].size();
+      }
+      open += next[p] < numbers[p].size();
     }
+    levels += count > 0;
     workers.throwIfStopped();
   }
-  std::uint32_t count = 0;
-  for (const std::vector<std::uint32_t>& own : numbers)
-    if (!own.empty()) count = std::max(count, own.back() + 1);
-  return levels + count;
+  return levels;
 }
 
 }  // namespace qtet

@@ -20,10 +20,10 @@ namespace qtet {
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> levelsOfTheWhole(
     std::span<const std::vector<PartLevel>> parts, std::size_t cells);
 
-/// Fuses a band in parts of `cut`, and what they did is done to the whole from level `levels` on.
-/// Returns the number of levels then.
+/// Fuses a band in the parts of `cut`, which leave `target` tetrahedra in all. Their fusions are
+/// then done to the whole, from level `levels` on. Returns the number of levels then.
 [[nodiscard]] std::uint32_t fuseBand(FusionState& whole, const FusionFrame& frame,
                                      const FusionOptions& options, Workers& workers,
-                                     const CutMesh& cut, std::uint32_t levels);
+                                     const CutMesh& cut, std::size_t target, std::uint32_t levels);
 
 }  // namespace qtet

@@ -1,6 +1,7 @@
 #include "simplify/parts/mesh_part.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "codec/mesh/boundary.h"
@@ -44,10 +45,13 @@ class PartMesh {
 
   /// The whole's boundary triangle of these corners, or kNoCell.
   [[nodiscard]] CellId ghostOf(const Triangle& own) const {
-    const VertexId a = vertices_[own[0]], b = vertices_[own[1]], c = vertices_[own[2]];
-    const auto ghosts = whole_.boundaryStar(a);
-    const auto found = std::ranges::find_if(
-        ghosts, [&](CellId ghost) { return whole_.holds(ghost, b) && whole_.holds(ghost, c); });
+    const std::array<VertexId, 3> corners{vertices_[own[0]], vertices_[own[1]], vertices_[own[2]]};
+    // a hub has very many of them
+    const auto ghosts = whole_.boundaryStar(
+        std::ranges::min(corners, {}, [&](VertexId v) { return whole_.boundaryStar(v).size(); }));
+    const auto found = std::ranges::find_if(ghosts, [&](CellId ghost) {
+      return std::ranges::all_of(corners, [&](VertexId v) { return whole_.holds(ghost, v); });
+    });
     return found == ghosts.end() ? kNoCell : *found;
   }
 
@@ -91,17 +95,17 @@ PartFusions fusePart(const FusionState& whole, const FusionFrame& frame,
     const auto quadric = whole.cost().quadric(v);
     quadrics.insert(quadrics.end(), quadric.begin(), quadric.end());
     isOwnSeam.push_back(isSeam[v]);
-    if (isSeam[v]) kept.push_back(static_cast<VertexId>(isOwnSeam.size() - 1));
+    if (isSeam[v] || whole.mesh().singular(v))
+      kept.push_back(static_cast<VertexId>(isOwnSeam.size() - 1));
   }
   FusionState state(part.lattice(), regionField, frame.cost, quadrics);
   state.keep(kept);
   FusionOptions own = options;
   own.progress = {};
+  own.kept.clear();
   Workers alone(1, options.stop);
-  PartLevels done = FusionLoop(state, frame, own, alone).runPart(end, isOwnSeam);
-  out.levels = std::move(done.levels);
-  out.isCut = done.isCut;
-  out.history = state.takeHistory(static_cast<std::uint32_t>(out.levels.size()));
+  out.done = FusionLoop(state, frame, own, alone).runPart(end, isOwnSeam);
+  out.history = state.takeHistory(static_cast<std::uint32_t>(out.done.levels.size()));
   return out;
 }
 

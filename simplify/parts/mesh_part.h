@@ -1,5 +1,5 @@
 // A part of a mesh under simplification, as a mesh of its own. Its fusions are those that the whole
-// would do if all other vertices were kept.
+// would do if all other vertices were kept, and if no other boundary were near.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,7 @@ struct PartFusions {
   /// Its tetrahedra, ascending, then its boundary triangles; kNoCell where that is a seam.
   std::vector<CellId> cells;
   FusionHistory history;
-  std::vector<PartLevel> levels;
-  bool isCut = false;  ///< PartLevels::isCut
+  PartLevels done;
 };
 inline constexpr CellId kNoCell = ~CellId{0};
 

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <new>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 namespace qtet {
@@ -22,10 +24,11 @@ std::vector<std::uint32_t> partsByMetis(const CellGraph& graph, std::uint32_t pa
   std::vector<idx_t> out(static_cast<std::size_t>(vertices));
   // METIS takes its arrays as writable, and leaves them as they are.
   const auto writable = [](const std::vector<idx_t>& x) { return const_cast<idx_t*>(x.data()); };
-  if (METIS_PartGraphKway(&vertices, &constraints, writable(graph.begins), writable(graph.beside),
-                          nullptr, nullptr, writable(graph.weights), &wanted, nullptr, nullptr,
-                          options.data(), &cut, out.data()) != METIS_OK)
-    throw std::bad_alloc();  // its inputs are right, so memory is what it lacks
+  const int done = METIS_PartGraphKway(
+      &vertices, &constraints, writable(graph.begins), writable(graph.beside), nullptr, nullptr,
+      writable(graph.weights), &wanted, nullptr, nullptr, options.data(), &cut, out.data());
+  if (done == METIS_ERROR_MEMORY) throw std::bad_alloc();
+  if (done != METIS_OK) throw std::runtime_error("METIS failed with " + std::to_string(done));
   return {out.begin(), out.end()};
 }
 

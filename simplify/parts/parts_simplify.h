@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/parts/cell_graph.h"
@@ -19,10 +20,14 @@ struct PartsOptions {
   std::size_t minParts = 64, minPartsLater = 8;
 };
 
+struct PartsFusion {
+  FusionHistory history;
+  std::uint32_t bands = 0;  ///< 0: nothing was cut
+};
+
 /// As simplify. A mesh that is too small to be cut has the same fusions as there. The result
 /// depends on the parts, and on no number of threads.
-[[nodiscard]] Result<FusionHistory> simplifyInParts(LatticeMesh&& mesh,
-                                                    const FusionOptions& options,
-                                                    const PartsOptions& parts);
+[[nodiscard]] Result<PartsFusion> simplifyInParts(LatticeMesh&& mesh, const FusionOptions& options,
+                                                  const PartsOptions& parts);
 
 }  // namespace qtet

@@ -84,7 +84,9 @@ Result<FusionHistory> inOnePiece(const LatticeMesh& mesh, const FusionOptions& o
 }
 Result<FusionHistory> inParts(const LatticeMesh& mesh, const FusionOptions& options) {
   LatticeMesh copy = mesh;
-  return simplifyInParts(std::move(copy), options, testing::smallParts(100));
+  Result<PartsFusion> fused = simplifyInParts(std::move(copy), options, testing::smallParts(100));
+  if (!fused) return std::unexpected(fused.error());
+  return std::move(fused->history);
 }
 
 void keepsItsPromises(std::uint32_t seed, Simplify simplifies) {

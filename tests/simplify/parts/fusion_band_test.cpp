@@ -57,7 +57,7 @@ class PartAndWhole : public ::testing::Test {
       for (std::uint32_t band = 0; band < bandsBefore; ++band) {
         again = other.cut(band, again.isSeam);
         other.levels =
-            fuseBand(other.state, other.frame, options_, other.workers, again, other.levels);
+            fuseBand(other.state, other.frame, options_, other.workers, again, 0, other.levels);
       }
       expectTheSame(alone, cells, cut, other);
     }
@@ -77,7 +77,7 @@ class PartAndWhole : public ::testing::Test {
     const PartLevels done = FusionLoop(other.state, other.frame, options_, other.workers)
                                 .runPart({.key = 1e6f, .leastShare = 0}, cut.isSeam);
     ASSERT_GT(alone.history.fusions.size(), 10u);
-    EXPECT_EQ(alone.levels.size(), done.levels.size());
+    EXPECT_EQ(alone.done.levels.size(), done.levels.size());
     const FusionHistory all = other.state.takeHistory(1);
     std::vector<VertexId> numbers = alone.vertices;
     for (std::size_t i = 0; i < alone.history.fusions.size(); ++i) {
@@ -100,7 +100,7 @@ TEST_F(PartAndWhole, aPartAloneHasTheFusionsThatItHasInTheWhole) {
   CutMesh cut = whole.cut(0, {});
   ASSERT_GT(cut.parts.size(), 4u);
   expectTheSameOfEachPart(whole, cut, 0);
-  whole.levels = fuseBand(whole.state, whole.frame, options_, whole.workers, cut, whole.levels);
+  whole.levels = fuseBand(whole.state, whole.frame, options_, whole.workers, cut, 0, whole.levels);
   cut = whole.cut(1, cut.isSeam);
   ASSERT_GT(cut.parts.size(), 1u);
   expectTheSameOfEachPart(whole, cut, 1);
