@@ -11,6 +11,7 @@
 #include "simplify/commands/simplified_list.h"
 #include "simplify/commands/simplified_log.h"
 #include "simplify/log/opened_list.h"
+#include "simplify/parts/metis_partition.h"
 #include "simplify/read/listed_files.h"
 
 namespace qtet {
@@ -79,6 +80,13 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   options.units = unitsOf(parsed);
   options.valueCodec = valueCodecOf(parsed.get<std::string>("value-codec"));
   options.exactCoarse = parsed.has("exact-coarse");
+  if (parsed.has("parts")) {
+    options.parts = PartsOptions{.partition = metisPartitioner()};
+    if (!options.parts->partition)
+      throw UsageError(
+          "--parts needs METIS, which this program was built without; leave it out, or "
+          "take the program of the Debian package qtet");
+  }
   request.read.originalIds = parsed.has("original-ids");
   options.timeStatistics = parsed.has("time-statistics");
   if (options.timeStatistics && isSegmentList(request.output))
@@ -117,6 +125,9 @@ int runSimplify(const Words& words, Console& console) {
       "value-codec", po::value<std::string>()->default_value("lifted"),
       "how values are coded: lifted is smallest (positions by Draco), draco is quickest to decode, "
       "adaptive is a coder of our own for positions too")(
+      "parts",
+      "experimental: simplify a mesh of over a million cells in parts, each of which a thread "
+      "takes; the log does not depend on the number of threads")(
       "exact-coarse",
       "coarse levels keep the best values of their fields, which takes up to a third more for "
       "errors some 2 % smaller")("keep-order",
@@ -159,7 +170,7 @@ int runSimplify(const Words& words, Console& console) {
          {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
           "placement", "shape-weight", "preserve-regions", "position-bits"}},
         {"output", {"value-codec", "keep-order", "original-ids", "measure"}},
-        {"rare", {"algorithm", "exact-coarse"}}}},
+        {"rare", {"algorithm", "exact-coarse", "parts"}}}},
       options, {"IN..."});
   if (parsed.helped(console)) return kExitOk;
   const Output output = outputOf(parsed, console);

@@ -7,7 +7,6 @@
 
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/face_groups.h"
-#include "simplify/cost/boundary_weight.h"
 #include "simplify/cost/label_fields.h"
 #include "simplify/mesh/large_pages.h"
 #include "simplify/mesh/workers.h"
@@ -32,65 +31,61 @@ bool areNear(std::span<const Tetrahedron> cells, std::size_t run) {
 FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice,
                        const CostOptions& options, Workers* workers)
     : mesh_(mesh),
-      parts_(costPartsOf(lattice, options.fieldWeights)),
-      basis_(lattice, parts_),
-      components_(basis_.components()),
-      stride_(kHead + kPerComponent * components_),
-      diagonal_(diagonalOf(lattice)) {
+      frame_(lattice, options),
+      components_(frame_.basis.components()),
+      stride_(kHead + kPerComponent * components_) {
   assert(mesh.vertexSlots() == lattice.points.size());
-  if (basis_.isDirect()) takeLimits(lattice);
   slot_.resize(lattice.points.size());
   std::iota(slot_.begin(), slot_.end(), 0u);
   quadrics_.reserve(lattice.points.size() * stride_);
   useLargePages(quadrics_);
   quadrics_.resize(lattice.points.size() * stride_, 0);
   takeValues(lattice);
-  components_ == 0 ? addPlanes(lattice, options) : addSlopes(lattice, options, workers);
+  components_ == 0 ? addPlanes(lattice) : addSlopes(lattice, workers);
+}
+
+FusionCost::FusionCost(const FusionMesh& mesh, const CostFrame& frame,
+                       std::span<const double> quadrics)
+    : mesh_(mesh),
+      frame_(frame),
+      components_(frame_.basis.components()),
+      stride_(kHead + kPerComponent * components_),
+      quadrics_(quadrics.begin(), quadrics.end()) {
+  assert(quadrics.size() == mesh.vertexSlots() * stride_);
+  slot_.resize(mesh.vertexSlots());
+  std::iota(slot_.begin(), slot_.end(), 0u);
 }
 
 // Each worker adds to vertices of its own, in the order of the cells, so that every sum is that of
 // one worker. Ids that lie near one another mostly lie near one another in the mesh, too, so few
-// cells are visited by two workers. Where that is not so, one worker alone is quicker. Meanwhile
-// the boundary's weight is found.
-void FusionCost::addSlopes(const LatticeMesh& lattice, const CostOptions& options,
-                           Workers* workers) {
+// cells are visited by two workers. Where that is not so, one worker alone is quicker.
+void FusionCost::addSlopes(const LatticeMesh& lattice, Workers* workers) {
   const std::size_t vertices = lattice.points.size();
   const std::size_t runs =
       workers && areNear(lattice.tetrahedra, vertices / workers->count()) ? workers->count() : 1;
-  const auto run = [&](std::size_t i) {
-    return Vertices{static_cast<VertexId>(i * vertices / runs),
-                    static_cast<VertexId>((i + 1) * vertices / runs)};
+  const auto forRuns = [&](const auto& add) {
+    forEach(workers, runs, 1, [&](std::size_t, std::size_t i) {
+      add(Vertices{static_cast<VertexId>(i * vertices / runs),
+                   static_cast<VertexId>((i + 1) * vertices / runs)});
+    });
   };
-  double boundaryWeight = options.boundaryWeight.value_or(0);
-  forEach(workers, runs + 1, 1, [&](std::size_t, std::size_t i) {
-    if (i < runs) return addFields(lattice, run(i));
-    if (!options.boundaryWeight) boundaryWeight = balancedBoundaryWeight(lattice, parts_);
-  });
-  const auto add = [&](std::span<const Triangle> surface, double weight) {
-    forEach(workers, runs, 1,
-            [&](std::size_t, std::size_t i) { addTriangles(surface, weight / diagonal_, run(i)); });
+  const auto addSurface = [&](std::span<const Triangle> surface, double weight) {
+    forRuns([&](const Vertices& own) { addTriangles(surface, weight / frame_.diagonal, own); });
   };
-  add(lattice.boundary, boundaryWeight);
-  for (const LabelCost& label : options.labels) {
-    if (label.weight > 0) add(interfacesOf(lattice, label.field), label.weight);
-  }
-}
-
-void FusionCost::takeLimits(const LatticeMesh& lattice) {
-  for (const CostPart& part : parts_) {
-    const FieldInfo& info = lattice.fields[part.field];
-    limits_.insert(limits_.end(), info.components, part.scale * (std::ldexp(1.0, info.bits) - 1));
-  }
+  forRuns([&](const Vertices& own) { addFields(lattice, own); });
+  addSurface(lattice.boundary, frame_.boundaryWeight);
+  for (const LabelCost& label : frame_.labels)
+    if (label.weight > 0) addSurface(interfacesOf(lattice, label.field), label.weight);
 }
 
 void FusionCost::takeValues(const LatticeMesh& lattice) {
   std::size_t first = 0;
-  for (const CostPart& part : parts_) {
+  for (const CostPart& part : frame_.parts) {
     const std::size_t n = lattice.fields[part.field].components;
     for (VertexId v = 0; v < lattice.points.size(); ++v)
       for (std::size_t c = 0; c < n; ++c)
-        basis_.add(first + c, part.scale * lattice.values[part.field][v * n + c],
-                   std::span(quadrics_).subspan(at(v) + placeOf(kValue, 0), components_));
+        frame_.basis.add(first + c, part.scale * lattice.values[part.field][v * n + c],
+                         std::span(quadrics_).subspan(at(v) + placeOf(kValue, 0), components_));
     first += n;
   }
 }
@@ -159,17 +154,17 @@ void FusionCost::addTriangles(std::span<const Triangle> triangles, double bounda
     const double area = 0.5 * std::sqrt(squared);
     Symmetric3 a;
     a.addOuter(n, boundaryFactor * area / squared);
-    addSlope(t, gradients, kWallLayer * diagonal_ * area, a, own);
+    addSlope(t, gradients, kWallLayer * frame_.diagonal * area, a, own);
   }
 }
 
 // Eq. 1-3: weight a_p^2, so n / 2 as it is.
-void FusionCost::addPlanes(const LatticeMesh& lattice, const CostOptions& options) {
+void FusionCost::addPlanes(const LatticeMesh& lattice) {
   // A length to the sixth power in lattice steps would pass the largest float on fine lattices; a
   // power of two changes nothing else.
   const double scale = std::ldexp(0.25, -3 * lattice.lattice.bits);
   const auto isSurface = [&](std::span<const FaceSide> sides) {
-    return sides.size() == 1 || std::ranges::any_of(options.labels, [&](const LabelCost& label) {
+    return sides.size() == 1 || std::ranges::any_of(frame_.labels, [&](const LabelCost& label) {
              const std::vector<std::int32_t>& labels = lattice.values[label.field];
              return label.weight > 0 && labels[cellOf(sides[0])] != labels[cellOf(sides[1])];
            });
@@ -180,7 +175,7 @@ void FusionCost::addPlanes(const LatticeMesh& lattice, const CostOptions& option
     const Vector3 p = mesh_.position(face[0]);
     const Vector3 n = cross(mesh_.position(face[1]) - p, mesh_.position(face[2]) - p);
     Symmetric3 a;
-    a.addOuter(n, scale * (isSurface(sides) ? options.boundaryFactor * options.boundaryFactor : 1));
+    a.addOuter(n, scale * (isSurface(sides) ? frame_.boundaryFactor * frame_.boundaryFactor : 1));
     addSlope(face, {}, 0, a, Vertices{});
   });
 }
@@ -270,7 +265,7 @@ double FusionCost::valuesAt(const Prey& prey, const LatticePoint& p,
   for (std::size_t f = 0; f < components_; ++f) {
     const double best = value(prey.vertex[0], f) +
                         (sum.weight > 0 ? (dot(sum.slope[f], d) + sum.offset[f]) / sum.weight : 0);
-    values[f] = basis_.isDirect() ? std::clamp(best, 0.0, limits_[f]) : best;
+    values[f] = frame_.basis.isDirect() ? std::clamp(best, 0.0, frame_.limits[f]) : best;
     cost += sum.weight * (values[f] - best) * (values[f] - best);
   }
   return cost;

@@ -13,9 +13,7 @@
 
 #include "codec/coding/prefetch.h"
 #include "codec/mesh/mesh.h"
-#include "simplify/cost/cost_basis.h"
-#include "simplify/cost/cost_options.h"
-#include "simplify/cost/cost_parts.h"
+#include "simplify/cost/cost_frame.h"
 #include "simplify/cost/edge_quadric.h"
 #include "simplify/cost/line_allocator.h"
 #include "simplify/cost/quadric.h"
@@ -41,6 +39,15 @@ class FusionCost {
   /// was made of `lattice`.
   FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options,
              Workers* workers = nullptr);
+  /// A part of a mesh. `quadrics`: quadric(v) of its vertices in the whole, back to back. REQUIRES:
+  /// `mesh` outlives this.
+  FusionCost(const FusionMesh& mesh, const CostFrame& frame, std::span<const double> quadrics);
+
+  [[nodiscard]] const CostFrame& frame() const { return frame_; }
+  /// All that v stands for, as the other constructor takes it.
+  [[nodiscard]] std::span<const double> quadric(VertexId v) const {
+    return std::span(quadrics_).subspan(at(v), stride_);
+  }
 
   /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best
   /// values for each point.
@@ -62,11 +69,9 @@ class FusionCost {
   }
 
   /// The fields in the cost.
-  [[nodiscard]] std::span<const CostPart> parts() const { return parts_; }
+  [[nodiscard]] std::span<const CostPart> parts() const { return frame_.parts; }
   /// The meaning of the values, in the order of parts().
-  [[nodiscard]] const CostBasis& basis() const { return basis_; }
-  /// The diagonal of the bounding box, in lattice steps.
-  [[nodiscard]] double diagonal() const { return diagonal_; }
+  [[nodiscard]] const CostBasis& basis() const { return frame_.basis; }
   [[nodiscard]] std::size_t components() const { return components_; }
 
   /// The best values at p in the cost's unit (components() numbers), within the fields' limits if
@@ -118,15 +123,14 @@ class FusionCost {
     }
   };
 
-  void takeLimits(const LatticeMesh& lattice);
   void takeValues(const LatticeMesh& lattice);
-  void addSlopes(const LatticeMesh& lattice, const CostOptions& options, Workers* workers);
+  void addSlopes(const LatticeMesh& lattice, Workers* workers);
   void addFields(const LatticeMesh& lattice, const Vertices& own);
   void addTriangles(std::span<const Triangle> triangles, double boundaryFactor,
                     const Vertices& own);
   void addSlope(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight,
                 Symmetric3 a, const Vertices& own);
-  void addPlanes(const LatticeMesh& lattice, const CostOptions& options);
+  void addPlanes(const LatticeMesh& lattice);
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
   enum Part : std::size_t { kSlope = 0, kOffset = 3, kValue = 4 };
   [[nodiscard]] std::size_t placeOf(std::size_t part, std::size_t f) const {
@@ -144,18 +148,15 @@ class FusionCost {
   void sumOf(const Prey& prey, Sum& sum) const;
 
   const FusionMesh& mesh_;
-  std::vector<CostPart> parts_;
-  CostBasis basis_;
+  CostFrame frame_;
   std::size_t components_ = 0, stride_ = kHead;
-  double diagonal_ = 1;         // lattice steps
-  std::vector<double> limits_;  // if direct, a component's largest value; the smallest is 0
   std::vector<double, LineAllocator<double>> quadrics_;  // stride_ a slot
   std::vector<std::uint32_t> slot_;  // by vertex: a fused vertex takes its first prey vertex's
 };
 
 template <class T>
 inline T FusionCost::pullOf(const T& trace, const T& weight) const {
-  return kPull * trace / 3 + kFlatPull * weight / (diagonal_ * diagonal_) +
+  return kPull * trace / 3 + kFlatPull * weight / (frame_.diagonal * frame_.diagonal) +
          std::numeric_limits<double>::min();
 }
 

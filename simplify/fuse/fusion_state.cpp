@@ -24,6 +24,13 @@ FusionState::FusionState(const LatticeMesh& lattice, std::size_t regionField,
   integers_.resize(valuesOfAPoint(mesh_.fields()));
 }
 
+FusionState::FusionState(const LatticeMesh& part, std::size_t regionField, const CostFrame& frame,
+                         std::span<const double> quadrics)
+    : mesh_(part, regionField), cost_(mesh_, frame, quadrics) {
+  changes_.resize(mesh_.vertexSlots());
+  integers_.resize(valuesOfAPoint(mesh_.fields()));
+}
+
 const Candidate* FusionState::bestAlive(VertexId owner) {
   while (const Candidate* best = candidates_.best(owner)) {
     if (mesh_.alive(best->partner)) return best;
@@ -36,16 +43,29 @@ void FusionState::fuse(const Prey& prey, const LatticePoint& point, const Star& 
                        std::uint32_t level) {
   for (const VertexId v : star.link)
     if (v != kGhost) mesh_.prefetchVertex(v);
-  const auto fused = static_cast<VertexId>(mesh_.vertexSlots());
-  cost_.makeRoom(fused + std::size_t{1});
-  changes_.resize(fused + std::size_t{1});
   for (const VertexId v : prey.vertices()) candidates_.forget(v);
   std::array<double, kMaxCostComponents> room;
   const auto values = std::span(room).first(cost_.components());
   cost_.valuesAt(prey, point, values);
   findIntegers(prey, point, values);
-  cost_.fuse(prey, fused, point, values);
-  mesh_.fuse(prey, {point, integers_}, star, level);
+  fuse(prey, {point, integers_}, values, star, level);
+}
+
+void FusionState::fuse(const Prey& prey, const FusedVertex& what, const Star& star,
+                       std::uint32_t level) {
+  std::array<double, kMaxCostComponents> room;
+  const auto values = std::span(room).first(cost_.components());
+  cost_.valuesAt(prey, what.point, values);
+  fuse(prey, what, values, star, level);
+}
+
+void FusionState::fuse(const Prey& prey, const FusedVertex& what, std::span<const double> values,
+                       const Star& star, std::uint32_t level) {
+  const auto fused = static_cast<VertexId>(mesh_.vertexSlots());
+  cost_.makeRoom(fused + std::size_t{1});
+  changes_.resize(fused + std::size_t{1});
+  cost_.fuse(prey, fused, what.point, values);
+  mesh_.fuse(prey, what, star, level);
 }
 
 void FusionState::findIntegers(const Prey& prey, const LatticePoint& point,

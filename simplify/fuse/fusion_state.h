@@ -20,6 +20,9 @@ class FusionState {
   /// REQUIRES: as FusionMesh and FusionCost.
   FusionState(const LatticeMesh& lattice, std::size_t regionField, const CostOptions& cost,
               Workers& workers);
+  /// A part of a mesh, as FusionCost takes it.
+  FusionState(const LatticeMesh& part, std::size_t regionField, const CostFrame& frame,
+              std::span<const double> quadrics);
   FusionState(const FusionState&) = delete;
   FusionState& operator=(const FusionState&) = delete;
 
@@ -39,11 +42,16 @@ class FusionState {
   /// Fuses the prey into a vertex at `point`. REQUIRES: as FusionMesh::fuse.
   void fuse(const Prey& prey, const LatticePoint& point, const Star& star, std::uint32_t level);
 
+  /// The same with these integers. REQUIRES: no candidates.
+  void fuse(const Prey& prey, const FusedVertex& what, const Star& star, std::uint32_t level);
+
   [[nodiscard]] FusionHistory takeHistory(std::uint32_t levels) {
     return mesh_.takeHistory(levels);
   }
 
  private:
+  void fuse(const Prey& prey, const FusedVertex& what, std::span<const double> values,
+            const Star& star, std::uint32_t level);
   void findIntegers(const Prey& prey, const LatticePoint& point, std::span<const double> values);
 
   FusionMesh mesh_;

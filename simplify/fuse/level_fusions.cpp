@@ -20,6 +20,7 @@ void LevelFusions::carryOut(const Proposal& proposal) {
     if (v != kGhost) state_.changes().touch(v);
   state_.changes().next();
   fused_.push_back(static_cast<VertexId>(state_.mesh().vertexSlots()));
+  wentOutside_.push_back(proposal.where.goesOutside);
   if (boundary_) boundary_->decideOn(proposal, fused_.back());
   links_.insert(links_.end(), link.begin(), link.end());
   linkEnds_.push_back(links_.size());

@@ -29,8 +29,9 @@ LiveBoundary::LiveBoundary(const FusionMesh& mesh)
     : mesh_(mesh), firstGhost_(mesh.firstGhost()), tree_([&] {
         const std::size_t count = mesh.boundaryTriangles();
         triangles_.resize(count), points_.resize(3 * count), vertices_.resize(count);
-        live_.assign(count, 1);
+        live_.resize(count);
         for (std::uint32_t i = 0; i < count; ++i) {
+          live_[i] = mesh.isLive(firstGhost_ + i);
           triangles_[i] = {3 * i, 3 * i + 1, 3 * i + 2, kGhost};
           const auto& cell = mesh.cell(firstGhost_ + i);
           for (std::size_t corner = 0; corner < 3; ++corner)

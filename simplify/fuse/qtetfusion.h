@@ -16,6 +16,9 @@
 
 namespace qtet {
 
+class FusionState;
+struct FusionFrame;
+
 /// Cells of the base mesh where nothing else is asked for: this fraction, but no more than so many.
 /// A viewer has these within the first hundred kilobytes.
 inline constexpr double kBaseRatio = 0.01;
@@ -59,8 +62,12 @@ struct FusionOptions {
 /// number of cells; weights that are negative or not one a field; a kept vertex that is none),
 /// limit-exceeded (too many levels), cancelled.
 [[nodiscard]] Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options);
+/// Does fusions before all others; the number of levels then.
+using FirstFusions = std::function<std::uint32_t(FusionState& state, const FusionFrame& frame)>;
+
 /// The same for a mesh that is not needed any more: its memory is given back before the first
 /// fusion.
-[[nodiscard]] Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options);
+[[nodiscard]] Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options,
+                                             const FirstFusions& first = {});
 
 }  // namespace qtet

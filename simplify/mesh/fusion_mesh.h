@@ -83,6 +83,7 @@ class FusionMesh {
   [[nodiscard]] std::span<const CellId> innerStar(VertexId v) const {
     return star(v).subspan(stars_[v].ghosts);
   }
+  [[nodiscard]] bool isLive(CellId c) const { return history_.live[c]; }
   [[nodiscard]] bool isGhost(CellId c) const { return c >= firstGhost_; }
   [[nodiscard]] bool holds(CellId c, VertexId v) const {
     return cornersThatAre(history_.cells[c], v) != 0;
@@ -134,6 +135,8 @@ class FusionMesh {
   /// Boundary triangles at first: the ghost cells from firstGhost() on.
   [[nodiscard]] std::size_t boundaryTriangles() const { return planes_.size(); }
   [[nodiscard]] CellId firstGhost() const { return firstGhost_; }
+  /// Those that were done.
+  [[nodiscard]] std::size_t fusions() const { return history_.fusions.size(); }
   [[nodiscard]] std::size_t liveTetrahedra() const { return liveTetrahedra_; }
   [[nodiscard]] const Lattice& lattice() const { return history_.lattice; }
   [[nodiscard]] int latticeBits() const { return history_.lattice.bits; }

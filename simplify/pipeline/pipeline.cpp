@@ -155,6 +155,15 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
 
 /// Simplifies by the algorithm asked for; the paper's leaves its figures in the report.
 Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run& run) {
+  if (run.options.parts) {
+    Result<PartsFusion> fused = simplifyInParts(std::move(mesh), options, *run.options.parts);
+    if (!fused) return std::unexpected(fused.error());
+    run.note(
+        {fused->bands > 0
+             ? "the mesh was simplified in parts, in " + std::to_string(fused->bands) + " bands"
+             : "the mesh is too small for parts, and was simplified in one piece"});
+    return std::move(fused->history);
+  }
   if (run.options.algorithm != Algorithm::kPaper) return simplify(std::move(mesh), options);
   Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);
   if (!fused) return std::unexpected(fused.error());
@@ -324,10 +333,10 @@ std::string differencesNote(const LogIndex& index) {
 Status checkOptions(const PipelineOptions& options) {
   const FusionOptions& fusion = options.fusion;
   const bool isPaper = options.algorithm == Algorithm::kPaper;
-  if (isPaper && (options.regions || fusion.envelopeTolerance.value_or(0) > 0 ||
+  if (isPaper && (options.regions || options.parts || fusion.envelopeTolerance.value_or(0) > 0 ||
                   !options.fieldWeights.empty() || !options.labelWeights.empty()))
     return badValue(
-        "`algorithm` paper knows no `regions`, `envelopeTolerance`, `fieldWeights` or "
+        "`algorithm` paper knows no `regions`, `parts`, `envelopeTolerance`, `fieldWeights` or "
         "`labelWeights`; leave them out");
   for (const auto& [weights, option] : {std::pair(&options.fieldWeights, "`fieldWeights`"),
                                         std::pair(&options.labelWeights, "`labelWeights`")})

@@ -19,6 +19,7 @@
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/log/kept_input.h"
 #include "simplify/measure/measure_error.h"
+#include "simplify/parts/parts_simplify.h"
 #include "simplify/pipeline/made_log.h"
 
 namespace qtet {
@@ -47,6 +48,8 @@ struct PipelineOptions {
   /// Only its effort, bounds and rule for the base mesh count. Without it nothing is measured, and
   /// no rule chooses the base mesh.
   std::optional<MeasureOptions> measure{std::in_place};
+  /// A large mesh is simplified in parts, on all cores. Without: in one piece.
+  std::optional<PartsOptions> parts{};
   CodecId valueCodec = CodecId::kLifted;
   /// Coarse levels keep the values that are best for them, whatever bits these take (liftFields).
   bool exactCoarse = false;

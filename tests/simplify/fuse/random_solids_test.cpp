@@ -9,12 +9,15 @@
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "codec/files/atomic_file.h"
 #include "codec/log/log_writer.h"
 #include "codec/refine/log_file.h"
 #include "simplify/clean/verify.h"
 #include "simplify/fuse/qtetfusion.h"
+#include "simplify/parts/parts_simplify.h"
+#include "tests/simplify/parts/small_parts.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random_solid.h"
 #include "tests/support/solid_check.h"
@@ -75,13 +78,24 @@ void itsLogDecodesToTheSame(const LatticeMesh& mesh, const FusionHistory& histor
   }
 }
 
-void keepsItsPromises(std::uint32_t seed) {
+using Simplify = Result<FusionHistory> (*)(const LatticeMesh& mesh, const FusionOptions& options);
+Result<FusionHistory> inOnePiece(const LatticeMesh& mesh, const FusionOptions& options) {
+  return simplify(mesh, options);
+}
+Result<FusionHistory> inParts(const LatticeMesh& mesh, const FusionOptions& options) {
+  LatticeMesh copy = mesh;
+  Result<PartsFusion> fused = simplifyInParts(std::move(copy), options, testing::smallParts(100));
+  if (!fused) return std::unexpected(fused.error());
+  return std::move(fused->history);
+}
+
+void keepsItsPromises(std::uint32_t seed, Simplify simplifies) {
   const auto solid = randomSolid(seed);
   SCOPED_TRACE("seed " + std::to_string(seed) + ": " + solid.description);
   FusionOptions options;
   options.targetRatio = 0;
   options.envelopeTolerance = 0;
-  const auto history = simplify(solid.mesh, options);
+  const auto history = simplifies(solid.mesh, options);
   ASSERT_TRUE(history) << history.error().text();
   everyLevelKeepsItsPromises(solid.mesh, *history);
   if (!::testing::Test::HasFatalFailure()) itsLogDecodesToTheSame(solid.mesh, *history);
@@ -89,7 +103,7 @@ void keepsItsPromises(std::uint32_t seed) {
 
 /// With room outside: a solid of the same topology that nowhere meets itself, and its boundary
 /// within the tolerance.
-void keepsItsPromisesOutside(std::uint32_t seed) {
+void keepsItsPromisesOutside(std::uint32_t seed, Simplify simplifies) {
   const auto solid = randomSolid(seed);
   SCOPED_TRACE("seed " + std::to_string(seed) + ": " + solid.description);
   FusionOptions options;
@@ -97,7 +111,7 @@ void keepsItsPromisesOutside(std::uint32_t seed) {
   const double share = std::array{kEnvelopeTolerance, 0.01, 0.05, 0.3}[seed % 4];
   options.envelopeTolerance = share;
   options.placement = seed % 3 == 0 ? PlacementRule::kAuto : PlacementRule::kOptimal;
-  const auto history = simplify(solid.mesh, options);
+  const auto history = simplifies(solid.mesh, options);
   ASSERT_TRUE(history) << history.error().text();
   const SolidReport original = checkSolid(solid.mesh);
   const double tolerance = share * latticeDiagonal(solid.mesh);
@@ -115,9 +129,16 @@ void keepsItsPromisesOutside(std::uint32_t seed) {
 
 class RandomSolids : public ::testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(RandomSolids, keepEveryInvariantAtEveryLevel) { keepsItsPromises(GetParam()); }
+TEST_P(RandomSolids, keepEveryInvariantAtEveryLevel) { keepsItsPromises(GetParam(), inOnePiece); }
 
-TEST_P(RandomSolids, keepEveryInvariantWithRoomOutside) { keepsItsPromisesOutside(GetParam()); }
+TEST_P(RandomSolids, keepEveryInvariantWithRoomOutside) {
+  keepsItsPromisesOutside(GetParam(), inOnePiece);
+}
+
+TEST_P(RandomSolids, keepEveryInvariantInParts) {
+  keepsItsPromises(GetParam(), inParts);
+  keepsItsPromisesOutside(GetParam(), inParts);
+}
 
 TEST_P(RandomSolids, areTheSameForAnyNumberOfThreadsWhateverTheOptions) {
   const std::uint32_t seed = GetParam();
@@ -137,6 +158,11 @@ TEST_P(RandomSolids, areTheSameForAnyNumberOfThreadsWhateverTheOptions) {
     ASSERT_TRUE(several) << several.error().text();
     testing::expectTheSame(*several, *one);
   }
+  const auto parts = inParts(solid.mesh, options);
+  options.threads = 1;
+  const auto alone = inParts(solid.mesh, options);
+  ASSERT_TRUE(parts && alone);
+  testing::expectTheSame(*parts, *alone);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSolids, ::testing::Range(0u, kSeeds));
@@ -148,7 +174,7 @@ TEST(RandomSolids, asManyAsAreAskedFor) {
                  << kSeeds;
   const auto count = static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10));
   for (std::uint32_t seed = kSeeds; seed < kSeeds + count && !HasFailure(); ++seed)
-    keepsItsPromises(seed);
+    keepsItsPromises(seed, inOnePiece);
 }
 
 // The seeds are worth something only if they hold what makes simplifying hard.

@@ -1,0 +1,27 @@
+// The part of a fusion's cost that follows from the whole mesh. Parts of a mesh share it, so that
+// everything counts as it does in the whole.
+#pragma once
+
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "simplify/cost/cost_basis.h"
+#include "simplify/cost/cost_options.h"
+#include "simplify/cost/cost_parts.h"
+
+namespace qtet {
+
+struct CostFrame {
+  CostFrame(const LatticeMesh& mesh, const CostOptions& options);
+
+  std::vector<CostPart> parts;  ///< the fields that count
+  CostBasis basis;
+  /// Where basis.isDirect(), a component's largest value; the smallest is 0.
+  std::vector<double> limits{};
+  double diagonal = 1;        ///< of the bounding box, in lattice steps
+  double boundaryWeight = 0;  ///< given, or found; without fields of no account
+  std::vector<LabelCost> labels;
+  double boundaryFactor = 10;  ///< CostOptions::boundaryFactor
+};
+
+}  // namespace qtet
