@@ -343,8 +343,11 @@ async function cardsNeverMoveTheMesh({server, browser}, device, name) {
   assert.ok(Math.hypot(mark[0] - x, mark[1] - y) < 1, `clicked ${[x, y]}, marked ${mark}`);
   assert.equal(differingShare(before, await bare(`${name}-point-bare`)), 0);
   await page.locator('qtet-viewer .fold').click();
-  assert.equal(differingShare(before, await bare(`${name}-folded`)), 0);
+  const folded = await bare(`${name}-folded`);
+  // an open sheet lifts the mesh on a phone
+  if (device !== kPhone) assert.equal(differingShare(before, folded), 0);
   await page.locator('qtet-viewer .fold').click();
+  assert.equal(differingShare(before, await bare(`${name}-unfolded`)), 0);
 
   const title = page.locator('qtet-viewer .result h2');
   const box = async () => page.locator('qtet-viewer .result').boundingBox();
