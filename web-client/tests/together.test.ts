@@ -40,3 +40,19 @@ test('aSurfaceIsToldThatItHasNoCells', async () => {
     expect(await hindrance(file(name), [])).toMatch(/ is a surface: it has no cells inside, /);
   expect(await hindrance(file('part.msh'), [])).toBe('');
 });
+
+test('blocksThatAreNoVolumesAndCommentsAreNotNeeded', async () => {
+  const main = file(
+    'case.vtm',
+    '<!-- <DataSet file="old.vtu"/> --><DataSet file="a&amp;b.vtu"/><DataSet file="wall.vtp"/>',
+  );
+  expect(await hindrance(main, [main, file('a&b.vtu')])).toBe('');
+});
+
+test('filesOfOneNameInSeveralFoldersAreRefused', async () => {
+  const main = file('case.vtm', '<DataSet file="a/in.vtu"/><DataSet file="b/in.vtu"/>');
+  const refusal = /^case\.vtm needs several files called in\.vtu, in folders /;
+  expect(await hindrance(main, [main, file('in.vtu'), file('in.vtu')])).toMatch(refusal);
+  const one = file('case.vtm', '<DataSet file="a/in.vtu"/>');
+  expect(await hindrance(one, [one, file('in.vtu'), file('in.vtu')])).toMatch(refusal);
+});

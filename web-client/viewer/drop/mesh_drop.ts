@@ -52,7 +52,8 @@ export class MeshDrop {
     const {dialog, host} = this;
     const main = mainFile(files);
     const {name} = main;
-    const why = await hindrance(main, files);
+    // a file that cannot be read is told by the simplifier
+    const why = await hindrance(main, files).catch(() => '');
     if (signal.aborted) return;
     if (why !== '') return host.failed('dropped-mesh', why);
     find(dialog, 'h2').textContent = name;

@@ -5,6 +5,10 @@ const kAlone = /\.(qtet|vtu|vtk|msh|meshb?|su2|unv)(\.gz)?$/i;
 /** Files that name others by these attributes of XML. */
 const kNaming = /\.(pvtu|pvd|vtm)$/i;
 const kNamed = /\b(?:Source|file)\s*=\s*["']([^"']+)["']/g;
+const kComment = /<!--.*?-->/gs;
+const kEntities: Record<string, string> = {amp: '&', lt: '<', gt: '>', quot: '"', apos: "'"};
+/** The blocks of a .vtm that are read; surfaces and lines are left out. */
+const kVolumes = /\.(vtu|pvtu|vts|pvts|vtr|pvtr|vti|pvti|vtk|vtm)$/i;
 const kSurface = /\.(stl|obj|ply|off)(\.gz)?$/i;
 /** More names make no sentence. */
 const kMaxNames = 4;
@@ -37,11 +41,26 @@ export async function hindrance(main: File, files: readonly File[]): Promise<str
       'Fill it with tetrahedra, for example by Gmsh, and drop that mesh.'
     );
   if (!kNaming.test(name)) return '';
-  const here = new Set(files.map((file) => file.name));
-  const named = [...(await main.text()).matchAll(kNamed)].map(([, path]) => path!);
-  const missing = [...new Set(named.map((path) => path.replace(/^.*[/\\]/s, '')))].filter(
-    (its) => !here.has(its),
+  const named = namedIn(await main.text()).filter(
+    (path) => !/\.vtm$/i.test(name) || kVolumes.test(path),
   );
+  const bases = named.map((path) => path.replace(/^.*[/\\]/s, ''));
+  const given = files.map((file) => file.name);
+  const twice = [bases, given].flatMap((its) => its.filter((one, i) => its.indexOf(one) !== i));
+  if (twice.length > 0)
+    return (
+      `${name} needs several files called ${twice[0]}, in folders that a page does not learn. ` +
+      'Give them to the program qtet.'
+    );
+  const missing = bases.filter((its) => !given.includes(its));
   if (missing.length === 0) return '';
   return `${name} needs ${listOf(missing)}, which it names. Drop all of them together.`;
+}
+
+/** Each file that the XML names, once. */
+function namedIn(text: string): string[] {
+  const paths = [...text.replace(kComment, '').matchAll(kNamed)].map(([, path]) =>
+    path!.replace(/&(amp|lt|gt|quot|apos);/g, (_, entity: string) => kEntities[entity]!),
+  );
+  return [...new Set(paths)];
 }
