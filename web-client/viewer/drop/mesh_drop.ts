@@ -52,7 +52,7 @@ export class MeshDrop {
     const {dialog, host} = this;
     const main = mainFile(files);
     const {name} = main;
-    // a file that cannot be read is told by the simplifier
+    // the simplifier reports a file that cannot be read
     const why = await hindrance(main, files).catch(() => '');
     if (signal.aborted) return;
     if (why !== '') return host.failed('dropped-mesh', why);
