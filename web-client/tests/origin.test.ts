@@ -1,5 +1,5 @@
 import {describe, expect, test} from 'vitest';
-import {cutOf, fileNameOf, textOf} from '../viewer/page/origin';
+import {cutOf, fileNameOf, textOf} from '../viewer/panels/origin';
 
 const kOrigin = {mesh: 'fin', field: 'Velocity, x', time: '0.25 s', place: 'clip x:0.5'};
 

@@ -43,22 +43,7 @@ BulkBegin bulkBegin(std::string_view line) {
   return has("BULK") ? BulkBegin::kBulk : BulkBegin::kNone;
 }
 
-bool isExponentSign(std::string_view text, std::size_t at) {
-  return (text[at] == '+' || text[at] == '-') && at > 0 &&
-         std::string_view("0123456789.").find(text[at - 1]) != std::string_view::npos;
-}
-
 }  // namespace
-
-std::optional<double> nastranReal(std::string_view text) {
-  std::string number = capitals(text);
-  for (std::size_t i = 1; i < number.size(); ++i)
-    if (isExponentSign(number, i)) {
-      number.insert(i, "E");
-      break;
-    }
-  return fortranReal(number);
-}
 
 BulkCards::BulkCards(const fs::path& path, std::chrono::seconds patience)
     : root_(path), time_(patience, 0) {
@@ -274,7 +259,7 @@ std::uint32_t BulkCards::id(std::size_t i, const char* what) {
 
 double BulkCards::real(std::size_t i, const char* what) {
   if (failed() || field(i).empty()) return 0;
-  if (const std::optional<double> value = nastranReal(field(i))) return *value;
+  if (const std::optional<double> value = fortranReal(field(i))) return *value;
   fail(misplacedField(field(i), what));
   return 0;
 }

@@ -83,7 +83,4 @@ class BulkCards {
   std::optional<Error> error_;
 };
 
-/// A real number as Nastran writes it: also "1.5-3" and "1.5D-3". nullopt: the text is none.
-[[nodiscard]] std::optional<double> nastranReal(std::string_view text);
-
 }  // namespace qtet

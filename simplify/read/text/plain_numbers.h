@@ -11,8 +11,8 @@
 
 namespace qtet {
 
-/// A real number whose exponent may begin with E or D: "1.5D-3". A number beyond what a double
-/// holds is infinite or 0. nullopt: the text is no number.
+/// A real number whose exponent may begin with E, D or its sign alone: "1.5D-3", "1.5-103". A number
+/// beyond what a double holds is infinite or 0. nullopt: the text is no number.
 [[nodiscard]] std::optional<double> fortranReal(std::string_view text);
 
 /// An integer, with or without a sign. nullopt: the text is none, or T does not hold it.

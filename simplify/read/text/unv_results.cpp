@@ -134,7 +134,7 @@ void UnvResults::readValues(const Head& head) {
   else if (head.components < 1 || head.components > kMaxFieldComponents)
     why = "they have too many numbers at a node, or none";
   if (why) {
-    note("the results " + head.name + " are not read: " + why);
+    note("the results " + shownField(head.name) + " are not read: " + why);
     return skipUnvDataset(in_);
   }
   const auto order = tensorOrder(head.characteristic, head.components);
@@ -154,7 +154,7 @@ void UnvResults::readValues(const Head& head) {
   }
   in_.skipLine();
   if (results_.contains(head.name))
-    note("of several results " + head.name + " the last one is read");
+    note("of several results " + shownField(head.name) + " the last one is read");
   results_[head.name] = std::move(out);
 }
 

@@ -8,7 +8,7 @@ import {formatTo} from '../page/format';
 import {adopt} from '../page/trusted';
 
 export {tableOf, timeTableOf, timeTitle} from './line_table';
-export {fileNameOf, originOf} from '../page/origin';
+export {fileNameOf, originOf} from './origin';
 
 const kHeight = 170;
 /** The readout shows this share of the ranges. */

@@ -2,7 +2,7 @@
 
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
-import {cutOf, fileNameOf, originOf} from '../page/origin';
+import {cutOf, fileNameOf, originOf} from '../panels/origin';
 import type {Page} from '../page/page';
 import {refusalOf, type Figure} from './figure';
 import {film, type Filming, type Sink} from './film';

@@ -4,7 +4,7 @@
 import {errorText} from '../../core/protocol/errors';
 import type {View} from '../../webgl/view';
 import {find, onClick} from '../page/find';
-import {fileNameOf, textOf, type Origin} from '../page/origin';
+import {fileNameOf, textOf, type Origin} from '../panels/origin';
 import type {Page} from '../page/page';
 import {save} from '../page/save';
 import {setMarkup} from '../page/trusted';

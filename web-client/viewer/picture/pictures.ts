@@ -1,7 +1,7 @@
 // Pictures and movies that are made, and pictures that open their view again. It is loaded at the
 // first of them.
 
-import {cutOf, originOf} from '../page/origin';
+import {cutOf, originOf} from '../panels/origin';
 import type {Page} from '../page/page';
 import {Movies, type MovieHost, type MovieOptions} from './movies';
 import {openView, type OpenHost} from './open_view';

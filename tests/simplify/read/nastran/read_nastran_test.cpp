@@ -8,6 +8,7 @@
 #include "simplify/read/nastran/bulk_cards.h"
 #include "simplify/read/nastran/coordinate_systems.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/read/text/plain_numbers.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/simplify/read/text_reader.h"
 
@@ -58,16 +59,16 @@ TEST(ReadNastran, linesOfEachFormMakeTheSameCards) {
 }
 
 TEST(ReadNastran, exponentsMayHaveNoLetter) {
-  EXPECT_EQ(nastranReal("10.0000-1"), 1);
-  EXPECT_EQ(nastranReal("-1.5+2"), -150);
-  EXPECT_EQ(nastranReal("1.5D-1"), 0.15);
-  EXPECT_EQ(nastranReal("1.5d+1"), 15);
-  EXPECT_EQ(nastranReal("+1.e-1"), 0.1);
-  EXPECT_EQ(nastranReal(".5"), 0.5);
-  EXPECT_EQ(nastranReal("-.5-1"), -0.05);
-  EXPECT_EQ(nastranReal("7"), 7);
+  EXPECT_EQ(fortranReal("10.0000-1"), 1);
+  EXPECT_EQ(fortranReal("-1.5+2"), -150);
+  EXPECT_EQ(fortranReal("1.5D-1"), 0.15);
+  EXPECT_EQ(fortranReal("1.5d+1"), 15);
+  EXPECT_EQ(fortranReal("+1.e-1"), 0.1);
+  EXPECT_EQ(fortranReal(".5"), 0.5);
+  EXPECT_EQ(fortranReal("-.5-1"), -0.05);
+  EXPECT_EQ(fortranReal("7"), 7);
   for (const char* no : {"", "-", "1.-", "1.5-3-3", "1.5E", "a", "1-+3"})
-    EXPECT_FALSE(nastranReal(no)) << no;
+    EXPECT_FALSE(fortranReal(no)) << no;
 }
 
 TEST(ReadNastran, anExponentMayStandBehindItsField) {

@@ -1,10 +1,10 @@
 // Where a saved file comes from: mesh, field, time and place. They make its name, and it says them.
 
 import {kNoClip} from '../../core/layers/clip';
-import {scalarName} from '../panels/panel';
-import {find} from './find';
-import type {Attributes} from './page';
-import type {ShownMesh} from './shown_mesh';
+import {scalarName} from './panel';
+import {find} from '../page/find';
+import type {Attributes} from '../page/page';
+import type {ShownMesh} from '../page/shown_mesh';
 
 /** Longer parts of a name are cut off. */
 const kMaxLetters = 60;
