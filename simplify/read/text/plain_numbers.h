@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// A real number whose exponent may begin with E, D or its sign alone: "1.5D-3", "1.5-103". A number
+/// A real number whose exponent may begin with E, D or its sign alone: "1.5D-3", "1.5-103". One
 /// beyond what a double holds is infinite or 0. nullopt: the text is no number.
 [[nodiscard]] std::optional<double> fortranReal(std::string_view text);
 
