@@ -24,6 +24,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`maxBoundaryError`", "--max-boundary-error"},
     {"`measure`", "--measure"},
     {"`originalIds`", "--original-ids"},
+    {"`parts`", "--parts"},
     {"`readSeconds`", "--read-seconds"},
     {"`regions`", "--preserve-regions"},
     {"`targetRatio`", "--target-ratio"},

@@ -109,7 +109,7 @@ Sample sampleOf(const FusionState& whole, const FusionFrame& frame, const Fusion
   return out;
 }
 
-/// Takes the levels of the part from the first one on that ends beyond the key. False: it was cut
+/// Drops the levels of the part from the first one on that ends beyond the key. False: it was cut
 /// before.
 bool endAt(float key, PartLevels& part) {
   const auto dear =
