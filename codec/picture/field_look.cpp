@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "codec/mesh/predicates.h"
 #include "proto/limits.h"
 
 namespace qtet {
@@ -45,17 +46,9 @@ Colour labelColour(std::int64_t label) {
 
 /// Six times the volume.
 double volumeOf(const LatticeMesh& mesh, std::size_t cell) {
-  const auto& corners = mesh.tetrahedra[cell];
-  const auto side = [&](std::size_t corner, std::size_t axis) {
-    return static_cast<double>(mesh.points[corners[corner]][axis]) -
-           static_cast<double>(mesh.points[corners[0]][axis]);
-  };
-  double volume = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t next = (axis + 1) % 3, last = (axis + 2) % 3;
-    volume += side(1, axis) * (side(2, next) * side(3, last) - side(2, last) * side(3, next));
-  }
-  return std::abs(volume);
+  const Tetrahedron& t = mesh.tetrahedra[cell];
+  const auto at = [&](std::size_t corner) { return mesh.points[t[corner]]; };
+  return std::abs(static_cast<double>(volume6(at(0), at(1), at(2), at(3))));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ bool equalsIgnoringCase(std::string_view a, std::string_view b) {
 
 /// Thousandths of "q=0.5"; 1000 where there is no weight, or one that cannot be read.
 int weightOf(std::string_view parameters) {
-  const std::string_view q = trimmed(parameters);
+  const std::string_view q = trimmed(parameters, kHeaderBlanks);
   if (q.size() < 3 || !equalsIgnoringCase(q.substr(0, 2), "q=") || (q[2] != '0' && q[2] != '1'))
     return 1000;
   int out = q[2] == '1' ? 1000 : 0;
@@ -92,7 +92,7 @@ ContentCoding chooseCoding(std::string_view acceptEncoding, bool gzip, bool zstd
     const std::string_view item = acceptEncoding.substr(0, comma);
     acceptEncoding.remove_prefix(std::min(comma + 1, acceptEncoding.size()));
     const std::size_t semicolon = std::min(item.find(';'), item.size());
-    const std::string_view coding = trimmed(item.substr(0, semicolon));
+    const std::string_view coding = trimmed(item.substr(0, semicolon), kHeaderBlanks);
     const int weight = semicolon == item.size() ? 1000 : weightOf(item.substr(semicolon + 1));
     if (equalsIgnoringCase(coding, "gzip") || equalsIgnoringCase(coding, "x-gzip"))
       gzipWeight = weight;

@@ -53,7 +53,7 @@ std::optional<ip::address> addressOf(std::string_view text) {
 std::string_view forOf(std::string_view element) {
   while (!element.empty()) {
     const std::size_t end = std::min(element.find(';'), element.size());
-    const std::string_view pair = trimmed(element.substr(0, end));
+    const std::string_view pair = trimmed(element.substr(0, end), kHeaderBlanks);
     element.remove_prefix(std::min(end + 1, element.size()));
     if (pair.find('=') != 3 || !std::ranges::equal(pair.substr(0, 3), std::string_view("for"), {},
                                                    [](char c) { return c | 0x20; }))
@@ -96,7 +96,7 @@ Result<Networks> Networks::parse(std::string_view list) {
   Blocks blocks;
   while (!list.empty()) {
     const std::size_t end = std::min(list.find(','), list.size());
-    const std::string_view one = trimmed(list.substr(0, end));
+    const std::string_view one = trimmed(list.substr(0, end), kHeaderBlanks);
     list.remove_prefix(std::min(end + 1, list.size()));
     const auto refused = [&] {
       return fail(ErrorCode::kBadValue, "'" + std::string(one) +
@@ -144,7 +144,7 @@ ip::address forwardedClient(const TrustedProxies& proxies, const ip::address& se
   for (bool more = true; more;) {
     const std::size_t comma = value.rfind(',');
     more = comma != std::string_view::npos;
-    std::string_view one = trimmed(more ? value.substr(comma + 1) : value);
+    std::string_view one = trimmed(more ? value.substr(comma + 1) : value, kHeaderBlanks);
     value = value.substr(0, more ? comma : 0);
     if (proxies.header == ProxyHeader::kForwarded) one = forOf(one);
     const std::optional<ip::address> address = addressOf(one);

@@ -31,11 +31,11 @@ constexpr double kTurnCosine = 0.3;
 
 FusionFrame::FusionFrame(const LatticeMesh& mesh, const FusionState& whole,
                          const FusionOptions& options)
-    : cost(whole.cost().frame()),
-      displacements(sampledDisplacements(mesh, options.checkedInstants)) {
+    : displacements(sampledDisplacements(mesh, options.checkedInstants)) {
   const double tolerance = options.envelopeTolerance.value_or(kEnvelopeTolerance);
   if (tolerance > 0)
-    allowed = std::make_unique<AllowedSpace>(whole.mesh(), tolerance * cost.diagonal);
+    allowed =
+        std::make_unique<AllowedSpace>(whole.mesh(), tolerance * whole.cost().frame().diagonal);
 }
 
 double progressOf(std::size_t cells, std::size_t live, std::size_t target) {

@@ -22,12 +22,12 @@
 
 namespace qtet {
 
-/// All that is of the whole mesh, and made once: a part's fusions are judged as those of the whole.
+/// All that is of the whole mesh beside the cost's frame, made once. So a part's fusions are judged
+/// as those of the whole.
 struct FusionFrame {
   /// REQUIRES: `whole` is that of `mesh` before the first fusion.
   FusionFrame(const LatticeMesh& mesh, const FusionState& whole, const FusionOptions& options);
 
-  CostFrame cost;
   /// Where fusions may go outside; null where none may.
   std::unique_ptr<const AllowedSpace> allowed;
   std::vector<std::size_t> displacements;  ///< FusionOptions::checkedInstants

@@ -98,7 +98,7 @@ PartFusions fusePart(const FusionState& whole, const FusionFrame& frame,
     if (isSeam[v] || whole.mesh().singular(v))
       kept.push_back(static_cast<VertexId>(isOwnSeam.size() - 1));
   }
-  FusionState state(part.lattice(), regionField, frame.cost, quadrics);
+  FusionState state(part.lattice(), regionField, whole.cost().frame(), quadrics);
   state.keep(kept);
   FusionOptions own = options;
   own.progress = {};

@@ -86,7 +86,7 @@ void AbaqusLines::look() {
   if (time_.isOver()) fail(time_.text());
 }
 
-std::optional<std::string_view> AbaqusLines::lineOf(File& file) {
+std::optional<std::string_view> AbaqusLines::lineOf(OpenText& file) {
   while (file.place < file.text.size()) {
     if (--untilLook_ == 0) look();
     if (failed()) return std::nullopt;
@@ -148,7 +148,7 @@ void AbaqusLines::readKeyword(std::string_view line) {
   // A line that ends in a comma goes on where a parameter follows; some programs write such a comma
   // also before data. That line is in the same file, which stays open.
   while (whole.ends_with(',')) {
-    File& file = files_.back();
+    OpenText& file = files_.back();
     const std::size_t place = file.place;
     const std::uint64_t number = file.line;
     const std::optional<std::string_view> more = lineOf(file);
@@ -194,7 +194,7 @@ void AbaqusLines::include(const std::string& name) {
                                             "' is not there; put it beside this file");
     path = beside;
   }
-  if (std::ranges::any_of(files_, [&](const File& file) { return file.path == path; }))
+  if (std::ranges::any_of(files_, [&](const OpenText& file) { return file.path == path; }))
     return fail("'" + shownField(name) + "' is included within itself");
   if (files_.size() > kMaxDepth || ++opened_ > kMaxFiles)
     return fail(ErrorCode::kLimitExceeded, "files are included " + std::to_string(kMaxDepth) +

@@ -11,6 +11,7 @@
 
 #include "proto/error.h"
 #include "simplify/read/process/reading_time.h"
+#include "simplify/read/text/open_text.h"
 
 namespace qtet {
 
@@ -78,16 +79,9 @@ class AbaqusLines {
   void look();
 
  private:
-  struct File {
-    std::filesystem::path path;
-    std::string text;
-    std::size_t place = 0;
-    std::uint64_t line = 0;
-  };
-
   bool open(const std::filesystem::path& path);
   /// The file's next line that is neither empty nor a comment.
-  std::optional<std::string_view> lineOf(File& file);
+  std::optional<std::string_view> lineOf(OpenText& file);
   /// The next line of the innermost file that has one; files without one are closed.
   std::optional<std::string_view> rawLine();
   void readKeyword(std::string_view line);
@@ -96,7 +90,7 @@ class AbaqusLines {
 
   std::filesystem::path root_;
   ReadingTime time_;
-  std::vector<File> files_;  ///< the innermost last
+  std::vector<OpenText> files_;  ///< the innermost last
   std::uint32_t opened_ = 0;
   std::set<std::filesystem::path> seen_;
   std::uint64_t bytes_ = 0, bytesAgain_ = 0;

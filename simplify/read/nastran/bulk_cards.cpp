@@ -64,7 +64,7 @@ void BulkCards::open(const fs::path& path) {
 /// Before bulk data stand commands to the program, if there is a line between them.
 void BulkCards::skipToBulk() {
   if (failed()) return;
-  File& file = files_.back();
+  OpenText& file = files_.back();
   while (!failed() && rawLine())
     if (const BulkBegin begin = bulkBegin(line_); begin != BulkBegin::kNone)
       return begin == BulkBegin::kPart ? refuseParts() : void();
@@ -73,7 +73,7 @@ void BulkCards::skipToBulk() {
 }
 
 bool BulkCards::rawLine() {
-  File& file = files_.back();
+  OpenText& file = files_.back();
   if (file.place >= file.text.size()) return false;
   if (--untilLook_ == 0) {
     untilLook_ = kLinesBetweenLooks;

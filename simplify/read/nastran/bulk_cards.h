@@ -12,6 +12,7 @@
 
 #include "proto/error.h"
 #include "simplify/read/process/reading_time.h"
+#include "simplify/read/text/open_text.h"
 
 namespace qtet {
 
@@ -48,13 +49,6 @@ class BulkCards {
   [[nodiscard]] std::unexpected<Error> error() const { return std::unexpected(*error_); }
 
  private:
-  struct File {
-    std::filesystem::path path;
-    std::string text;
-    std::size_t place = 0;
-    std::uint64_t line = 0;
-  };
-
   void open(const std::filesystem::path& path);
   void skipToBulk();
   /// The present file's next line without comment and end of line; tabs are blanks.
@@ -72,7 +66,7 @@ class BulkCards {
 
   std::filesystem::path root_;
   ReadingTime time_;
-  std::vector<File> files_;  ///< the innermost last
+  std::vector<OpenText> files_;  ///< the innermost last
   std::set<std::filesystem::path> seen_;
   std::uint32_t untilLook_ = 1;
   bool ended_ = false, hasLine_ = false;

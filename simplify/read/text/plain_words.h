@@ -5,15 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "proto/trimmed.h"
+
 namespace qtet {
 
 inline constexpr std::string_view kBlanks = " \t\r\f\v";
 
-/// Without blanks before and behind.
-[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+[[nodiscard]] constexpr std::string_view trimmed(std::string_view text) {
+  return trimmed(text, kBlanks);
 }
 
 [[nodiscard]] constexpr char capital(char c) {
