@@ -16,7 +16,6 @@
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/parts/weld_points.h"
 #include "simplify/read/process/inflate_file.h"
-#include "simplify/read/process/run_meshio.h"
 #include "simplify/read/read_steps.h"
 #include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
@@ -80,16 +79,9 @@ Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesy
 
 Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std::string& kind,
                                    const ReadOptions& options, ReadReport& report) {
-  Result<CellMesh> out = CellMesh{};
-  const Status done = throughMeshio({path, kind, options.time, options.patience},
-                                    [&](const std::filesystem::path& file) -> Status {
-                                      out = joined(readSteps(file, formatOf(file), options, report),
-                                                   path, options, report);
-                                      if (!out) return std::unexpected(out.error());
-                                      return {};
-                                    });
-  if (!done) return std::unexpected(done.error());
-  return out;
+  return joined(
+      readForeign({path, ForeignLibrary::kMeshio, kind, {}, options.patience}, options, report),
+      path, options, report);
 }
 
 Result<CellMesh> readFluent(const std::filesystem::path& path, const ReadOptions& options,

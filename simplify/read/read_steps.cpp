@@ -9,6 +9,7 @@
 #include "proto/number_text.h"
 #include "simplify/read/ensight/read_ensight.h"
 #include "simplify/read/foam/read_foam.h"
+#include "simplify/read/foreign/foreign_file.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/options/bad_file.h"
 #include "simplify/read/options/byte_order_mark.h"
@@ -21,7 +22,6 @@
 #include "simplify/read/steps/read_apart.h"
 #include "simplify/read/steps/step_reports.h"
 #include "simplify/read/text/text_readers.h"
-#include "simplify/read/vtk/run_vtk.h"
 #include "simplify/read/vtu/read_vtu.h"
 #include "simplify/read/vtu/vtu_label_names.h"
 #include "simplify/read/xdmf/read_xdmf.h"
@@ -36,6 +36,9 @@ bool isSeries(MeshFormat format) {
   return format == MeshFormat::kPvd || format == MeshFormat::kSeries;
 }
 
+Result<std::vector<TimedCells>> readByVtk(const std::filesystem::path& path, MeshFormat format,
+                                          const ReadOptions& options, ReadReport& report);
+
 /// The step's partitions in one mesh.
 Result<CellMesh> joinedPartitions(const VtkHdfFile& file, std::size_t step,
                                   const ReadOptions& options, ReadReport& report) {
@@ -48,7 +51,7 @@ Result<std::vector<TimedCells>> readVtkHdf(const std::filesystem::path& path,
                                            const ReadOptions& options, ReadReport& report) {
   const Result<VtkHdfFile> file = VtkHdfFile::open(path);
   if (!file) return std::unexpected(file.error());
-  if (!file->isGrid()) return runVtk(path, MeshFormat::kVtkHdf, options, report);
+  if (!file->isGrid()) return readByVtk(path, MeshFormat::kVtkHdf, options, report);
   return readChosen(file->times(), path, options, report,
                     [&](std::size_t step, ReadReport& ofStep) {
                       return joinedPartitions(*file, step, options, ofStep);
@@ -65,37 +68,66 @@ Result<std::vector<TimedCells>> readXdmf(const std::filesystem::path& path,
       [&](std::size_t step, ReadReport& ofStep) { return file->read(step, options, ofStep); });
 }
 
-/// Text in which VTK's readers do not pass a byte order mark.
-bool isVtkText(MeshFormat format) {
-  return format == MeshFormat::kLegacyVtk || format == MeshFormat::kAvsUcd ||
-         format == MeshFormat::kFluent;
+/// The program's word for what VTK reads (vtk.py).
+const char* vtkWord(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::kVtu: return "vtu";
+    case MeshFormat::kVts: return "vts";
+    case MeshFormat::kVtr: return "vtr";
+    case MeshFormat::kVti: return "vti";
+    case MeshFormat::kLegacyVtk: return "vtk";
+    case MeshFormat::kExodus: return "exodus";
+    case MeshFormat::kCgns: return "cgns";
+    case MeshFormat::kFluent: return "fluent";
+    case MeshFormat::kVtkHdf: return "vtkhdf";
+    case MeshFormat::kPlot3d: return "plot3d";
+    default: return "avsucd";
+  }
 }
 
-/// A reader that damage can break, in a process of its own.
+/// Whether meshio reads it as well, by the same word.
+bool knowsMeshio(MeshFormat format) {
+  return format == MeshFormat::kLegacyVtk || format == MeshFormat::kAvsUcd ||
+         format == MeshFormat::kExodus;
+}
+
+/// Through VTK, or where that is not installed and meshio can, through meshio.
 Result<std::vector<TimedCells>> readByVtk(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options, ReadReport& report) {
-  Result<std::vector<TimedCells>> out = std::vector<TimedCells>{};
-  const auto read = [&](const std::filesystem::path& file) -> Status {
-    const std::size_t before = report.notes.size();
-    out = readApart(file, options, report,
-                    [&](ReadReport& found) { return runVtk(file, format, options, found); });
-    for (std::string& note : std::span(report.notes).subspan(before))
-      note = withName(note, file.string(), path.string());
-    return out ? Status{} : Status(std::unexpected(out.error()));
-  };
-  const Status done = isVtkText(format) && isMarked(path) ? unmarked(path, read) : read(path);
-  if (!done) return std::unexpected(done.error());
-  return out;
+  ForeignInput input{path, ForeignLibrary::kVtk, vtkWord(format), options.plot3dSolution,
+                     options.patience};
+  auto out = readForeign(input, options, report);
+  if (out || out.error().code != ErrorCode::kNotFound || !knowsMeshio(format)) return out;
+  input.library = ForeignLibrary::kMeshio;
+  auto other = readForeign(input, options, report);
+  return other || other.error().code != ErrorCode::kNotFound ? std::move(other) : std::move(out);
 }
 
-/// Reads a .vtu file without VTK, unless it holds several steps, which no program writes any more.
-Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& path,
-                                                 const ReadOptions& options, ReadReport& report) {
+/// The blocks that a document's pieces are; those of an unstructured grid are read as one.
+Result<CellMesh> cellsOfDocument(const VtuFile& file, VtuDocument& document,
+                                 const ReadOptions& options, ReadReport& report) {
+  if (document.kind == GridKind::kUnstructured || document.pieces.size() == 1)
+    return readVtu(file, document, options.fields, report);
+  std::vector<CellMesh> blocks;
+  const std::vector<VtuPiece> pieces = std::move(document.pieces);
+  for (const VtuPiece& piece : pieces) {
+    document.pieces = {piece};
+    Result<CellMesh> cells = readVtu(file, document, options.fields, report);
+    if (!cells) return cells;
+    blocks.push_back(std::move(*cells));
+  }
+  return joinBlocks(std::move(blocks), options, report);
+}
+
+/// Reads a file of VTK's XML without VTK, unless it holds several steps, which no program writes
+/// any more.
+Result<std::vector<TimedCells>> readXmlGrid(const std::filesystem::path& path, MeshFormat format,
+                                            const ReadOptions& options, ReadReport& report) {
   const Result<VtuFile> file = VtuFile::open(path, options.patience);
   if (!file) return std::unexpected(file.error());
-  const Result<VtuDocument> document = readVtuDocument(*file);
+  Result<VtuDocument> document = readVtuDocument(*file);
   if (!document) return std::unexpected(document.error());
-  if (document->hasTimeSteps) return readByVtk(path, MeshFormat::kVtu, options, report);
+  if (document->hasTimeSteps) return readByVtk(path, format, options, report);
   auto time = readVtuTime(*file, *document);
   if (!time) return std::unexpected(time.error());
   if (*time && !std::isfinite(**time)) {
@@ -108,7 +140,7 @@ Result<std::vector<TimedCells>> readUnstructured(const std::filesystem::path& pa
   if (const auto steps = chosenSteps(times, options.time, path, report.notes); !steps)
     return std::unexpected(steps.error());
   ReadReport step;
-  Result<CellMesh> cells = readVtu(*file, *document, options.fields, step);
+  Result<CellMesh> cells = cellsOfDocument(*file, *document, options, step);
   if (!cells) return std::unexpected(cells.error());
   if (Status named = readVtuLabelNames(*file, *document, *cells); !named)
     return std::unexpected(named.error());
@@ -250,7 +282,9 @@ Result<std::vector<TimedCells>> readExodusPieces(const std::filesystem::path& pa
 Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFormat format,
                                        const ReadOptions& options, ReadReport& report, int depth) {
   if (isSeries(format)) return readSeries(path, format, options, report);
-  if (format == MeshFormat::kVtu) return readUnstructured(path, options, report);
+  if (format == MeshFormat::kVtu || format == MeshFormat::kVts || format == MeshFormat::kVtr ||
+      format == MeshFormat::kVti)
+    return readXmlGrid(path, format, options, report);
   if (format == MeshFormat::kLegacyVtk) return readLegacy(path, options, report);
   if (format == MeshFormat::kExodusPieces) return readExodusPieces(path, options, report);
   if (format == MeshFormat::kEnSight) return readEnSight(path, options, report);
@@ -265,7 +299,48 @@ Result<std::vector<TimedCells>> readAt(const std::filesystem::path& path, MeshFo
   return readByVtk(path, format, options, report);
 }
 
+/// Text in which a library does not pass a byte order mark. An XDMF file names files beside it, and
+/// Python's parser of XML passes the mark.
+bool isMarkedText(const ForeignInput& input) {
+  const bool isText = input.library == ForeignLibrary::kMeshio
+                          ? input.kind != "xdmf"
+                          : input.kind == "vtk" || input.kind == "avsucd" || input.kind == "fluent";
+  return isText && isMarked(input.path);
+}
+
 }  // namespace
+
+Result<std::vector<TimedCells>> readForeign(const ForeignInput& input, const ReadOptions& options,
+                                            ReadReport& report) {
+  if (isMarkedText(input)) {
+    Result<std::vector<TimedCells>> out = std::vector<TimedCells>{};
+    ForeignInput copy = input;
+    const Status done = unmarked(input.path, [&](const std::filesystem::path& file) -> Status {
+      copy.path = file;
+      out = readForeign(copy, options, report);
+      return out ? Status{} : Status(std::unexpected(out.error()));
+    });
+    for (std::string& note : report.notes)
+      note = withName(note, copy.path.string(), input.path.string());
+    if (!done) return std::unexpected(done.error());
+    return out;
+  }
+  Result<ForeignFile> file = ForeignFile::open(input);
+  if (!file) return std::unexpected(file.error());
+  return readChosen(file->times(), input.path, options, report,
+                    [&](std::size_t step, ReadReport& ofStep) -> Result<CellMesh> {
+                      const auto parts = file->step(step, ofStep.notes);
+                      if (!parts) return std::unexpected(parts.error());
+                      Result<CellMesh> cells = cellsOfParts(*parts, input.path, options, ofStep, 0);
+                      for (const BlockFile& part : *parts) {
+                        const std::string name = part.path.string(), own = input.path.string();
+                        for (std::string& note : ofStep.notes) note = withName(note, name, own);
+                        if (!cells)
+                          cells.error().message = withName(cells.error().message, name, own);
+                      }
+                      return cells;
+                    });
+}
 
 Result<std::vector<TimedCells>> readSteps(const std::filesystem::path& path, MeshFormat format,
                                           const ReadOptions& options, ReadReport& report) {

@@ -1,10 +1,11 @@
 // Reads the formats whose files hold several time steps, blocks or pieces: VTK's, and those of
-// other programs that we or VTK's readers read.
+// other programs that we or libraries of Python read.
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
+#include "simplify/read/foreign/foreign_file.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/read_options.h"
 #include "simplify/read/steps/timed_cells.h"
@@ -21,5 +22,10 @@ namespace qtet {
                                                         MeshFormat format,
                                                         const ReadOptions& options,
                                                         ReadReport& report);
+
+/// The same of a file that a library of Python reads. Errors: those of ForeignFile and readSteps.
+[[nodiscard]] Result<std::vector<TimedCells>> readForeign(const ForeignInput& input,
+                                                          const ReadOptions& options,
+                                                          ReadReport& report);
 
 }  // namespace qtet
