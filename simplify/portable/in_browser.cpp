@@ -2,7 +2,7 @@
 // folders.
 #include "simplify/read/ensight/read_ensight.h"
 #include "simplify/read/foam/read_foam.h"
-#include "simplify/read/foreign/foreign_file.h"
+#include "simplify/read/foreign/read_foreign.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/listed_files.h"
 #include "simplify/read/parts/piece_files.h"
@@ -35,13 +35,13 @@ Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path, cons
                                          ReadReport&) {
   return refusal(path);
 }
-// No file is ever opened, so nothing below the functions named open is called.
-class ForeignFile::Program {};
-Result<ForeignFile> ForeignFile::open(const ForeignInput& input) { return refusal(input.path); }
-ForeignFile::ForeignFile(ForeignFile&&) noexcept = default;
-ForeignFile::~ForeignFile() = default;
-Result<std::vector<BlockFile>> ForeignFile::step(std::size_t, std::vector<std::string>&) {
-  return refusal({});
+Result<std::vector<TimedCells>> readForeign(const ForeignInput& input, const ReadOptions&,
+                                            ReadReport&) {
+  return refusal(input.path);
+}
+Result<std::vector<TimedCells>> readByVtk(const std::filesystem::path& path, MeshFormat,
+                                          const ReadOptions&, ReadReport&) {
+  return refusal(path);
 }
 
 // The module has no clock. Whoever waits for a page can close it.
@@ -77,6 +77,7 @@ Result<std::vector<std::filesystem::path>> processorFolders(const std::filesyste
   return refusal(marker);
 }
 
+// No file is ever opened, so nothing below the functions named open is called.
 Result<HdfFile> HdfFile::open(const std::filesystem::path& path) { return refusal(path); }
 HdfFile::HdfFile(HdfFile&& other) noexcept : path_(std::move(other.path_)), id_(other.id_) {}
 HdfFile::~HdfFile() = default;

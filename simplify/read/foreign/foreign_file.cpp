@@ -75,10 +75,11 @@ std::unexpected<Error> ended(int code, const ForeignInput& input, const fs::path
                          "only large, give it longer with `readSeconds`, else export the mesh "
                          "again, best as .vtu");
     case kNoMemory:
-      return badFile(input.path,
-                     library +
-                         " wants more memory for it than this machine has: a count in it is wrong, "
-                         "or it is too large for this machine; export the mesh again, best as .vtu");
+      return badFile(
+          input.path,
+          library +
+              " wants more memory for it than this machine has: a count in it is wrong, "
+              "or it is too large for this machine; export the mesh again, best as .vtu");
     case kNoSuchKind:
       return badFile(input.path, "files of type '" + kind +
                                      "' are not read; say with `format` what it is: " +
@@ -125,9 +126,8 @@ class ForeignFile::Program {
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return false;
     // whole, since the program leaves this process's folder
     const std::string in = fs::absolute(input_.path).string(), out = folder_.path().string(),
-                      beside = input_.companion.empty()
-                                   ? ""
-                                   : fs::absolute(input_.companion).string();
+                      beside =
+                          input_.companion.empty() ? "" : fs::absolute(input_.companion).string();
     child_ = ::fork();
     if (child_ == 0) {
       ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would wait for it

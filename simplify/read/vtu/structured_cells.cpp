@@ -77,8 +77,7 @@ void addImage(const VtuDocument& document, const VtuPiece& piece, std::vector<Po
     const double x = at(0, i), y = at(1, j), z = at(2, k);
     Position& point = points.emplace_back();
     for (std::size_t a = 0; a < 3; ++a)
-      point[a] =
-          step[3 * a] * x + step[3 * a + 1] * y + step[3 * a + 2] * z + document.origin[a];
+      point[a] = step[3 * a] * x + step[3 * a + 1] * y + step[3 * a + 2] * z + document.origin[a];
   });
 }
 
@@ -103,8 +102,7 @@ Result<std::vector<bool>> hiddenPoints(const VtuFile& file, const VtuDocument& d
 Status addGridPoints(const VtuFile& file, const VtuDocument& document, const VtuPiece& piece,
                      std::vector<Position>& points) {
   assert(document.kind == GridKind::kRectilinear || document.kind == GridKind::kImage);
-  if (document.kind == GridKind::kRectilinear)
-    return addRectilinear(file, document, piece, points);
+  if (document.kind == GridKind::kRectilinear) return addRectilinear(file, document, piece, points);
   addImage(document, piece, points);
   return {};
 }
@@ -127,27 +125,25 @@ Status addGridCells(const VtuFile& file, const VtuDocument& document, const VtuP
       isStructured ? hiddenPoints(file, document, piece) : Result<std::vector<bool>>{};
   if (!blanked) return std::unexpected(blanked.error());
   const std::uint64_t row = points[0], layer = points[0] * points[1];
-  forEachPlace({points[0] - 1, points[1] - 1, points[2] - 1},
-               [&](std::uint64_t i, std::uint64_t j, std::uint64_t k) {
-                 const std::uint64_t a = i + j * row + k * layer;
-                 std::array<std::uint64_t, 8> corners{a,         a + 1,         a + row,
-                                                      a + row + 1, a + layer, a + layer + 1,
-                                                      a + layer + row, a + layer + row + 1};
-                 if (isStructured)
-                   std::swap(corners[2], corners[3]), std::swap(corners[6], corners[7]);
-                 const bool isHidden =
-                     (!hidden->empty() && (*hidden)[rows.next()]) ||
-                     (!blanked->empty() && std::ranges::any_of(corners, [&](std::uint64_t point) {
-                       return (*blanked)[point];
-                     }));
-                 if (isHidden) return rows.drop();
-                 for (const std::uint64_t corner : corners)
-                   out.vertices.push_back(narrowedId(static_cast<std::int64_t>(corner)));
-                 // a voxel names its corners along the axes, a hexahedron round its faces
-                 out.types.push_back(isStructured ? kHexahedronCell : kVoxelCell);
-                 out.begins.push_back(out.vertices.size());
-                 rows.keep();
-               });
+  forEachPlace({points[0] - 1, points[1] - 1, points[2] - 1}, [&](std::uint64_t i, std::uint64_t j,
+                                                                  std::uint64_t k) {
+    const std::uint64_t a = i + j * row + k * layer;
+    std::array<std::uint64_t, 8> corners{
+        a,         a + 1,         a + row,         a + row + 1,
+        a + layer, a + layer + 1, a + layer + row, a + layer + row + 1};
+    if (isStructured) std::swap(corners[2], corners[3]), std::swap(corners[6], corners[7]);
+    const bool isHidden =
+        (!hidden->empty() && (*hidden)[rows.next()]) ||
+        (!blanked->empty() &&
+         std::ranges::any_of(corners, [&](std::uint64_t point) { return (*blanked)[point]; }));
+    if (isHidden) return rows.drop();
+    for (const std::uint64_t corner : corners)
+      out.vertices.push_back(narrowedId(static_cast<std::int64_t>(corner)));
+    // a voxel names its corners along the axes, a hexahedron round its faces
+    out.types.push_back(isStructured ? kHexahedronCell : kVoxelCell);
+    out.begins.push_back(out.vertices.size());
+    rows.keep();
+  });
   return {};
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "simplify/read/read_steps.h"
+#include "simplify/read/foreign/read_foreign.h"
 #include "tests/support/meshes.h"
 
 namespace qtet {

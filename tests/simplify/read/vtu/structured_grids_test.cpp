@@ -46,7 +46,8 @@ void addFields(vtkDataSet& grid) {
 void addGhosts(vtkFieldData& fields, vtkIdType count, unsigned char bit) {
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName("vtkGhostType");
-  for (vtkIdType i = 0; i < count; ++i) ghosts->InsertNextValue(i % 7 == 2 ? bit : i % 3 == 0 ? 4 : 0);
+  for (vtkIdType i = 0; i < count; ++i)
+    ghosts->InsertNextValue(i % 7 == 2 ? bit : i % 3 == 0 ? 4 : 0);
   fields.AddArray(ghosts);
 }
 
@@ -160,7 +161,8 @@ TEST(StructuredGrids, piecesOfOneFileAreJoined) {
 std::string refusal(const std::string& type, const std::string& grid) {
   const std::string ending = type == "ImageData" ? "vti" : "vtr";
   const auto read = testing::readByOurs(testing::fileWith(
-      "wrong." + ending, "<VTKFile type=\"" + type + "\"><" + type + grid + "</" + type + "></VTKFile>"));
+      "wrong." + ending,
+      "<VTKFile type=\"" + type + "\"><" + type + grid + "</" + type + "></VTKFile>"));
   return read.mesh ? "" : read.mesh.error().message;
 }
 
