@@ -15,7 +15,6 @@ std::string_view mediaType(LevelForm form) {
     case LevelForm::kGlb: return "model/gltf-binary";
     case LevelForm::kObj: return "model/obj";
     case LevelForm::kUsda: return "model/vnd.usda";
-    case LevelForm::kPng: return "image/png";
     case LevelForm::kWebp: return "image/webp";
     case LevelForm::kJson: return "application/json";
     case LevelForm::kCsv: return "text/csv";
@@ -24,9 +23,7 @@ std::string_view mediaType(LevelForm form) {
 }
 
 /// Whether it is looked at, not saved.
-bool isShown(LevelForm form) {
-  return form == LevelForm::kPng || form == LevelForm::kWebp || form == LevelForm::kJson;
-}
+bool isShown(LevelForm form) { return form == LevelForm::kWebp || form == LevelForm::kJson; }
 
 /// Whether the form is compressed already and is sent as it is.
 bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == LevelForm::kDrc; }

@@ -78,7 +78,6 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
     return part(request, mesh, "base", 0, endOf(mesh->log.chunks().front().blocks[kPositionsPart]));
   if (path.size() == 1 && what == "manifest")
     return textAnswer(request, mesh, ServedMesh::Text::kManifest);
-  if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
   if (path.size() == 1 && what == "poster.webp") return routePoster(request, log);
   if (path.size() == 1 && what == "series") return routeSeries(request, target, log);
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
@@ -86,7 +85,7 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
   return missingReply(
       "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "
-      "other forms, series, preview.png, and poster.webp");
+      "other forms, series, and poster.webp");
 }
 
 }  // namespace qtet
