@@ -1,5 +1,6 @@
 #include "server/routes/level_answer.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "server/http/content_disposition.h"
@@ -30,7 +31,7 @@ bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == Le
 
 }  // namespace
 
-std::optional<std::uint32_t> parseLevel(std::string_view text) {
+std::optional<std::uint32_t> parseIndex(std::string_view text) {
   if (text.starts_with('0') && text != "0") return std::nullopt;
   return parseNumber<std::uint32_t>(text);
 }
@@ -45,6 +46,7 @@ std::string levelsText(const ServedMesh& mesh) {
 }
 
 Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
+  assert(wanted.mesh && wanted.level < wanted.mesh->manifest.levels.size());
   Resource out{{'"' + wanted.key() + '"', wanted.mesh->modified},
                std::string(mediaType(wanted.form)),
                kForEver};

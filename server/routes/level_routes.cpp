@@ -52,7 +52,7 @@ OrRefusal<std::uint32_t> fittingLevel(const RequestTarget& target, const ServedM
 OrRefusal<std::uint32_t> levelOfName(std::string_view name, const RequestTarget& target,
                                      const ServedMesh& mesh) {
   if (name == "fit") return fittingLevel(target, mesh);
-  const auto level = parseLevel(name);
+  const auto level = parseIndex(name);
   if (!level || *level >= mesh.manifest.levels.size())
     return notFound("there is no such level; this mesh has " + levelsText(mesh) +
                     ", and fit.vtu?tets=N");
