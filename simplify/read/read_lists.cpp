@@ -87,14 +87,14 @@ Result<std::vector<SeriesEntry>> entriesOf(const std::filesystem::path& path, Me
 }  // namespace
 
 Result<Steps> readParts(const std::filesystem::path& path, MeshFormat format,
-                                          const ReadOptions& options, ReadReport& report,
-                                          int depth) {
+                        const ReadOptions& options, ReadReport& report, int depth) {
   if (depth == kMaxDepth)
     return badFile(path, "files that name files go deeper than " + std::to_string(kMaxDepth) +
                              "; does one name itself?");
   if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
     return std::unexpected(steps.error());
-  const auto parts = traitsOf(format).namesPieces ? piecesOf(path, format) : blocksOf(path, report.notes);
+  const auto parts =
+      traitsOf(format).namesPieces ? piecesOf(path, format) : blocksOf(path, report.notes);
   if (!parts) return std::unexpected(parts.error());
   Result<CellMesh> cells = cellsOfParts(*parts, path, options, report, depth);
   if (!cells) return std::unexpected(cells.error());
@@ -107,7 +107,7 @@ Result<Steps> readParts(const std::filesystem::path& path, MeshFormat format,
 }
 
 Result<Steps> readSeries(const std::filesystem::path& path, MeshFormat format,
-                                           const ReadOptions& options, ReadReport& report, int depth) {
+                         const ReadOptions& options, ReadReport& report, int depth) {
   const auto entries = entriesOf(path, format, options.listed);
   if (!entries) return std::unexpected(entries.error());
   const auto all = stepsOfSeries(*entries, path, report.notes);
@@ -121,8 +121,8 @@ Result<Steps> readSeries(const std::filesystem::path& path, MeshFormat format,
   });
 }
 
-Result<Steps> readExodusPieces(const std::filesystem::path& path,
-                                                 MeshFormat, const ReadOptions& options, ReadReport& report, int) {
+Result<Steps> readExodusPieces(const std::filesystem::path& path, MeshFormat,
+                               const ReadOptions& options, ReadReport& report, int) {
   const auto files = exodusPieces(path);
   if (!files) return std::unexpected(files.error());
   std::vector<Steps> pieces;

@@ -5,6 +5,7 @@
 #include "proto/field_key.h"
 #include "simplify/clean/mend_faces.h"
 #include "simplify/read/listed_files.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/parts/own_points.h"
@@ -15,7 +16,6 @@
 #include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/unused_points.h"
-#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {

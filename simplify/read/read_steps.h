@@ -14,8 +14,8 @@ namespace qtet {
 /// They are unchecked beyond what the reader itself checks. Warnings become notes.
 /// `depth` files have named this one. Errors: those of the format's own reader and of readApart;
 /// not-found (a time that is none; a file that the file names). REQUIRES: a file that checkMeshFile
-/// has passed; or kSeries and `options.listed` as withListedFiles gives it. Not thread-safe: readers
-/// run in processes of their own.
+/// has passed; or kSeries and `options.listed` as withListedFiles gives it. Not thread-safe:
+/// readers run in processes of their own.
 [[nodiscard]] Result<std::vector<TimedCells>> readSteps(const std::filesystem::path& path,
                                                         MeshFormat format,
                                                         const ReadOptions& options,

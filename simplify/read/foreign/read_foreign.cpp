@@ -70,7 +70,7 @@ bool isMarkedText(const ForeignInput& input) {
 }  // namespace
 
 Result<Steps> readForeign(const ForeignInput& input, const ReadOptions& options,
-                                            ReadReport& report) {
+                          ReadReport& report) {
   if (isMarkedText(input)) {
     Result<Steps> out = Steps{};
     ForeignInput copy = input;
@@ -102,7 +102,7 @@ Result<Steps> readForeign(const ForeignInput& input, const ReadOptions& options,
 }
 
 Result<Steps> readByVtk(const std::filesystem::path& path, MeshFormat format,
-                                          const ReadOptions& options, ReadReport& report) {
+                        const ReadOptions& options, ReadReport& report) {
   ForeignInput input{path, ForeignLibrary::kVtk, vtkWord(format), options.plot3dSolution,
                      options.patience};
   auto out = readForeign(input, options, report);

@@ -128,7 +128,8 @@ def name_arrays(fields, association):
     for i in reversed(range(fields.GetNumberOfArrays())):
         array = fields.GetAbstractArray(i)
         if not isinstance(array, (vtkDataArray, vtkStringArray)):
-            say("note", "%s field %s was ignored: it holds no numbers" % (association, array.GetName()))
+            called = "%s field %s" % (association, array.GetName())
+            say("note", called + " was ignored: it holds no numbers")
             fields.RemoveArray(i)
         elif not array.GetName():
             name = "unnamed-%d" % i

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "simplify/read/options/bad_file.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/xml_tree.h"
-#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "proto/limits.h"
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/vtu/old_hexahedra.h"
 #include "simplify/read/vtu/structured_cells.h"
 #include "simplify/read/vtu/vtu_cells.h"

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <span>
 
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/vtu/vtu_numbers.h"
 
 namespace qtet {

@@ -24,7 +24,7 @@
 
 #include "codec/coding/float_bits.h"
 #include "simplify/read/options/bad_file.h"
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/split/higher_cells.h"
 
 namespace qtet::testing {
