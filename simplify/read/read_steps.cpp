@@ -16,9 +16,9 @@
 #include "simplify/read/read_lists.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/read_apart.h"
+#include "simplify/read/steps/read_xml_grid.h"
 #include "simplify/read/steps/step_reports.h"
 #include "simplify/read/text/text_readers.h"
-#include "simplify/read/vtu/read_xml_grid.h"
 #include "simplify/read/xdmf/read_xdmf.h"
 
 namespace qtet {

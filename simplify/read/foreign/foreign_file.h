@@ -26,10 +26,10 @@ struct ForeignInput {
   std::chrono::seconds patience{60};  ///< as ReadOptions::patience
 };
 
-/// A mesh file that a Python program of ours has open (steps.py), in a process of its own with all
-/// of the machine's memory at most. It writes each step that is asked for to a temporary folder, in
-/// VTK's XML, which our own readers take for a stranger's. So damage that breaks the library harms
-/// nothing else.
+/// A mesh file that a Python program of ours (steps.py) has open. The program may take all memory
+/// of the machine, and ends with this process. It writes each step that is asked for to a temporary
+/// folder, in VTK's XML. Our own readers take that for a stranger's. So damage that breaks the
+/// library harms nothing else.
 class ForeignFile {
  public:
   /// Errors: not-found (no Python, or no such library: the message says what to install),

@@ -9,8 +9,8 @@
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
+#include "simplify/read/steps/read_xml_grid.h"
 #include "simplify/read/steps/step_reports.h"
-#include "simplify/read/vtu/read_xml_grid.h"
 
 namespace qtet {
 namespace {

@@ -45,7 +45,7 @@ enum class MeshFormat {
   kOther,  // whatever meshio knows
 };
 
-/// What holds for all files of a format.
+/// The traits of all files of a format.
 struct FormatTraits {
   MeshFormat format = MeshFormat::kOther;
   std::string_view endings{};  ///< ".e .exo": those by which its files are known

@@ -13,20 +13,20 @@ namespace qtet {
 namespace {
 
 /// VTK writes vtkIdType with 32 bits, and keeps it with 64.
-constexpr std::array<LegacyType, 14> kTypes{{{"char", NumberType::kInt8, "int8"},
-                                             {"signed_char", NumberType::kInt8, "int8"},
-                                             {"unsigned_char", NumberType::kUInt8, "uint8"},
-                                             {"short", NumberType::kInt16, "int16"},
-                                             {"unsigned_short", NumberType::kUInt16, "uint16"},
-                                             {"int", NumberType::kInt32, "int32"},
-                                             {"unsigned_int", NumberType::kUInt32, "uint32"},
-                                             {"long", NumberType::kInt64, "int64"},
-                                             {"vtktypeint64", NumberType::kInt64, "int64"},
-                                             {"unsigned_long", NumberType::kUInt64, "uint64"},
-                                             {"vtktypeuint64", NumberType::kUInt64, "uint64"},
-                                             {"vtkidtype", NumberType::kInt32, "int64"},
-                                             {"float", NumberType::kFloat32, "float32"},
-                                             {"double", NumberType::kFloat64, "float64"}}};
+constexpr std::array<LegacyType, 14> kTypes{{{"char", VtuNumber::kInt8, "int8"},
+                                             {"signed_char", VtuNumber::kInt8, "int8"},
+                                             {"unsigned_char", VtuNumber::kUInt8, "uint8"},
+                                             {"short", VtuNumber::kInt16, "int16"},
+                                             {"unsigned_short", VtuNumber::kUInt16, "uint16"},
+                                             {"int", VtuNumber::kInt32, "int32"},
+                                             {"unsigned_int", VtuNumber::kUInt32, "uint32"},
+                                             {"long", VtuNumber::kInt64, "int64"},
+                                             {"vtktypeint64", VtuNumber::kInt64, "int64"},
+                                             {"unsigned_long", VtuNumber::kUInt64, "uint64"},
+                                             {"vtktypeuint64", VtuNumber::kUInt64, "uint64"},
+                                             {"vtkidtype", VtuNumber::kInt32, "int64"},
+                                             {"float", VtuNumber::kFloat32, "float32"},
+                                             {"double", VtuNumber::kFloat64, "float64"}}};
 
 template <class Out, class T>
 Out converted(T number) {
@@ -68,16 +68,16 @@ std::vector<Out> numbersOf(MeshScanner& in, bool areBytes, const LegacyRun& run)
 template <class Out>
 std::vector<Out> numbers(MeshScanner& in, bool areBytes, const LegacyRun& run) {
   switch (run.type) {
-    case NumberType::kInt8: return numbersOf<Out, std::int8_t>(in, areBytes, run);
-    case NumberType::kUInt8: return numbersOf<Out, std::uint8_t>(in, areBytes, run);
-    case NumberType::kInt16: return numbersOf<Out, std::int16_t>(in, areBytes, run);
-    case NumberType::kUInt16: return numbersOf<Out, std::uint16_t>(in, areBytes, run);
-    case NumberType::kInt32: return numbersOf<Out, std::int32_t>(in, areBytes, run);
-    case NumberType::kUInt32: return numbersOf<Out, std::uint32_t>(in, areBytes, run);
-    case NumberType::kInt64: return numbersOf<Out, std::int64_t>(in, areBytes, run);
-    case NumberType::kUInt64: return numbersOf<Out, std::uint64_t>(in, areBytes, run);
-    case NumberType::kFloat32: return numbersOf<Out, float>(in, areBytes, run);
-    case NumberType::kFloat64: return numbersOf<Out, double>(in, areBytes, run);
+    case VtuNumber::kInt8: return numbersOf<Out, std::int8_t>(in, areBytes, run);
+    case VtuNumber::kUInt8: return numbersOf<Out, std::uint8_t>(in, areBytes, run);
+    case VtuNumber::kInt16: return numbersOf<Out, std::int16_t>(in, areBytes, run);
+    case VtuNumber::kUInt16: return numbersOf<Out, std::uint16_t>(in, areBytes, run);
+    case VtuNumber::kInt32: return numbersOf<Out, std::int32_t>(in, areBytes, run);
+    case VtuNumber::kUInt32: return numbersOf<Out, std::uint32_t>(in, areBytes, run);
+    case VtuNumber::kInt64: return numbersOf<Out, std::int64_t>(in, areBytes, run);
+    case VtuNumber::kUInt64: return numbersOf<Out, std::uint64_t>(in, areBytes, run);
+    case VtuNumber::kFloat32: return numbersOf<Out, float>(in, areBytes, run);
+    case VtuNumber::kFloat64: return numbersOf<Out, double>(in, areBytes, run);
     default: return {};
   }
 }

@@ -13,10 +13,10 @@ namespace qtet {
 
 struct LegacyType {
   std::string_view word;  ///< in the file, in small letters
-  NumberType number;      ///< one with numbers
+  VtuNumber number;       ///< one with numbers
   const char* name;       ///< as MeshField's
   [[nodiscard]] bool isFloat() const {
-    return number == NumberType::kFloat32 || number == NumberType::kFloat64;
+    return number == VtuNumber::kFloat32 || number == VtuNumber::kFloat64;
   }
 };
 
@@ -26,7 +26,7 @@ struct LegacyType {
 /// Numbers that follow in the file.
 struct LegacyRun {
   std::uint64_t count;
-  NumberType type;
+  VtuNumber type;
   const char* what;  ///< "cell types", for errors
 };
 

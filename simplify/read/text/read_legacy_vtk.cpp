@@ -76,7 +76,7 @@ class LegacyVtk {
       readCells();
     } else if (word == "cell_types") {
       const auto count = in_.number<std::uint64_t>("the number of cell types");
-      types_ = legacyIntegers(in_, bytes_, {count, NumberType::kInt32, "cell types"});
+      types_ = legacyIntegers(in_, bytes_, {count, VtuNumber::kInt32, "cell types"});
     } else if (word == "point_data") {
       pointTuples_ = in_.number<std::uint64_t>("the number of points");
       fields_ = &pointFields_;
@@ -110,7 +110,7 @@ class LegacyVtk {
                second = in_.number<std::uint64_t>("the length of their list");
     if (version_ < kOffsetsVersion) {
       cellCount_ = first;
-      list_ = legacyIntegers(in_, bytes_, {second, NumberType::kInt32, "numbers of cells"});
+      list_ = legacyIntegers(in_, bytes_, {second, VtuNumber::kInt32, "numbers of cells"});
       return;
     }
     cellCount_ = first > 0 ? first - 1 : 0;
@@ -194,7 +194,7 @@ class LegacyVtk {
       return bad("it has " + std::to_string(cellCount_) + " cells and " +
                  std::to_string(types_.size()) + " cell types; export it again");
     CellMesh mesh;
-    mesh.pointType = points_.type->number == NumberType::kFloat32 ? "float32" : "float64";
+    mesh.pointType = points_.type->number == VtuNumber::kFloat32 ? "float32" : "float64";
     mesh.points.resize(points_.tuples);
     for (std::size_t i = 0; i < points_.numbers.size(); ++i)
       mesh.points[i / 3][i % 3] = points_.numbers[i];
@@ -257,7 +257,7 @@ class LegacyVtk {
       if (field.tuples < cellCount_ || field.components == 0) continue;
       const double value = field.numbers[cell * field.components];
       if (field.name == kGhostLevels && value > 0) return true;
-      if (field.name == kGhostTypes && field.type->number == NumberType::kUInt8 &&
+      if (field.name == kGhostTypes && field.type->number == VtuNumber::kUInt8 &&
           (static_cast<unsigned>(value) & kElsewhere) != 0)
         return true;
     }

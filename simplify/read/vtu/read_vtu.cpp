@@ -20,22 +20,22 @@ namespace {
 std::string typeName(const VtuArray& array) {
   if (array.isIdType) return "int64";
   switch (array.type) {
-    case NumberType::kInt8: return "int8";
-    case NumberType::kBit:
-    case NumberType::kUInt8: return "uint8";
-    case NumberType::kInt16: return "int16";
-    case NumberType::kUInt16: return "uint16";
-    case NumberType::kInt32: return "int32";
-    case NumberType::kUInt32: return "uint32";
-    case NumberType::kInt64: return "int64";
-    case NumberType::kUInt64: return "uint64";
-    case NumberType::kFloat32: return "float32";
+    case VtuNumber::kInt8: return "int8";
+    case VtuNumber::kBit:
+    case VtuNumber::kUInt8: return "uint8";
+    case VtuNumber::kInt16: return "int16";
+    case VtuNumber::kUInt16: return "uint16";
+    case VtuNumber::kInt32: return "int32";
+    case VtuNumber::kUInt32: return "uint32";
+    case VtuNumber::kInt64: return "int64";
+    case VtuNumber::kUInt64: return "uint64";
+    case VtuNumber::kFloat32: return "float32";
     default: return "float64";
   }
 }
 
 bool isFloat(const VtuArray& array) {
-  return array.type == NumberType::kFloat32 || array.type == NumberType::kFloat64;
+  return array.type == VtuNumber::kFloat32 || array.type == VtuNumber::kFloat64;
 }
 
 /// The parts of a document that differ between fields of points and of cells.
@@ -96,7 +96,7 @@ class VtuReader {
     }
     if (Status alike = areAlike(parts); !alike) return alike;
     out_.pointType =
-        parts.empty() || parts.front().array->type == NumberType::kFloat32 ? "float32" : "float64";
+        parts.empty() || parts.front().array->type == VtuNumber::kFloat32 ? "float32" : "float64";
     const auto certain = certainTuples(parts);
     if (!certain) return std::unexpected(certain.error());
     out_.points.reserve(*certain);
@@ -170,7 +170,7 @@ class VtuReader {
     for (const VtuArray& array : fields.arrays) {
       if (&array != &*std::ranges::find(fields.arrays, array.name, &VtuArray::name)) continue;
       const auto name =
-          choice_.nameOf({array.name, number++, array.components, array.type != NumberType::kText,
+          choice_.nameOf({array.name, number++, array.components, array.type != VtuNumber::kText,
                           isOfTheShape(fields, array)},
                          of.name, out_);
       if (!name) {

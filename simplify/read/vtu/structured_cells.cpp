@@ -87,7 +87,7 @@ Result<std::vector<bool>> hiddenPoints(const VtuFile& file, const VtuDocument& d
   std::vector<bool> out;
   const auto& arrays = piece.pointFields.arrays;
   const auto marks = std::ranges::find(arrays, kGhostTypes, &VtuArray::name);
-  if (marks == arrays.end() || marks->type != NumberType::kUInt8 || marks->components != 1)
+  if (marks == arrays.end() || marks->type != VtuNumber::kUInt8 || marks->components != 1)
     return out;
   const Status done =
       readIntegers(file, document, *marks, {piece.points, 0, piece.points}, [&](auto numbers) {

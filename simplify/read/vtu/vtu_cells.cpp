@@ -285,7 +285,7 @@ Result<std::vector<bool>> hiddenCells(const VtuFile& file, const VtuDocument& do
   std::vector<bool> hidden;
   for (const VtuArray& from : piece.cellFields.arrays) {
     const bool isLevels = from.name == kGhostLevels;
-    const bool isTypes = from.name == kGhostTypes && from.type == NumberType::kUInt8;
+    const bool isTypes = from.name == kGhostTypes && from.type == VtuNumber::kUInt8;
     if ((!isLevels && !isTypes) || bytesOf(from.type) == 0) continue;
     const auto numbers = wholeArray(file, document, from, piece.cells * from.components);
     if (!numbers) return std::unexpected(numbers.error());

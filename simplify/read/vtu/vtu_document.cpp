@@ -56,19 +56,19 @@ constexpr std::array<std::pair<std::string_view, GridKind>, 4> kGrids{{
     {"ImageData", GridKind::kImage},
 }};
 
-constexpr std::array<std::pair<std::string_view, NumberType>, 12> kTypes{{
-    {"Int8", NumberType::kInt8},
-    {"UInt8", NumberType::kUInt8},
-    {"Int16", NumberType::kInt16},
-    {"UInt16", NumberType::kUInt16},
-    {"Int32", NumberType::kInt32},
-    {"UInt32", NumberType::kUInt32},
-    {"Int64", NumberType::kInt64},
-    {"UInt64", NumberType::kUInt64},
-    {"Float32", NumberType::kFloat32},
-    {"Float64", NumberType::kFloat64},
-    {"Bit", NumberType::kBit},
-    {"String", NumberType::kText},
+constexpr std::array<std::pair<std::string_view, VtuNumber>, 12> kTypes{{
+    {"Int8", VtuNumber::kInt8},
+    {"UInt8", VtuNumber::kUInt8},
+    {"Int16", VtuNumber::kInt16},
+    {"UInt16", VtuNumber::kUInt16},
+    {"Int32", VtuNumber::kInt32},
+    {"UInt32", VtuNumber::kUInt32},
+    {"Int64", VtuNumber::kInt64},
+    {"UInt64", VtuNumber::kUInt64},
+    {"Float32", VtuNumber::kFloat32},
+    {"Float64", VtuNumber::kFloat64},
+    {"Bit", VtuNumber::kBit},
+    {"String", VtuNumber::kText},
 }};
 
 /// An element's attributes, as the parser gives them.
@@ -494,18 +494,18 @@ class DocumentParser {
 
 }  // namespace
 
-std::uint32_t bytesOf(NumberType type) {
+std::uint32_t bytesOf(VtuNumber type) {
   switch (type) {
-    case NumberType::kInt8:
-    case NumberType::kUInt8: return 1;
-    case NumberType::kInt16:
-    case NumberType::kUInt16: return 2;
-    case NumberType::kInt32:
-    case NumberType::kUInt32:
-    case NumberType::kFloat32: return 4;
-    case NumberType::kInt64:
-    case NumberType::kUInt64:
-    case NumberType::kFloat64: return 8;
+    case VtuNumber::kInt8:
+    case VtuNumber::kUInt8: return 1;
+    case VtuNumber::kInt16:
+    case VtuNumber::kUInt16: return 2;
+    case VtuNumber::kInt32:
+    case VtuNumber::kUInt32:
+    case VtuNumber::kFloat32: return 4;
+    case VtuNumber::kInt64:
+    case VtuNumber::kUInt64:
+    case VtuNumber::kFloat64: return 8;
     default: return 0;
   }
 }

@@ -14,7 +14,7 @@
 
 namespace qtet {
 
-enum class NumberType : std::uint8_t {
+enum class VtuNumber : std::uint8_t {
   kInt8,
   kUInt8,
   kInt16,
@@ -29,7 +29,7 @@ enum class NumberType : std::uint8_t {
   kText,  ///< no numbers
 };
 /// The bytes of one number; 0 for bits and texts.
-[[nodiscard]] std::uint32_t bytesOf(NumberType type);
+[[nodiscard]] std::uint32_t bytesOf(VtuNumber type);
 
 enum class VtuCompressor : std::uint8_t { kNone, kZlib, kLz4, kLzma };
 
@@ -39,7 +39,7 @@ struct VtuArray {
 
   std::string name;
   std::string parent;  ///< the element that it stands in: "Cells"
-  NumberType type = NumberType::kText;
+  VtuNumber type = VtuNumber::kText;
   std::uint32_t components = 1;  ///< at least 1
   bool isIdType = false;         ///< VTK keeps such in 64 bits, whatever the file has
   Place place = Place::kAscii;

@@ -43,19 +43,19 @@ To converted(From value) {
 
 /// Calls visit(T{}) with the type that the file's numbers have.
 template <class Visit>
-Status visitType(NumberType type, const Visit& visit) {
+Status visitType(VtuNumber type, const Visit& visit) {
   switch (type) {
-    case NumberType::kInt8: return visit(std::int8_t{});
-    case NumberType::kBit:  // as text
-    case NumberType::kUInt8: return visit(std::uint8_t{});
-    case NumberType::kInt16: return visit(std::int16_t{});
-    case NumberType::kUInt16: return visit(std::uint16_t{});
-    case NumberType::kInt32: return visit(std::int32_t{});
-    case NumberType::kUInt32: return visit(std::uint32_t{});
-    case NumberType::kInt64: return visit(std::int64_t{});
-    case NumberType::kUInt64: return visit(std::uint64_t{});
-    case NumberType::kFloat32: return visit(float{});
-    default: assert(type == NumberType::kFloat64); return visit(double{});
+    case VtuNumber::kInt8: return visit(std::int8_t{});
+    case VtuNumber::kBit:  // as text
+    case VtuNumber::kUInt8: return visit(std::uint8_t{});
+    case VtuNumber::kInt16: return visit(std::int16_t{});
+    case VtuNumber::kUInt16: return visit(std::uint16_t{});
+    case VtuNumber::kInt32: return visit(std::int32_t{});
+    case VtuNumber::kUInt32: return visit(std::uint32_t{});
+    case VtuNumber::kInt64: return visit(std::int64_t{});
+    case VtuNumber::kUInt64: return visit(std::uint64_t{});
+    case VtuNumber::kFloat32: return visit(float{});
+    default: assert(type == VtuNumber::kFloat64); return visit(double{});
   }
 }
 
@@ -150,7 +150,7 @@ class ArrayNumbers {
       : file_(file), document_(document), array_(array) {}
 
   Result<std::uint64_t> certain(std::uint64_t told) {
-    if (array_.type == NumberType::kText)
+    if (array_.type == VtuNumber::kText)
       return bad("holds no numbers where numbers are needed; export the mesh again");
     if (array_.place == VtuArray::Place::kAscii) {
       const std::uint64_t most = (array_.end - array_.begin + 1) / 2;
@@ -171,7 +171,7 @@ class ArrayNumbers {
     assert(range.first <= range.told && range.count <= range.told - range.first);
     if (const auto certainly = certain(range.told); !certainly)
       return std::unexpected(certainly.error());
-    if (array_.type == NumberType::kBit && array_.place != VtuArray::Place::kAscii)
+    if (array_.type == VtuNumber::kBit && array_.place != VtuArray::Place::kAscii)
       return readBits<To>(range, take);
     return visitType(array_.type, [&]<class T>(T) {
       return array_.place == VtuArray::Place::kAscii ? readText<To, T>(range, take)
@@ -186,7 +186,7 @@ class ArrayNumbers {
 
   /// How many numbers so many bytes hold.
   [[nodiscard]] std::uint64_t numbersIn(std::uint64_t bytes) const {
-    if (array_.type != NumberType::kBit) return bytes / bytesOf(array_.type);
+    if (array_.type != VtuNumber::kBit) return bytes / bytesOf(array_.type);
     return std::min(bytes, ~std::uint64_t{0} / 8) * 8;
   }
 

@@ -1,4 +1,4 @@
-#include "simplify/read/vtu/read_xml_grid.h"
+#include "simplify/read/steps/read_xml_grid.h"
 
 #include <cmath>
 #include <utility>
