@@ -32,7 +32,7 @@ constexpr int kNoProgram = 127, kNoModule = 77, kNoSuchKind = 78, kNoMemory = 3;
 constexpr int kKilled = -1, kStuck = -2;  ///< not by itself
 /// Between two looks at the program.
 constexpr int kPauseMs = 50;
-/// Of all lines of one answer: a thousand times a file of a thousand blocks.
+/// All lines of one answer: a thousand times those of a file of a thousand blocks.
 constexpr std::size_t kMaxAnswerBytes = std::size_t{64} << 20;
 
 std::string lastLineOf(const fs::path& path) {

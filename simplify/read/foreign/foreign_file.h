@@ -15,7 +15,7 @@ namespace qtet {
 
 enum class ForeignLibrary : std::uint8_t { kVtk, kMeshio };
 
-/// What a library is to read.
+/// A file that a library is to read.
 struct ForeignInput {
   std::filesystem::path path;
   ForeignLibrary library = ForeignLibrary::kMeshio;
