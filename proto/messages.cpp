@@ -85,7 +85,7 @@ struct ToJson {
   }
   Json operator()(const CancelMessage&) const { return {{"type", "cancel"}}; }
   Json operator()(const OpenedMessage& m) const {
-    assert(m.bytes <= kMaxCredit && m.planned <= m.bytes);
+    assert(m.bytes <= kMaxCredit && m.planned <= kMaxCredit);
     return {{"type", "opened"},   {"stream", m.stream}, {"mesh", m.mesh},
             {"digest", m.digest}, {"bytes", m.bytes},   {"planned", m.planned}};
   }

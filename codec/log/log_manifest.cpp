@@ -64,7 +64,6 @@ double readStep(ByteReader& r) {
 constexpr unsigned kMissingTypeFlag = 0x80;
 
 void writeField(ByteWriter& w, const ManifestField& field) {
-  assert(field.minimum.size() == field.components);
   writeText(w, field.name);
   const auto type =
       static_cast<unsigned>(std::ranges::find(kFieldTypes, field.type) - kFieldTypes.begin());
