@@ -15,7 +15,7 @@ import type {Snapshot} from './worker_messages';
  * Growth waits its turn, a wish of the user hardly. The last picture, which nothing finer follows
  * by itself, need not leave time for decoding.
  */
-const enum Cause {
+enum Cause {
   growth,
   wish,
   last,

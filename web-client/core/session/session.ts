@@ -18,7 +18,7 @@ import {Decoding} from './decoding';
 import {LogStream} from './log_stream';
 import {ProgressReporter} from './progress_reporter';
 import type {Publisher} from './publisher';
-import {RequestedPart} from './requested_part';
+import {Progress, RequestedPart} from './requested_part';
 import {canPause, isAtRest, stateMessage, type SessionState} from './session_state';
 import {Throttle} from './throttle';
 import type {FromWorker, Source} from './worker_messages';
@@ -81,7 +81,7 @@ export class Session implements TransportHandlers {
   private readonly stream = new LogStream();
   private readonly requested: RequestedPart;
   private readonly decoding: Decoding;
-  private readonly progress: ProgressReporter;
+  private readonly reporter: ProgressReporter;
   private readonly reopening = new Throttle(() => this.bring(), kReopenMs);
 
   constructor(
@@ -98,9 +98,9 @@ export class Session implements TransportHandlers {
       () => this.advance(),
       (thrown) => this.aheadFailed(thrown),
     );
-    this.progress = new ProgressReporter(() => this.sendProgress());
+    this.reporter = new ProgressReporter(() => this.sendProgress());
     publisher.onFirst = () => this.advance();
-    publisher.pace.untilLast = () => this.untilDecoded();
+    publisher.pace.untilLast = () => this.decoding.msLeft;
   }
 
   /** Messages and frames wait until the assembler is ready. */
@@ -133,7 +133,7 @@ export class Session implements TransportHandlers {
     this.requested.changeAhead(ahead);
     if (this.requested.changeFields(fields)) {
       this.sendPlan();
-      this.progress.changed();
+      this.reporter.changed();
     }
     if (this.state.name === 'failed') return;
     this.advanceSoon();
@@ -148,7 +148,7 @@ export class Session implements TransportHandlers {
     this.guarded(() => {
       if (this.requested.isReached) this.goBack();
       this.goOn();
-      this.progress.changed();
+      this.reporter.changed();
     });
   }
 
@@ -220,7 +220,7 @@ export class Session implements TransportHandlers {
       this.stream.received(frame.payload.length);
       if (isFirst && this.takeManifest()) return;
       const {name} = this.state;
-      if (name !== 'streaming' && name !== 'paused' && !this.requested.isSettled)
+      if (name !== 'streaming' && name !== 'paused' && this.requested.progress < Progress.settled)
         this.enter({name: 'streaming'});
       this.advanceSoon();
     });
@@ -240,7 +240,7 @@ export class Session implements TransportHandlers {
   }
 
   private done(): void {
-    if (this.requested.isHere) {
+    if (this.requested.progress >= Progress.received) {
       this.advanceSoon();
     } else if (!this.stream.brings(this.requested.keys)) {
       return; // another stream is opened soon, or once a pause ends
@@ -286,9 +286,10 @@ export class Session implements TransportHandlers {
   private bring(): void {
     const {requested, state, stream} = this;
     if (state.name === 'paused' || state.name === 'failed') return;
-    if (requested.isHere && requested.isAheadReceived) return;
+    const isReceived = requested.progress >= Progress.received;
+    if (isReceived && requested.isAheadReceived) return;
     const {isConnected} = stream;
-    if (isAtRest(state) && !requested.isHere)
+    if (isAtRest(state) && !isReceived)
       this.enter({name: isConnected ? 'streaming' : 'connecting'});
     if (isConnected && stream.brings(requested.keys)) {
       stream.aim(requested);
@@ -377,14 +378,16 @@ export class Session implements TransportHandlers {
       const pictureFirst = this.source.pictureFirst === true && !this.publisher.hasPublished;
       const hasChanged = this.decoding.advance(pictureFirst);
       this.tellOfBase();
-      if (hasChanged) this.publisher.changed(this.requested.isDecoded);
-      if (this.publisher.hasPublished || this.requested.isSettled) void this.bringLater();
-      this.progress.changed();
+      const {progress} = this.requested;
+      const isSettled = progress >= Progress.settled;
+      if (hasChanged) this.publisher.changed(progress >= Progress.decoded);
+      if (this.publisher.hasPublished || isSettled) void this.bringLater();
+      this.reporter.changed();
       if (this.state.name === 'failed') return;
-      if (this.requested.isComplete) this.complete();
-      else if (this.requested.isSettled) this.hold();
+      if (progress === Progress.complete) this.complete();
+      else if (isSettled) this.hold();
       if (this.state.name === 'paused') return;
-      if (!this.requested.isSettled || !this.requested.isAheadReceived) this.stream.giveCredit();
+      if (!isSettled || !this.requested.isAheadReceived) this.stream.giveCredit();
     });
   }
 
@@ -402,19 +405,11 @@ export class Session implements TransportHandlers {
     this.publisher.changed(true);
   }
 
-  /** In ms. Infinity until everything is received. */
-  private untilDecoded(): number {
-    if (this.requested.isDecoded) return 0;
-    if (this.requested.limit.kind !== 'full' || !this.requested.isReceived()) return Infinity;
-    const {bytes, bytesNeeded} = this.requested.statistics;
-    return this.decoding.msFor(bytesNeeded - bytes);
-  }
-
   // ---- states
 
   private enter(state: SessionState): void {
     this.state = state;
-    this.progress.flush();
+    this.reporter.flush();
     this.send(stateMessage(state));
   }
 
@@ -440,7 +435,8 @@ export class Session implements TransportHandlers {
     this.state = {name: 'streaming'}; // reported below, unless decoding ends it at once
     this.advance();
     if (this.state.name === 'streaming') {
-      const isUnderWay = this.requested.isHere || this.stream.isConnected;
+      const isReceived = this.requested.progress >= Progress.received;
+      const isUnderWay = isReceived || this.stream.isConnected;
       this.enter({name: isUnderWay ? 'streaming' : 'connecting'});
     }
     this.bring();
@@ -471,7 +467,7 @@ export class Session implements TransportHandlers {
     const cause = isMemory ? kNoRoomAhead : errorText(thrown).replace(/\.?$/, '.');
     if (this.requested.endAhead())
       this.send({type: 'error', code, message: `${cause}${kWithoutAhead}`});
-    this.progress.changed();
+    this.reporter.changed();
     if (isMemory) this.restart(() => undefined);
   }
 
@@ -484,11 +480,10 @@ export class Session implements TransportHandlers {
 
   /** Decodes what is shown in a fresh codec. `then` is called if it fits. */
   private restart(then: () => void): void {
-    this.decoding.stop();
     this.guarded(() => {
-      this.assembler.codec.restart();
-      this.goBack();
-      this.progress.changed();
+      this.decoding.restart();
+      this.publisher.changed(true);
+      this.reporter.changed();
       then();
     });
   }
