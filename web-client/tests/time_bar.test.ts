@@ -7,7 +7,8 @@ import {listedInstant, readSegmentList} from '../core/protocol/segment_list';
 import type {Snapshot, StreamState} from '../core/session/worker_messages';
 import {untilBeat} from '../viewer/page/beat';
 import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
-import {fieldsAhead, TimeBar} from '../viewer/panels/time_bar';
+import {TimeBar} from '../viewer/panels/time_bar';
+import {fieldsAhead} from '../viewer/panels/time_line';
 
 /** As much of an element as the bar uses. */
 class Part {
@@ -194,16 +195,6 @@ function showSeries(here: readonly number[]): void {
 }
 const kAll = Array.from({length: 10}, (_, i) => i);
 
-test('tenInstantsASecondPassAtTheFirstSpeed', () => {
-  showSeries(kAll);
-  bar.toggle();
-  for (let ms = 0; ms < 500; ms += 25) {
-    vi.advanceTimersByTime(25);
-    drawn();
-  }
-  expect(attributes.get('time')).toBe('5');
-});
-
 test.each([
   [false, ['t = 0', 't = 1', 't = 2', 't = 3']],
   [true, ['t = 0', 't = 0', 't = 1', 't = 1']],
@@ -239,45 +230,6 @@ test('whilePlayingTheHandleStaysWhereItIsHeld', () => {
   slider.value = '7';
   slider.dispatch('input');
   expect([slider.value, attributes.get('time')]).toEqual(['7', '7']);
-});
-
-test('instantsWhoseTimePassesWhileOneIsDrawnAreLeftOut', () => {
-  showSeries(kAll);
-  bar.toggle();
-  vi.advanceTimersByTime(100);
-  expect(attributes.get('time')).toBe('1');
-  vi.advanceTimersByTime(320);
-  expect(attributes.get('time')).toBe('1');
-  drawn();
-  expect(attributes.get('time')).toBe('4');
-});
-
-test('onlyInstantsThatAreHereAreGoneTo', () => {
-  showSeries([0, 1, 3]);
-  bar.toggle();
-  vi.advanceTimersByTime(100);
-  vi.advanceTimersByTime(320);
-  drawn();
-  expect(attributes.get('time')).toBe('3');
-});
-
-test('theClockStandsWhileAnInstantIsNotHere', () => {
-  showSeries([0]);
-  bar.toggle();
-  vi.advanceTimersByTime(700);
-  expect(attributes.get('time')).toBe('1');
-  mesh.here = kAll;
-  drawn();
-  expect(attributes.get('time')).toBe('2');
-});
-
-test('anInstantThatIsLateForASecondIsPassedOver', () => {
-  showSeries([0, 4]);
-  bar.toggle();
-  vi.advanceTimersByTime(1050);
-  expect(attributes.get('time')).toBe('1');
-  vi.advanceTimersByTime(100);
-  expect(attributes.get('time')).toBe('4');
 });
 
 test('fieldsAheadGoRoundTheEndAndLeaveGapsOut', () => {

@@ -5,7 +5,7 @@ import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {Warp} from '../picture/warp';
 
-/** What the last picture shows. */
+/** The content of the last picture. */
 export interface Drawn {
   color: Scalar | null;
   /** Null: the mesh is at rest. */

@@ -24,7 +24,7 @@ import type {Snapshot} from './worker_messages';
 export type Picture = Omit<Snapshot, 'statistics' | 'costMs'>;
 type Body = Pick<Snapshot, 'surface' | 'volume' | keyof LayerSoups>;
 
-/** What takes time to measure and changes with the surface only. */
+/** Measuring these takes time. They change with the surface only. */
 interface Measures {
   bounds: number[];
   /** The same without a warp. */

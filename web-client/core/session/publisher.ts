@@ -1,5 +1,5 @@
-// Turns the growing mesh into pictures for the page: decides when the next one is made, and of
-// what.
+// Turns the growing mesh into pictures for the page: decides when the next one is made, and what it
+// shows.
 
 import type {Assembler} from '../decode/assembler';
 import {fieldsOf} from '../layers/shown';
@@ -115,7 +115,7 @@ export class Publisher {
     this.maker.forget();
   }
 
-  /** What was asked for before stays so. */
+  /** Earlier requests still hold. */
   private ask(cause: Cause, isOnlyCut = false): void {
     const {due} = this;
     if (cause !== Cause.wish && due?.isOnlyCut !== false) this.pace.meshChanged();

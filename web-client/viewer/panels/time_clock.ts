@@ -1,0 +1,106 @@
+// The clock by which a series plays. It knows no document.
+
+import type {TimeLine} from './time_line';
+
+/** Between two instants at speed 1. */
+const kStepMs = 100;
+/** The clock is read so often, and with each picture. */
+const kTickMs = 25;
+/**
+ * An instant that is not here after this time is passed over for one that is, or for the next
+ * segment.
+ */
+const kPatienceMs = 1000;
+
+export class TimeClock {
+  /** The instant that is asked for. */
+  at = 0;
+  /** It was not here when it was asked for. */
+  isLate = false;
+  speed = 1;
+  private timer: ReturnType<typeof setInterval> | undefined;
+  /** When the next instant is due. */
+  private dueAt = 0;
+  /** 0: `at` is on the screen, or nothing plays. */
+  private waitingSince = 0;
+
+  /** `ask` is called when `at` is another one. */
+  constructor(
+    private readonly line: Pick<
+      TimeLine,
+      'times' | 'isHere' | 'isOnScreen' | 'awaitsFrame' | 'isOpening' | 'areTogether'
+    >,
+    private readonly ask: () => void,
+  ) {}
+
+  get isPlaying(): boolean {
+    return this.timer !== undefined;
+  }
+
+  /** Between two instants that play. */
+  get stepMs(): number {
+    return kStepMs / this.speed;
+  }
+
+  play(): void {
+    clearInterval(this.timer);
+    this.waitingSince = 0;
+    this.dueAt = performance.now() + this.stepMs;
+    this.timer = setInterval(() => this.tick(), kTickMs);
+  }
+
+  stop(): void {
+    clearInterval(this.timer);
+    this.timer = undefined;
+  }
+
+  /** Asks for an instant, round the ends. */
+  show(at: number): void {
+    const count = this.line.times.length;
+    if (count === 0) return;
+    this.at = (at + count) % count;
+    this.isLate = !this.line.isHere(this.at);
+    this.ask();
+  }
+
+  /**
+   * The next instant, once this one is in the picture. Instants whose time passes while a picture
+   * is drawn are left out. The clock stands while an instant is not here, and until a segment is on
+   * the screen.
+   */
+  tick(): void {
+    const {at, line} = this;
+    const now = performance.now();
+    if (line.awaitsFrame) return void (this.waitingSince = 0);
+    if (line.isOnScreen(at)) {
+      this.waitingSince = 0;
+      if (this.isLate) this.dueAt = Math.max(this.dueAt, now);
+      this.isLate = false;
+      if (now < this.dueAt) return;
+      const due = 1 + Math.floor((now - this.dueAt) / this.stepMs);
+      const by = this.stepsTo(due);
+      this.dueAt = by === due ? this.dueAt + by * this.stepMs : now + this.stepMs;
+      return this.show(at + by);
+    }
+    if (this.waitingSince === 0) this.waitingSince = now;
+    if (now - this.waitingSince < kPatienceMs) return;
+    if (line.isOpening) return; // a segment that is slow would only begin again
+    for (let next = at + 1; next < at + line.times.length; ++next) {
+      if (!line.isHere(next) && line.areTogether(at, next)) continue;
+      this.waitingSince = 0;
+      return this.show(next);
+    }
+  }
+
+  /**
+   * The most steps up to `due` to an instant that is here; 1 if none is. The first instant of
+   * another segment ends them, or slow graphics would play round in one segment.
+   */
+  private stepsTo(due: number): number {
+    const {at, line} = this;
+    let by = Math.min(due, line.times.length - 1);
+    for (let i = 1; i < by; ++i) if (!line.areTogether(at, at + i)) return i;
+    while (by > 1 && !line.isHere(at + by)) --by;
+    return Math.max(1, by);
+  }
+}
