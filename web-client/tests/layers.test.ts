@@ -14,7 +14,7 @@ import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
 import {displayOf} from '../viewer/requests';
 import {kViewAttributes, type ViewAttribute} from '../viewer/settings/settings';
 import {unfittingParts, wrongParts} from '../viewer/settings/wrong_parts';
-import {kControls} from '../viewer/controls_template';
+import {kControls} from '../viewer/sections';
 import {toy} from './toy_layer';
 
 vi.mock('../core/layers/layers', async (original) => {

@@ -2,6 +2,7 @@
 
 import type {BaseFigures} from '../core/picture/base_figures';
 import {latticeChange, type LatticeChange, type Vector} from '../core/protocol/geometry';
+import {isEqual} from '../core/protocol/equal';
 import type {CoarseCells} from '../core/picture/volume';
 import type {Client} from '../core/session/client';
 import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
@@ -50,8 +51,8 @@ export class Viewing implements LaterHost {
   /** The controls; null before they are loaded. */
   later: Later | null = null;
   private readonly timer: ReturnType<typeof setTimeout>;
-  /** The settings in the panels, as text. */
-  private shownSettings = '';
+  /** The settings in the panels, and what else they depend on. */
+  private shownSettings: unknown = null;
   /** The `complete` event has been dispatched. */
   private completeTold = false;
   /** The graphics are too slow for what plays: the page spares them what it can. */
@@ -147,7 +148,7 @@ export class Viewing implements LaterHost {
       this.hurry(false);
     }
     const {limit} = this.settings;
-    if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
+    if (!isEqual(before.limit, limit)) this.stream.setLimit(limit);
     this.showDisplay();
     this.showRange();
   }
@@ -158,8 +159,8 @@ export class Viewing implements LaterHost {
     if (!later) return;
     const texts = kViewAttributes.filter((name) => name !== 'time').map((name) => page.read(name));
     const its = {...settings, time: null};
-    const shown = JSON.stringify([texts, its, mesh.bounds, mesh.snapshot === null]);
-    if (!this.isPlaying || shown !== this.shownSettings) later.panels.update(settings, mesh);
+    const shown = [texts, its, mesh.bounds, mesh.snapshot === null];
+    if (!this.isPlaying || !isEqual(shown, this.shownSettings)) later.panels.update(settings, mesh);
     else later.panels.inspect.update();
     this.shownSettings = shown;
   }
@@ -208,11 +209,6 @@ export class Viewing implements LaterHost {
 
   togglePause(): void {
     this.stream.togglePause();
-  }
-
-  moveClip(step: number): void {
-    const [plane] = this.settings.planes;
-    if (plane) this.later?.panels.clip.move(0, plane.share + step);
   }
 
   centre(): void {
@@ -348,7 +344,7 @@ export class Viewing implements LaterHost {
       },
       change,
     );
-    this.later?.panels.showFigures(snapshot, view.pose.frameMs);
+    this.later?.panels.showPicture(snapshot, view.pose.frameMs);
     this.later?.time.follow();
   }
 
@@ -360,7 +356,7 @@ export class Viewing implements LaterHost {
     this.later ??= new Later(this.page, this, this.shell);
     this.apply();
     const {snapshot} = this.mesh;
-    if (snapshot && this.view) this.later.panels.showFigures(snapshot, this.view.pose.frameMs);
+    if (snapshot && this.view) this.later.panels.showPicture(snapshot, this.view.pose.frameMs);
   }
 
   /** Keeps the camera. The mesh comes again from the worker that decodes. */

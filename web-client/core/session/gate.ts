@@ -20,7 +20,7 @@ export class Gate {
     else action();
   }
 
-  /** What waits is of no use any more. */
+  /** The waiting actions are of no use any more. */
   forget(): void {
     if (this.waiting) this.waiting = [];
   }

@@ -5,7 +5,7 @@ import type {Assembler} from '../decode/assembler';
 import {fieldsOf} from '../layers/shown';
 import {kPlainDisplay, type Display} from '../picture/display';
 import type {CreasesOf} from '../picture/triangle_soup';
-import {isSame} from '../protocol/same';
+import {isEqual} from '../protocol/equal';
 import {drawable, isWaiting, type Drawn} from './held_instants';
 import {PictureMaker} from './picture_maker';
 import {PicturePace} from './picture_pace';
@@ -88,9 +88,9 @@ export class Publisher {
     const before = this.seen;
     this.display = display;
     const now = (this.seen = {...this.now, ahead: []}); // fields ahead are not seen
-    if (isSame(now, before)) return;
+    if (isEqual(now, before)) return;
     // Planes alone make another cut of the same surface, unless they hide whole cells.
-    const isOnlyCut = before !== null && isSame({...now, planes: before.planes}, before);
+    const isOnlyCut = before !== null && isEqual({...now, planes: before.planes}, before);
     this.ask(Cause.wish, isOnlyCut && now.mode !== 'cells');
   }
 

@@ -1,5 +1,5 @@
-// Goes on after an error of the codec, as far as that can be: without fields that are not shown, or
-// at a level that fits into memory.
+// Goes on after an error of the codec, as far as that can be. Where memory ends it does without
+// the fields that are not shown, or stays at a level that fits.
 
 import type {Assembler} from '../decode/assembler';
 import {errorCode, errorText, QtetError} from '../protocol/errors';

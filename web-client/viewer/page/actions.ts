@@ -1,6 +1,6 @@
 // The actions of buttons and keys.
 
-import {clipText} from '../../core/layers/clip';
+import {clipText, movedPlane} from '../../core/layers/clip';
 import {kDirections, type Direction} from '../../webgl/directions';
 import type {View} from '../../webgl/view';
 import type {Settings} from '../settings/settings';
@@ -25,8 +25,6 @@ export interface ActionsHost {
   /** Shows a standard view, or (null) the first one, beside the cards that are open now. */
   look(direction: Direction | null): void;
   togglePause(): void;
-  /** Moves the first clip plane by a share of the extent. */
-  moveClip(step: number): void;
   /** Brings what was pointed at into the middle, or all of the mesh. */
   centre(): void;
   /** Picks what lies in the middle. */
@@ -88,13 +86,21 @@ export class Actions {
       zoom: (factor) => view.zoom(factor),
       look: (direction) => this.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),
-      moveClip: (step) => this.host.moveClip(step),
+      moveClip: (step) => this.moveClip(step),
       stepTime: (by) => this.host.later?.time.step(by),
       inspect: () => this.host.inspect(),
       picture: () => this.picture(),
       help: () => this.help(),
       escape: () => this.host.endTool(),
     };
+  }
+
+  /** Moves the first clip plane by a share of the extent. */
+  private moveClip(step: number): void {
+    const {planes, hasFirstCut} = this.host.settings;
+    const [plane] = planes;
+    if (!plane) return;
+    this.page.write('clip', clipText(movedPlane(planes, 0, plane.share + step), hasFirstCut));
   }
 
   private toggle(what: Parameters<KeyActions['toggle']>[0]): void {

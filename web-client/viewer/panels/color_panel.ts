@@ -1,26 +1,72 @@
-// Field, colour map, scale, range, edges, creases, surface and opacity.
+// Field, colour map, scale and range.
 
 import {parseNumbers} from '../../core/layers/field_values';
-import {colorGradient, labelGradient, type ColorMapName} from '../../core/picture/color_maps';
+import {
+  colorGradient,
+  kColorMapNames,
+  labelGradient,
+  type ColorMapName,
+} from '../../core/picture/color_maps';
 import {labelsOf} from '../../core/picture/labels';
-import {setText} from '../page/find';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
-import {shownScalar, type Settings} from '../settings/settings';
-import {fillScalars, type Panel, type Scene} from './panel';
+import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
+import {fillScalars, type Panel, type PanelKind, type Scene} from './panel';
 
 /** The labels in their map's swatch. */
 const kShownLabels = 5;
-/** Everything that is drawn unless it is switched off. */
-const kSwitches = ['edges', 'creases', 'surface'] as const;
+const kMapTitles = {
+  viridis: 'Viridis',
+  cividis: 'Cividis',
+  'cool-warm': 'Cool-warm',
+  turbo: 'Turbo',
+  grey: 'Grey',
+  labels: 'One colour a label',
+};
 /** The ends of the range are shown to this share of it. */
 const kRangeShare = 1e-4;
+
+const swatches = [...kColorMapNames, 'labels' as const]
+  .map((name) => {
+    const title = kMapTitles[name];
+    return `
+  <label class="swatch ${name}" title="${title}"${name === 'labels' ? ' hidden' : ''}>
+    <input type="radio" name="colormap" value="${name}" aria-label="${title}">
+    <span></span>
+  </label>`;
+  })
+  .join('');
+
+const kMarkup = `
+<label class="field">
+  <span class="name">Field</span><select name="field" disabled></select>
+</label>
+<fieldset class="swatches"><legend class="name">Colours</legend>${swatches}</fieldset>
+<div class="row wrap">
+  <label class="toggle"><input type="checkbox" name="reversed"><span>Reversed</span></label>
+  <label class="toggle"><input type="checkbox" name="log"><span>Log scale</span></label>
+</div>
+<div class="row">
+  <span class="name">Range</span>
+  <select name="range" class="small" aria-label="Range of the colours">
+    <option value="auto">Automatic</option>
+    <option value="full">All values</option>
+    <option value="symmetric">Symmetric</option>
+    <option value="instant">This instant</option>
+    <option value="fixed">Fixed</option>
+  </select>
+</div>
+<div class="row range-fixed" hidden>
+  <input type="text" inputmode="decimal" name="range-low" aria-label="Start of the range">
+  <span class="name">to</span>
+  <input type="text" inputmode="decimal" name="range-high" aria-label="End of the range">
+</div>`;
 
 function gradientOf(map: string): string {
   return map === 'labels' ? labelGradient(kShownLabels) : colorGradient(map as ColorMapName);
 }
 
-export class ColorPanel implements Panel {
+class ColorPanel implements Panel {
   /** The fixed ranges of fields that were left. */
   private readonly ranges = new Map<string, string>();
   /** The field in the menu. */
@@ -43,13 +89,6 @@ export class ColorPanel implements Panel {
     this.on('select[name=range]', (select) => this.writeRange(select.value));
     for (const end of ['low', 'high'])
       this.on(`input[name=range-${end}]`, () => this.writeRange('fixed'));
-    for (const name of kSwitches)
-      this.on(`input[name=${name}]`, (input) =>
-        attributes.write(name, (input as HTMLInputElement).checked ? null : 'off'),
-      );
-    this.input('opacity').addEventListener('input', () =>
-      attributes.write('opacity', String(Number(this.input('opacity').value) / 100)),
-    );
   }
 
   update(settings: Settings, scene: Scene | null): void {
@@ -57,10 +96,6 @@ export class ColorPanel implements Panel {
       swatch.checked = swatch.value === settings.map;
     this.input('reversed').checked = settings.reversed;
     this.input('log').checked = settings.logarithmic;
-    for (const name of kSwitches) this.input(name).checked = settings[name];
-    this.input('opacity').value = String(Math.round(100 * settings.opacity));
-    setText(this.find('.opacity-text'), `${Math.round(100 * settings.opacity)}\u202f%`);
-    this.disableHidden(settings);
     const fields = scene?.manifest.fields ?? [];
     const chosen = shownScalar(this.attributes.read('field'), fields, scene?.firstField ?? 0);
     const labels = chosen && labelsOf(fields[chosen.field]!);
@@ -82,7 +117,7 @@ export class ColorPanel implements Panel {
   }
 
   /** Shows the current range, which a fixed one starts from. */
-  showRange(low: number, high: number): void {
+  showRange({low, high}: ShownRange): void {
     const active = (this.root as ShadowRoot).activeElement;
     for (const [name, value] of [
       ['range-low', low],
@@ -95,20 +130,6 @@ export class ColorPanel implements Panel {
     if (!this.awaitsRange) return;
     this.awaitsRange = false;
     this.writeRange('fixed');
-  }
-
-  /** A volume hides the surface. A slice inside it has edges. */
-  private disableHidden({volume, mode, planes}: Settings): void {
-    const hint = this.find('.hides-surface');
-    hint.hidden = volume === null;
-    const hasEdges = mode === 'slice' && planes.length > 0;
-    for (const name of [...kSwitches, 'opacity']) {
-      const input = this.input(name);
-      input.disabled = volume !== null && !(name === 'edges' && hasEdges);
-      input.title = input.disabled ? hint.textContent.replace(/\s+/g, ' ') : '';
-      if (input.disabled) input.setAttribute('aria-describedby', hint.id);
-      else input.removeAttribute('aria-describedby');
-    }
   }
 
   /** Numbers mean nothing for another field: a fixed range stays behind, and comes back. */
@@ -161,3 +182,8 @@ export class ColorPanel implements Panel {
     return this.find<HTMLInputElement>(`input[name=${name}]`);
   }
 }
+
+export const colorPanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page}) => new ColorPanel(page.root, page),
+};

@@ -1,16 +1,13 @@
 // The histogram of the coloured field with the colours below it. Two handles set the range.
 
-import type {Client} from '../../core/session/client';
 import {scalarText} from '../../core/layers/field_values';
 import {colorGradient} from '../../core/picture/color_maps';
 import type {Axis, Histogram} from '../../core/picture/histogram';
-import type {StreamState} from '../../core/session/worker_messages';
 import {find, onClick} from '../page/find';
 import {formatValue, roundTo} from '../page/format';
 import type {Page} from '../page/page';
-import type {ShownMesh} from '../page/shown_mesh';
 import {adopt, setMarkup} from '../page/trusted';
-import type {Settings, ShownRange} from '../settings/settings';
+import type {Settings} from '../settings/settings';
 import styles from './histogram.css?inline';
 import {
   axisOf,
@@ -21,7 +18,7 @@ import {
   shareOf,
   type End,
 } from './histogram_axis';
-import {scalarTitle} from './panel';
+import {scalarTitle, type PanelKind, type PanelsHost} from './panel';
 
 /** Pictures may come twenty times a second while the mesh refines; counting takes a while. */
 const kRestMs = 500;
@@ -40,17 +37,7 @@ const kMarkup = `
 <div class="row"><span class="what"></span>
   <button type="button" class="to-middle" title="Sets the range to it">${kTitle}</button></div>`;
 
-export interface HistogramHost {
-  readonly client: Client;
-  readonly mesh: ShownMesh;
-  readonly settings: Settings;
-  readonly range: ShownRange | null;
-  readonly isPlaying: boolean;
-  /** As TimeHost.opening. */
-  readonly opening: StreamState | null;
-}
-
-export class HistogramPanel {
+class HistogramPanel {
   private readonly root: HTMLElement;
   private readonly plot: HTMLElement;
   private readonly ends: HTMLElement[];
@@ -64,7 +51,7 @@ export class HistogramPanel {
 
   constructor(
     private readonly page: Page,
-    private readonly host: HistogramHost,
+    private readonly host: PanelsHost,
     signal: AbortSignal,
   ) {
     adopt(page.root, styles);
@@ -250,6 +237,14 @@ export class HistogramPanel {
     this.move(end, share);
   }
 }
+
+export const histogramPanel: PanelKind = {
+  markup: '<div class="histogram"></div>',
+  make: ({page, host, signal}) => {
+    new HistogramPanel(page, host, signal);
+    return {};
+  },
+};
 
 /** Five digits, without zeros behind a point. */
 function shortText(value: number): string {

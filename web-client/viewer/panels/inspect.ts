@@ -11,9 +11,17 @@ import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
+import {segments} from './markup';
 import {ResultCard} from './result_card';
 
 export type Tool = 'none' | 'point' | 'line';
+
+const kToolTitles = {none: 'Turn', point: 'Point', line: 'Line'};
+export const kToolMarkup = `
+<fieldset class="segments tools">
+  <legend class="visually-hidden">Pointer</legend>
+  ${segments('tool', kToolTitles)}
+</fieldset>`;
 
 /** The text before the first click. */
 const kFirstHints: Record<Tool, string> = {

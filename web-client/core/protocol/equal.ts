@@ -1,9 +1,9 @@
 // Compares values that hold plain data.
 
 /** Whether both hold the same. An absent member is as good as an undefined one. */
-export function isSame(a: unknown, b: unknown): boolean {
+export function isEqual(a: unknown, b: unknown): boolean {
   if (Object.is(a, b)) return true;
   if (typeof a !== 'object' || typeof b !== 'object' || !a || !b) return false;
   const names = new Set([...Object.keys(a), ...Object.keys(b)]) as Set<never>;
-  return [...names].every((name) => isSame(a[name], b[name]));
+  return [...names].every((name) => isEqual(a[name], b[name]));
 }
