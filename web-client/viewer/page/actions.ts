@@ -1,6 +1,7 @@
 // The actions of buttons and keys.
 
 import {clipText, movedPlane} from '../../core/layers/clip';
+import type {Vector} from '../../core/protocol/geometry';
 import {kDirections, type Direction} from '../../webgl/directions';
 import type {View} from '../../webgl/view';
 import type {Settings} from '../settings/settings';
@@ -21,15 +22,17 @@ export interface ActionsHost {
       readonly isShown: boolean;
       isPlaying: boolean;
     };
+    readonly panels: {
+      readonly inspect: {
+        readonly pointed: Vector | null;
+        pickMiddle(): void;
+        use(tool: 'none'): void;
+      };
+    };
   } | null;
   /** Shows a standard view, or (null) the first one, beside the cards that are open now. */
   look(direction: Direction | null): void;
   togglePause(): void;
-  /** Brings what was pointed at into the middle, or all of the mesh. */
-  centre(): void;
-  /** Picks what lies in the middle. */
-  inspect(): void;
-  endTool(): void;
   failed(code: string, message: string): void;
 }
 
@@ -82,16 +85,20 @@ export class Actions {
     return {
       turn: (horizontal, vertical) => view.turn(horizontal, vertical),
       pan: (right, up) => view.pan(right, up),
-      centre: () => this.host.centre(),
+      centre: () => {
+        const point = this.host.later?.panels.inspect.pointed;
+        if (point) view.centre(point);
+        else this.look(null);
+      },
       zoom: (factor) => view.zoom(factor),
       look: (direction) => this.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),
       moveClip: (step) => this.moveClip(step),
       stepTime: (by) => this.host.later?.time.step(by),
-      inspect: () => this.host.inspect(),
+      inspect: () => this.host.later?.panels.inspect.pickMiddle(),
       picture: () => this.picture(),
       help: () => this.help(),
-      escape: () => this.host.endTool(),
+      escape: () => this.host.later?.panels.inspect.use('none'),
     };
   }
 

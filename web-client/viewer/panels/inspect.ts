@@ -45,8 +45,6 @@ export interface InspectHost extends OverTimeHost {
   readonly bounds: number[];
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
-  /** The place that is pointed at, in lattice coordinates; null for none. */
-  pointAt(point: Vector | null): void;
 }
 
 export class Inspect {
@@ -118,6 +116,11 @@ export class Inspect {
     void this.click(x * view.canvas.clientWidth, y * view.canvas.clientHeight);
   }
 
+  /** The place that is pointed at, in lattice coordinates; null for none. */
+  get pointed(): Vector | null {
+    return this.points.at(-1)?.lattice ?? null;
+  }
+
   clear(): void {
     this.points = [];
     if (this.overTime.isOpen) {
@@ -127,7 +130,6 @@ export class Inspect {
     this.card.hide();
     this.hint(kFirstHints[this.tool]);
     this.place();
-    this.host.pointAt(null);
   }
 
   /** Ends the plots: uPlot keeps those that are not destroyed. */
@@ -188,7 +190,6 @@ export class Inspect {
     this.points =
       this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
     this.place();
-    this.host.pointAt(pick.lattice);
     const [from, to] = this.points;
     this.hint(this.tool === 'line' && !to ? 'Now point at the other end.' : '');
     if (this.tool === 'point') this.showPick(pick);

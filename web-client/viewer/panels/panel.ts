@@ -3,7 +3,6 @@
 import {scalarText} from '../../core/layers/field_values';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {FieldInfo} from '../../core/protocol/fields';
-import type {Vector} from '../../core/protocol/geometry';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Client} from '../../core/session/client';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
@@ -39,8 +38,6 @@ export interface PanelsHost {
   };
   /** Brings everything in line with the attributes and the mesh. */
   apply(): void;
-  /** The place that is pointed at, in lattice coordinates; null for none. */
-  pointAt(point: Vector | null): void;
   failed(code: string, message: string): void;
 }
 

@@ -7,7 +7,7 @@ import {seriesServer} from '../../core/transport/series_server';
 import {bindFolds} from '../page/folds';
 import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
-import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
+import {kViewAttributes, shownScalar, type Settings, type ShownRange} from '../settings/settings';
 import {Inspect} from './inspect';
 import {scalarTitle, type Panel, type PanelKind, type PanelTools, type Scene} from './panel';
 
@@ -17,9 +17,12 @@ export class Panels {
   /** The field and the level that a line's plot shows. */
   private plotted: unknown = null;
 
+  /** Everything that panels other than those of the time depend on, as it was last. */
+  private shown: unknown = null;
+
   /** REQUIRES: the markup of `kinds` is in the page. */
   constructor(
-    tools: PanelTools,
+    private readonly tools: PanelTools,
     kinds: readonly PanelKind[],
     cards: {readonly middle: [number, number]},
   ) {
@@ -58,14 +61,21 @@ export class Panels {
         return fieldTitle(page, host.mesh);
       },
       announce: (text) => page.announce(text),
-      pointAt: (point) => host.pointAt(point),
     });
   }
 
-  /** Brings all panels in line with the attributes and the mesh. */
-  update(settings: Settings, {manifest, bounds, firstField}: ShownMesh): void {
+  /**
+   * Brings all panels in line with the attributes and the mesh. While a series plays, those that do
+   * not show the time would be written again for nothing.
+   */
+  update(settings: Settings, {manifest, bounds, firstField, snapshot}: ShownMesh): void {
+    const {host, page} = this.tools;
+    const texts = kViewAttributes.filter((name) => name !== 'time').map((name) => page.read(name));
+    const shown = [texts, {...settings, time: null}, bounds, snapshot === null];
     const known: Scene | null = manifest && {manifest, bounds, firstField};
-    for (const panel of this.panels) panel.update?.(settings, known);
+    if (!host.isPlaying || !isEqual(shown, this.shown))
+      for (const panel of this.panels) panel.update?.(settings, known);
+    this.shown = shown;
     this.inspect.update();
   }
 
