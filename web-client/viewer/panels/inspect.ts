@@ -2,7 +2,6 @@
 // field between them.
 
 import type {Vector} from '../../core/protocol/geometry';
-import type {Manifest} from '../../core/protocol/manifest';
 import type {Client} from '../../core/session/client';
 import type {Pick} from '../../core/session/inspector';
 import {cornersOf} from '../../webgl/outline';
@@ -40,9 +39,6 @@ export interface InspectHost extends OverTimeHost {
   /** Null while it has another mesh than the one in the picture. */
   readonly client: Client | null;
   readonly view: View | null;
-  readonly manifest: Manifest | null;
-  /** The mesh's, in lattice coordinates. */
-  readonly bounds: number[];
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
 }
@@ -198,7 +194,7 @@ export class Inspect {
   }
 
   private showPick(pick: Pick): void {
-    const fields = this.host.manifest!.fields;
+    const fields = this.host.mesh.manifest!.fields;
     const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
     if (pick.rest) rows.push(['Position at rest', this.placeText(pick.rest.position)]);
     for (const {field, values} of pick.fields) {
@@ -235,7 +231,7 @@ export class Inspect {
   private async showLine(from: Pick, to: Pick): Promise<void> {
     const probe = await this.host.client?.probe(from.lattice, to.lattice);
     if (!probe) return;
-    const {color, fieldTitle, manifest} = this.host;
+    const {color, fieldTitle, mesh} = this.host;
     const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
     const hasPlot = probe.values.length > 1;
     const rows: [string, string][] = [
@@ -245,17 +241,17 @@ export class Inspect {
     const opens = !this.card.isOpen;
     this.card.show('Line', rows, hasPlot);
     if (opens) this.placeCard();
-    const info = color && manifest?.fields[color.field];
+    const info = color && mesh.manifest?.fields[color.field];
     const format = info?.labels && ((value: number): string => formatIn(info, value));
     if (hasPlot) await this.card.drawPlot(probe, fieldTitle, format);
   }
 
   /** The file's name, and its last columns, say where the values come from. */
   private async saveTable(): Promise<void> {
-    const {client, manifest, mesh} = this.host;
+    const {client, mesh} = this.host;
     const tables = await import('./probe_plot'); // the plot has loaded it
     const {fileNameOf, originOf, tableOf, timeTableOf, timeTitle} = tables;
-    const {fields, units} = manifest!;
+    const {fields, units} = mesh.manifest!;
     const unit = units?.get('');
     const places = this.points.map(({position, rest}) => rest?.position ?? position);
     const place = places.map((its) =>
@@ -287,13 +283,13 @@ export class Inspect {
 
   /** Rounds to a ten-thousandth of the lattice's span. */
   private placeText(place: Vector): string {
-    const {bits, step} = this.host.manifest!.lattice;
+    const {bits, step} = this.host.mesh.manifest!.lattice;
     return place.map((x) => formatTo(x, kPlaceShare * step * 2 ** bits)).join(', ');
   }
 
   /** Puts the card beside the last point, where the mesh and the other cards are not. */
   private placeCard(): void {
-    const {view, bounds} = this.host;
+    const {view, mesh} = this.host;
     if (!view) return;
     const at = ({lattice}: Pick): Point => view.project(lattice);
     const whole = this.root.host.getBoundingClientRect();
@@ -312,7 +308,7 @@ export class Inspect {
           bottom: bottom - whole.top,
         })),
       picked: this.points.map(at),
-      mesh: cornersOf(bounds).map((corner) => view.project(corner)),
+      mesh: cornersOf(mesh.bounds).map((corner) => view.project(corner)),
     });
   }
 

@@ -1,11 +1,9 @@
 // The panels of sections.ts, and what one points with; this updates them together.
 
-import type {Scalar} from '../../core/picture/field_scale';
 import {isEqual} from '../../core/protocol/equal';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import {seriesServer} from '../../core/transport/series_server';
 import {bindFolds} from '../page/folds';
-import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import {kViewAttributes, shownScalar, type Settings, type ShownRange} from '../settings/settings';
 import {Inspect} from './inspect';
@@ -16,7 +14,6 @@ export class Panels {
   private readonly panels: readonly Panel[];
   /** The field and the level that a line's plot shows. */
   private plotted: unknown = null;
-
   /** Everything that panels other than those of the time depend on, as it was last. */
   private shown: unknown = null;
 
@@ -37,12 +34,6 @@ export class Panels {
       get view() {
         return host.view;
       },
-      get manifest() {
-        return host.mesh.manifest;
-      },
-      get bounds() {
-        return host.mesh.bounds;
-      },
       get middle() {
         return cards.middle;
       },
@@ -53,12 +44,13 @@ export class Panels {
         return seriesServer(host.stream.logAddress, host.mesh.digest, page.token);
       },
       get color() {
-        return colorOf(page, host.mesh);
+        const {manifest, firstField} = host.mesh;
+        return manifest && shownScalar(page.read('field'), manifest.fields, firstField);
       },
       apply: () => host.apply(),
       showTime: (text) => page.write('time', text),
       get fieldTitle() {
-        return fieldTitle(page, host.mesh);
+        return this.color ? scalarTitle(this.color, host.mesh.manifest!.fields) : '';
       },
       announce: (text) => page.announce(text),
     });
@@ -109,13 +101,4 @@ export class Panels {
     for (const panel of this.panels) panel.clear?.();
     this.inspect.clear();
   }
-}
-
-function fieldTitle(page: Pick<Page, 'read'>, mesh: ShownMesh): string {
-  const color = colorOf(page, mesh);
-  return color ? scalarTitle(color, mesh.manifest!.fields) : '';
-}
-
-function colorOf({read}: Pick<Page, 'read'>, {manifest, firstField}: ShownMesh): Scalar | null {
-  return manifest && shownScalar(read('field'), manifest.fields, firstField);
 }
