@@ -11,7 +11,7 @@ export NINJA_STATUS := [%f/%t, %e s]
 
 BUILD := build/release
 CHECKED := build/checked
-# A translation unit with Boost.Beast or VTK takes up to 1.5 GB to compile: no more jobs than cores,
+# A translation unit with Boost.Beast takes up to 1.5 GB to compile: no more jobs than cores,
 # nor than memory allows.
 JOBS ?= $(shell awk -v cores="$$(nproc)" '/MemAvailable/ { \
   n = int($$2 / 1500000); n = n < cores ? n : cores; print n < 1 ? 1 : n}' /proc/meminfo)

@@ -2,6 +2,7 @@
 // straight lines with one check at the end.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -72,8 +73,15 @@ class ByteReader {
   }
 
   [[nodiscard]] bool failed() const { return failed_; }
-  [[nodiscard]] const Error& error() const { return error_; }
-  [[nodiscard]] std::uint64_t remaining() const { return view_.size() - position_; }
+  /// REQUIRES: failed().
+  [[nodiscard]] const Error& error() const {
+    assert(failed_);
+    return error_;
+  }
+  [[nodiscard]] std::uint64_t remaining() const {
+    assert(position_ <= view_.size());
+    return view_.size() - position_;
+  }
   [[nodiscard]] std::uint64_t offset() const { return origin_ + position_; }
 
  private:

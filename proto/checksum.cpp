@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace qtet {
 namespace {
@@ -61,6 +62,7 @@ Sha256::Digest Sha256::finish() {
   std::array<std::uint8_t, 8> tail{};
   for (std::size_t i = 0; i < 8; ++i) tail[i] = static_cast<std::uint8_t>(bits >> (56 - 8 * i));
   update(tail);
+  assert(length_ % block_.size() == 0);
   Digest out{};
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = static_cast<std::uint8_t>(state_[i / 4] >> (24 - 8 * (i % 4)));

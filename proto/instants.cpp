@@ -1,20 +1,25 @@
 #include "proto/instants.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace qtet {
 
 Instants::Instants(const std::vector<ManifestField>& fields,
                    const std::vector<std::uint32_t>& wanted, std::span<const Series> all)
     : fields_(fields), wanted_(wanted) {
-  for (const Series& series : all)
+  for (const Series& series : all) {
+    assert(series.fields.size() == series.times.size());
     for (std::size_t i = 0; i < series.fields.size(); ++i)
       if (std::ranges::binary_search(wanted, series.fields[i])) {
         instants_[static_cast<std::uint32_t>(series.fields[i])] = {series.times[i], series.name};
         times_.push_back(series.times[i]);
       }
-  for (const std::uint32_t f : wanted)
+  }
+  for (const std::uint32_t f : wanted) {
+    assert(f < fields.size());
     if (!instants_.contains(f)) taken_.emplace(fields[f].name, fields[f].association);
+  }
   std::ranges::sort(times_);
   times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
 }

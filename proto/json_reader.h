@@ -53,7 +53,6 @@ class JsonCursor {
 
   [[nodiscard]] bool present() const { return value_ != nullptr; }
   [[nodiscard]] bool isNull() const { return value_ != nullptr && value_->is_null(); }
-  [[nodiscard]] bool isObject() const { return value_ != nullptr && value_->is_object(); }
 
   /// A member that must be there.
   [[nodiscard]] JsonCursor operator[](const std::string& key) const {

@@ -1,5 +1,6 @@
 #include "proto/manifest.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -65,6 +66,7 @@ std::string_view timeUnit(const Manifest& manifest) {
 }
 
 std::array<double, 6> focusCorners(const Manifest& manifest) {
+  assert(manifest.focus);
   std::array<double, 6> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double share =
@@ -76,6 +78,7 @@ std::array<double, 6> focusCorners(const Manifest& manifest) {
 }
 
 Json openingJson(const Manifest& manifest) {
+  assert(manifest.opening && manifest.opening->field < manifest.fields.size());
   const auto& [field, cut] = *manifest.opening;
   Json out = {{"field", fieldKey(manifest, field)}};
   if (cut) out["cut"] = std::string(1, static_cast<char>('x' + *cut));

@@ -1,5 +1,7 @@
 #include "proto/messages.h"
 
+#include <cassert>
+
 #include "proto/json_reader.h"
 #include "proto/limits.h"
 #include "proto/log_digest.h"
@@ -57,6 +59,7 @@ Result<Message> checked(Message message, const std::optional<Error>& error) {
 }
 
 Json openToJson(const OpenMessage& m) {
+  assert(m.credit <= kMaxCredit);
   Json out = {{"type", "open"}, {"mesh", m.mesh}, {"fields", m.fields}, {"credit", m.credit}};
   if (!m.digest.empty()) out["digest"] = m.digest;
   if (m.time) out["time"] = toJson(*m.time);
@@ -67,7 +70,10 @@ Json openToJson(const OpenMessage& m) {
 
 struct ToJson {
   Json operator()(const OpenMessage& m) const { return openToJson(m); }
-  Json operator()(const CreditMessage& m) const { return {{"type", "credit"}, {"bytes", m.bytes}}; }
+  Json operator()(const CreditMessage& m) const {
+    assert(m.bytes <= kMaxCredit);
+    return {{"type", "credit"}, {"bytes", m.bytes}};
+  }
   Json operator()(const TargetMessage& m) const {
     return {{"type", "target"}, {"target", toJson(m.target)}};
   }
@@ -79,10 +85,12 @@ struct ToJson {
   }
   Json operator()(const CancelMessage&) const { return {{"type", "cancel"}}; }
   Json operator()(const OpenedMessage& m) const {
+    assert(m.bytes <= kMaxCredit && m.planned <= m.bytes);
     return {{"type", "opened"},   {"stream", m.stream}, {"mesh", m.mesh},
             {"digest", m.digest}, {"bytes", m.bytes},   {"planned", m.planned}};
   }
   Json operator()(const PlannedMessage& m) const {
+    assert(m.planned <= kMaxCredit);
     return {{"type", "planned"}, {"stream", m.stream}, {"planned", m.planned}};
   }
   Json operator()(const DoneMessage& m) const { return {{"type", "done"}, {"stream", m.stream}}; }
@@ -90,6 +98,7 @@ struct ToJson {
     return {{"type", "stopped"}, {"stream", m.stream}};
   }
   Json operator()(const ErrorMessage& m) const {
+    assert(!m.code.empty());
     return {{"type", "error"}, {"code", m.code}, {"detail", m.detail}};
   }
 };
@@ -150,6 +159,9 @@ std::string toJson(const ClientMessage& message) { return dumpJson(std::visit(To
 std::string toJson(const ServerMessage& message) { return dumpJson(std::visit(ToJson{}, message)); }
 
 std::array<std::uint8_t, FrameHeader::kBytes> FrameHeader::encode() const {
+  // as parse() wants it
+  assert(firstPart != kHead || (chunk == 0 && parts == 0));
+  assert(firstPart == kHead || parts != kPiece || size > 0);
   ByteWriter writer;
   writer.write(stream);
   writer.write(chunk);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <cstddef>
 #include <span>
@@ -26,6 +27,7 @@ template <class Number>
 
 /// "0, 0.5 and 12 more". REQUIRES: one time at least.
 [[nodiscard]] inline std::string shownTimes(std::span<const double> times) {
+  assert(!times.empty());
   constexpr std::size_t kShown = 6;
   std::string out;
   for (std::size_t i = 0; i < times.size() && i < kShown; ++i)

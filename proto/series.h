@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -25,6 +26,7 @@ inline constexpr double kNearTime = 1e-9;
 
 /// The number of the time nearest to `wanted`, of two the first. REQUIRES: one time at least.
 [[nodiscard]] inline std::size_t nearestTime(std::span<const double> times, double wanted) {
+  assert(!times.empty());
   const auto nearest = std::ranges::min_element(
       times, {}, [wanted](double time) { return std::abs(time - wanted); });
   return static_cast<std::size_t>(nearest - times.begin());
@@ -78,6 +80,7 @@ template <class Field>
                                         std::string_view key) {
   const Series* out = nullptr;
   for (const Series& series : all) {
+    assert(!series.fields.empty() && series.fields.front() < fields.size());
     const Field& first = fields[series.fields.front()];
     if (!isCalled(first.association, series.name, key)) continue;
     if (first.association == "point") return &series;

@@ -1,5 +1,7 @@
 #include "proto/stream_request_json.h"
 
+#include <cassert>
+
 #include "proto/limits.h"
 
 namespace qtet {
@@ -73,14 +75,19 @@ std::optional<StreamTime> readStreamTime(const JsonCursor& json) {
 }
 
 Json toJson(const StreamTime& time) {
+  assert(std::isfinite(time.at));
   return {{"at", time.at},
           {"ahead", time.ahead},
           {"first", time.first == StreamTime::First::kTime ? kTimeFirst : kSpaceFirst}};
 }
 
 Json toJson(const Have& have) {
+  assert(have.chunks <= kMaxChunks && have.fields.size() <= kMaxRequestFields);
   Json out = {{"chunks", have.chunks}, {"fields", Json::object()}};
-  for (const auto& [name, chunks] : have.fields) out["fields"][name] = chunks;
+  for (const auto& [name, chunks] : have.fields) {
+    assert(chunks <= have.chunks);
+    out["fields"][name] = chunks;
+  }
   return out;
 }
 

@@ -61,6 +61,7 @@ class SizeGuess {
   }
   /// REQUIRES: of() was asked before.
   void learn(std::int32_t truth) {
+    assert(0 <= guess_ && guess_ <= kMax);
     std::int64_t square = 256;
     for (const std::int32_t x : figures_) square += std::int64_t{x} * x;
     // beyond the largest guess nothing is learned, so that no weight grows for ever

@@ -63,6 +63,7 @@ class RangeEncoder {
   static constexpr bool kEncoding = true;
 
   int bit(int value, BitModel& model) {
+    assert(value == 0 || value == 1);
     encode(value, range::clamped(model));
     range::update(model, value);
     return value;
@@ -76,6 +77,7 @@ class RangeEncoder {
   }
   /// `bits` equiprobable bits, 0..32: as they are, from the end of the stream backwards.
   std::uint32_t raw(std::uint32_t value, int bits) {
+    assert(0 <= bits && bits <= 32 && std::uint64_t{value} >> bits == 0);
     pending_ |= std::uint64_t{value} << pendingBits_;
     for (pendingBits_ += bits; pendingBits_ >= 8; pendingBits_ -= 8, pending_ >>= 8)
       raw_.push_back(static_cast<std::uint8_t>(pending_));
@@ -132,8 +134,12 @@ class RangeDecoder {
     range::update(model, value);
     return value;
   }
-  int likely(int /*unknown*/, std::uint32_t probability) { return decode(probability); }
+  int likely(int /*unknown*/, std::uint32_t probability) {
+    assert(range::kLowest <= probability && probability <= range::kHighest);
+    return decode(probability);
+  }
   std::uint32_t raw(std::uint32_t /*unknown*/, int bits) {
+    assert(0 <= bits && bits <= 32);
     for (; pendingBits_ < bits; pendingBits_ += 8) {
       ++back_;
       if (back_ <= bytes_.size())

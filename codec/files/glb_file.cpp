@@ -1,6 +1,7 @@
 #include "codec/files/glb_file.h"
 
 #include <array>
+#include <cassert>
 
 #include "proto/version.h"
 
@@ -59,6 +60,7 @@ const char* glbType(std::size_t components) {
 }
 
 Bytes glbBytes(const GlbContent& content, ByteView buffer) {
+  assert(buffer.size() < kMaxGlbBytes);
   const std::string json =
       document(content, buffer.size()).dump(-1, ' ', false, Json::error_handler_t::replace);
   Bytes out;

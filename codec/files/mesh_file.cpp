@@ -12,6 +12,7 @@ namespace qtet {
 bool needsLattice(std::string_view ending) { return ending == ".glb" || ending == ".drc"; }
 
 bool holdsFields(std::string_view ending, std::string_view association) {
+  assert(std::string_view(kWrittenEndings).find(ending) != std::string_view::npos);
   if (ending == ".obj") return false;
   return association != "cell" || !needsLattice(ending);
 }

@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "codec/files/is_at.h"
+
 namespace qtet {
 namespace {
 
@@ -21,13 +23,6 @@ constexpr std::string_view kPattern = "XXXXXX";
 
 int openFolder(const fs::path& path) {
   return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-}
-
-/// Whether the folder that is open has its name still.
-bool isAt(const fs::path& path, int folder) {
-  struct stat opened{}, named{};
-  return ::fstat(folder, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 bool isOurs(int folder) {

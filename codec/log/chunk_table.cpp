@@ -107,6 +107,7 @@ void writeChunkRows(ByteWriter& w, std::span<const ChunkEntry> chunks, RowParts 
 }
 
 void readLaterBlocks(ByteReader& r, std::uint32_t count, std::span<ChunkEntry> chunks) {
+  assert(r.failed() || std::uint64_t{5} * count * chunks.size() <= r.remaining());
   for (ChunkEntry& e : chunks) {
     const std::uint64_t begin = e.offset + e.size() - e.laterBytes;
     const std::size_t first = e.blocks.size();
@@ -124,6 +125,7 @@ void readLaterBlocks(ByteReader& r, std::uint32_t count, std::span<ChunkEntry> c
 
 void writeLaterBlocks(ByteWriter& w, std::uint32_t count, std::span<const ChunkEntry> chunks) {
   for (const ChunkEntry& e : chunks) {
+    assert(count <= e.blocks.size());
     const std::span later = std::span(e.blocks).last(count);
     writeSizes(w, later);
     writeChecksums(w, later);

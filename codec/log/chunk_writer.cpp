@@ -1,6 +1,7 @@
 #include "codec/log/chunk_writer.h"
 
 #include <bit>
+#include <cassert>
 #include <cstdlib>
 #include <utility>
 
@@ -35,6 +36,9 @@ std::uint64_t ChunkWriter::estimatedBytes() const {
 }
 
 Status ChunkWriter::close(std::uint32_t lastLevel, std::uint32_t endSlot, const Slots& end) {
+  assert(row_.firstLevel <= lastLevel && lastLevel <= kMaxLevels);
+  assert(first_.vertices <= end.vertices && first_.tetrahedra <= end.tetrahedra);
+  assert(first_.triangles <= end.triangles);
   row_.lastLevel = lastLevel;
   row_.endSlot = endSlot;
   row_.newVertices = end.vertices - first_.vertices;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <map>
 #include <numeric>
 #include <vector>
@@ -130,6 +131,8 @@ std::uint64_t decodingBytes(const LogIndex& index) {
 
 std::uint64_t decodingBytes(const LogIndex& index, std::uint32_t level,
                             std::span<const std::uint32_t> fields, FieldsHeld held) {
+  assert(level <= index.chunks.back().lastLevel);
+  assert(fields.empty() || fields.back() < index.fields.size());
   const std::vector<std::uint32_t> needed =
       withParents(index.fields, {fields.begin(), fields.end()});
   const Totals all = totalsOf(index, level, needed);

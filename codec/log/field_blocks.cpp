@@ -1,6 +1,7 @@
 #include "codec/log/field_blocks.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <string>
 #include <type_traits>
@@ -21,6 +22,7 @@ struct HistoryField {
   std::span<std::conditional_t<kEncoding, const std::int32_t, std::int32_t>> values;
 
   [[nodiscard]] std::span<const std::int32_t> of(std::size_t element) const {
+    assert((element + 1) * components <= values.size());
     return std::span<const std::int32_t>(values).subspan(element * components, components);
   }
 };
@@ -216,6 +218,11 @@ Result<std::vector<Bytes>> encodeFieldBlocks(const ValueOrder& order, const Fiel
       codeCells(order, chunk, truth, coded);
     else
       codePoints(order, chunk, truth, now, coded);
+    // as many as a decoder will ask for
+    assert(coded.written().size() ==
+           std::size_t{tuplesOf(order, chunk,
+                                isCellField(field) ? Association::kCell : Association::kPoint)} *
+               field.components);
     Result<Bytes> block = encodeValueBlock(coded.written(), field.components, own);
     if (!block) return std::unexpected(block.error());
     out.push_back(std::move(*block));

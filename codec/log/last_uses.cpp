@@ -1,5 +1,7 @@
 #include "codec/log/last_uses.h"
 
+#include <cassert>
+
 namespace qtet {
 
 std::vector<std::vector<std::uint32_t>> lastUses(std::span<const FieldShape> shapes,
@@ -8,6 +10,7 @@ std::vector<std::vector<std::uint32_t>> lastUses(std::span<const FieldShape> sha
   std::vector<bool> seen(shapes.size());
   for (std::size_t i = fields.size(); i-- > 0;) {
     const auto use = [&](std::uint32_t field) {
+      assert(field < shapes.size());
       if (!seen[field]) out[i].push_back(field);
       seen[field] = true;
     };

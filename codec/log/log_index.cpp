@@ -389,6 +389,7 @@ Result<LogIndex> LogIndex::parseHead(ByteView bytes) {
 }
 
 Status LogIndex::readLater(ByteView part) {
+  assert(unread.bytes > 0 && unread.bytes <= fileBytes);
   const std::uint64_t at = fileBytes - unread.bytes;
   if (part.size() < unread.bytes)
     return fail(ErrorCode::kTruncated,
@@ -437,6 +438,7 @@ Bytes LogIndex::encodeLater() const {
 }
 
 Bytes LogIndex::encode() const {
+  assert(unread.bytes == 0 && laterFields <= fields.size());
   const std::span front = std::span(fields).first(fields.size() - laterFields);
   const Bytes later = encodeLater();
   ByteWriter table;
@@ -465,6 +467,7 @@ Bytes LogIndex::encode() const {
   w.write(static_cast<std::uint32_t>(closing.size()));
   w.write(static_cast<std::uint32_t>(later.size()));
   w.write(crc32c(w.bytes()));
+  assert(w.bytes().size() == kHeaderBytes);
   w.append(manifest);
   w.append(table.bytes());
   return w.take();

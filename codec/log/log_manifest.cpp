@@ -64,6 +64,7 @@ double readStep(ByteReader& r) {
 constexpr unsigned kMissingTypeFlag = 0x80;
 
 void writeField(ByteWriter& w, const ManifestField& field) {
+  assert(field.minimum.size() == field.components);
   writeText(w, field.name);
   const auto type =
       static_cast<unsigned>(std::ranges::find(kFieldTypes, field.type) - kFieldTypes.begin());
@@ -401,8 +402,8 @@ Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
 }  // namespace
 
 Result<Bytes> manifestBlock(const Manifest& manifest, std::size_t later) {
+  assert(!manifest.levels.empty() && later <= manifest.fields.size());
   if (Status s = checkErrors(manifest); !s) return std::unexpected(s.error());
-  assert(later <= manifest.fields.size());
   ByteWriter w;
   writeText(w, manifest.generator);
   writeText(w, soundUtf8(manifest.source));
@@ -423,7 +424,7 @@ Result<Bytes> manifestBlock(const Manifest& manifest, std::size_t later) {
 }
 
 Bytes laterManifestBlock(const Manifest& manifest, std::size_t later) {
-  assert(later <= manifest.fields.size());
+  assert(!manifest.levels.empty() && later <= manifest.fields.size());
   ByteWriter w;
   for (const ManifestField& field : std::span(manifest.fields).last(later)) writeField(w, field);
   if (manifest.levels.front().error)
@@ -434,6 +435,7 @@ Bytes laterManifestBlock(const Manifest& manifest, std::size_t later) {
 }
 
 Status setManifest(LogIndex& index, Manifest manifest) {
+  assert(!manifest.levels.empty() && manifest.fields.size() == index.fields.size());
   if (manifest.levels.front().error)
     if (Status s = checkFigures(manifest.levels.size(), manifest.fields.size()); !s) return s;
   const std::vector<bool> isLater = laterInstants(std::span<const ManifestField>(manifest.fields));

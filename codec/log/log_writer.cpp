@@ -1,6 +1,7 @@
 #include "codec/log/log_writer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <string>
 #include <utility>
@@ -186,6 +187,7 @@ LogEncoder::~LogEncoder() = default;
 const ValueOrder& LogEncoder::order() { return writer_->order(); }
 
 Status LogEncoder::writeGeometry() {
+  assert(!writer_);
   if (Status s = checkLimits(history_); !s) return s;
   if (Status s = checkCellFields(history_); !s) return s;
   writer_ = std::make_unique<RecordWriter>(history_, options_.valueCodec, options_.stop);
@@ -195,6 +197,7 @@ Status LogEncoder::writeGeometry() {
 }
 
 Result<EncodedHead> LogEncoder::finish(const ByteSink& body) {
+  assert(writer_);
   if (Status s = checkErrors(history_, options_.errors); !s) return std::unexpected(s.error());
   if (Status s = writeChunks(*writer_, history_, options_, body); !s)
     return std::unexpected(s.error());

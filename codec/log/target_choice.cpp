@@ -86,7 +86,10 @@ Result<std::uint32_t> levelOfFieldErrors(double error, std::span<const std::uint
   assert(!manifest.levels.empty());
   return coarsestOf(manifest, error, [&](const LevelError& known) {
     double worst = 0;
-    for (const std::uint32_t f : fields) worst = std::max(worst, known.fields[f].rms);
+    for (const std::uint32_t f : fields) {
+      assert(f < known.fields.size());
+      worst = std::max(worst, known.fields[f].rms);
+    }
     return worst;
   });
 }

@@ -48,7 +48,7 @@ VertexId GrowingMesh::newVertex() {
 }
 
 void GrowingMesh::beginLevel(std::uint32_t level) {
-  assert(level > 0 && level <= kMaxLevels);
+  assert(level_ <= level && level > 0 && level <= kMaxLevels);
   level_ = level;
   levelVertices_ = static_cast<std::uint32_t>(points.size());
 }
@@ -57,6 +57,7 @@ void GrowingMesh::beginLevel(std::uint32_t level) {
 void GrowingMesh::add(VertexId v, CellRef cell) {
   State& s = states_[v];
   if (s.size == s.units * StarPool::kUnit) makeRoom(s, s.size + s.size / 8 + kSpareCells);
+  assert(s.size < s.units * StarPool::kUnit);
   CellRef* const cells = pool_.at(s.first);
   std::uint32_t at = s.size++;
   for (; at > 0 && cells[at - 1] > cell; --at) cells[at] = cells[at - 1];
@@ -66,6 +67,7 @@ void GrowingMesh::add(VertexId v, CellRef cell) {
 
 // Moves the star into a new run with room for `cells` cells.
 void GrowingMesh::makeRoom(State& state, std::uint32_t cells) {
+  assert(state.size <= cells);
   const std::uint32_t units = StarPool::unitsFor(cells);
   const std::uint32_t first = pool_.take(units);
   std::copy_n(pool_.at(state.first), state.size, pool_.at(first));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -75,7 +76,10 @@ class GrowingMesh {
   [[nodiscard]] std::uint32_t level() const { return level_; }
   /// Vertices that the level may split: those present at its beginning.
   [[nodiscard]] std::uint32_t levelVertices() const { return levelVertices_; }
-  [[nodiscard]] bool maysplit(VertexId v) const { return marked_[v] < level_; }
+  [[nodiscard]] bool maysplit(VertexId v) const {
+    assert(v < marked_.size());
+    return marked_[v] < level_;
+  }
   /// A hint: v is one of the next to be asked for.
   void expect(VertexId v) const {
     if (!kPrefetchIsFree || v >= states_.size()) return;
@@ -90,12 +94,16 @@ class GrowingMesh {
   }
   /// Tetrahedra by slot, then boundary triangles by slot.
   [[nodiscard]] std::span<const CellRef> star(VertexId v) const {
+    assert(v < states_.size());
     return {pool_.at(states_[v].first), states_[v].size};
   }
   /// The star holds a boundary triangle.
   [[nodiscard]] bool onBoundary(VertexId v) const { return states_[v].onBoundary; }
   /// Level at which a vertex got its present position; 0 in the base mesh.
-  [[nodiscard]] std::uint32_t born(VertexId v) const { return states_[v].born; }
+  [[nodiscard]] std::uint32_t born(VertexId v) const {
+    assert(states_[v].born <= level_);
+    return states_[v].born;
+  }
   /// The length of a star's edges: squared lengths along each axis, summed over the edges at v of
   /// its cells. An edge counts once for each of its cells. The unit is 4^spreadShift() squared
   /// lattice steps.

@@ -201,6 +201,7 @@ void Link::traverse() {
 }
 
 bool Link::isSphere() {
+  assert(triangleCount_ >= 4);  // close() saw to it
   const std::size_t faces = triangleCount_;
   if (faces % 2 != 0 || vertexCount_ + faces != faces / 2 * 3 + 2) return false;
   traverse();

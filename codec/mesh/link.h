@@ -83,9 +83,13 @@ class Link {
   /// points.size(), and isSphere() not asked before.
   void place(std::span<const LatticePoint> points, const LatticePoint& centre);
   /// By local id. REQUIRES place().
-  [[nodiscard]] std::span<const Offset> offsets() const { return {offsets_.data(), vertexCount_}; }
+  [[nodiscard]] std::span<const Offset> offsets() const {
+    assert(vertexCount_ <= offsets_.size());
+    return {offsets_.data(), vertexCount_};
+  }
   /// By triangle. REQUIRES place().
   [[nodiscard]] std::span<const Middle> middles() const {
+    assert(triangleCount_ <= middles_.size());
     return {middles_.data(), triangleCount_};
   }
 
@@ -97,7 +101,10 @@ class Link {
     for (const std::uint32_t v : t.vertex) labelsRound_[v] += LabelCounts{1} << (16 * label);
   }
   /// The label counts of the triangles round a local vertex.
-  [[nodiscard]] LabelCounts labelsRound(std::uint32_t local) const { return labelsRound_[local]; }
+  [[nodiscard]] LabelCounts labelsRound(std::uint32_t local) const {
+    assert(local < vertexCount_);
+    return labelsRound_[local];
+  }
 
   [[nodiscard]] std::span<const LinkTriangle> triangles() const {
     return {triangles_.data(), triangleCount_};
@@ -107,7 +114,10 @@ class Link {
     return {vertices_.data(), vertexCount_};
   }
   /// One triangle that holds the local vertex.
-  [[nodiscard]] std::uint32_t triangleOf(std::uint32_t local) const { return anyTriangle_[local]; }
+  [[nodiscard]] std::uint32_t triangleOf(std::uint32_t local) const {
+    assert(local < vertexCount_);
+    return anyTriangle_[local];
+  }
   /// The local id of a vertex, or kNoNeighbour when it is not on the link.
   [[nodiscard]] std::uint32_t localOf(VertexId vertex) const;
   [[nodiscard]] bool hasGhost() const { return localOf(kGhost) != kNoNeighbour; }

@@ -1,6 +1,7 @@
 #include "codec/picture/canvas.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace qtet {
@@ -30,10 +31,13 @@ Canvas::Canvas(int width, int height, const std::array<double, 2>& halfExtent)
       rows_(height * kSamples),
       halfExtent_(halfExtent),
       nearness_(index(0, rows_)),
-      colours_(index(0, rows_)) {}
+      colours_(index(0, rows_)) {
+  assert(width > 0 && height > 0 && halfExtent[0] > 0 && halfExtent[1] > 0);
+}
 
 void Canvas::draw(std::span<const Corner> polygon,
                   const std::function<std::array<double, 3>(double)>& shade) {
+  assert(std::ranges::all_of(polygon, [](const Corner& corner) { return corner.place[2] > 0; }));
   for (std::size_t i = 2; i < polygon.size(); ++i)
     drawTriangle({polygon[0], polygon[i - 1], polygon[i]}, shade);
 }

@@ -1,6 +1,7 @@
 #include "codec/picture/first_camera.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -91,6 +92,7 @@ Vector unit(const Vector& a) {
 }
 
 Bounds boundsOf(const LatticeMesh& mesh) {
+  assert(!mesh.boundary.empty());
   Bounds out;
   out.low.fill(std::numeric_limits<double>::max());
   out.high.fill(std::numeric_limits<double>::lowest());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -71,6 +72,7 @@ std::optional<std::uint32_t> displacementOf(const Manifest& manifest) {
 }
 
 void moveAsFirstShown(LatticeMesh& mesh, const Manifest& manifest) {
+  assert(!mesh.boundary.empty());
   const auto field = displacementOf(manifest);
   if (!field) return;
   const ManifestField& named = manifest.fields[*field];

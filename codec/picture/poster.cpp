@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -222,6 +223,7 @@ class PosterArtist {
 }  // namespace
 
 std::uint32_t posterLevel(const Manifest& manifest) {
+  assert(!manifest.levels.empty());
   std::uint32_t out = 0;
   while (out + 1 < manifest.levels.size() &&
          manifest.levels[out + 1].chunk == manifest.levels[0].chunk)

@@ -17,6 +17,7 @@ constexpr int kAlphaQuality = 90;
 }  // namespace
 
 Result<Bytes> encodeWebp(const Bytes& pixels, int width, int height, int quality) {
+  assert(width > 0 && width <= WEBP_MAX_DIMENSION && height > 0 && height <= WEBP_MAX_DIMENSION);
   assert(pixels.size() ==
          std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   WebPConfig config;

@@ -48,7 +48,10 @@ class LiftedBlock {
         field_(field),
         components_(components),
         hasMissing_(hasMissing),
-        models_(2 * std::min<std::size_t>(components, kAxes)) {}
+        models_(2 * std::min<std::size_t>(components, kAxes)) {
+    assert(components > 0 && components <= kMaxFieldComponents);
+    assert(field.values.size() == field.sizes.size() && field.values.size() % components == 0);
+  }
 
   /// A value is out of range, or was too large to be coded.
   [[nodiscard]] bool bad() const { return bad_; }
@@ -175,8 +178,10 @@ void LiftedBlock<Coder>::record(const LiftingRule& rule, const Birth& birth,
   longest_ = 0;
   for (std::uint32_t c = 0; c < components_; ++c) {
     Prey prey{};
-    if constexpr (Coder::kEncoding)
+    if constexpr (Coder::kEncoding) {
+      assert(truth.size() == std::size_t{birth.k} * components_);
       for (std::size_t i = 0; i < birth.k; ++i) prey[i] = truth[i * components_ + c];
+    }
     const unsigned all = (1u << birth.k) - 1;
     const unsigned present = hasMissing_ ? presentPrey(record, c, prey) : all;
     if (present == all)

@@ -14,6 +14,7 @@ MirrorMesh::MirrorMesh(const FusionHistory& history)
 Status MirrorMesh::start(const CoarsePart& coarse, std::span<const std::uint32_t> cells,
                          std::span<const VertexId> vertices) {
   assert(vertices_.empty());
+  assert(cells.size() == coarse.tetrahedra.size() && vertices.size() == coarse.points.size());
   const auto isGhost = [](const auto& cell) {
     return std::ranges::find(cell, kGhost) != cell.end();
   };
@@ -59,18 +60,22 @@ Status MirrorMesh::matchBoundary() {
 
 void MirrorMesh::apply(VertexId v, const Link& link, const Split& split, const Fusion& fusion,
                        std::span<const std::uint32_t> restored) {
+  assert(vertices_[v] == fusion.fused && restored.size() == split.deleted.size());
   mesh_.apply(v, link, split);
   for (const std::uint32_t cell : restored) {
     const auto& corners = history_.cells[cell];
     const bool ghost = std::ranges::find(corners, kGhost) != corners.end();
     (ghost ? triangles_ : tetrahedra_).push_back(cell);
   }
+  assert(triangles_.size() == mesh_.boundary.size());
+  assert(tetrahedra_.size() == mesh_.tetrahedra.size());
   vertices_[v] = fusion.prey[0];
   slots_[fusion.prey[0]] = v;
   for (std::size_t i = 1; i < fusion.k; ++i) {
     slots_[fusion.prey[i]] = static_cast<VertexId>(vertices_.size());
     vertices_.push_back(fusion.prey[i]);
   }
+  assert(vertices_.size() == mesh_.points.size());
 }
 
 }  // namespace qtet

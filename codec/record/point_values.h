@@ -102,6 +102,7 @@ class PointAncestry {
   [[nodiscard]] std::span<const std::uint32_t> levelStarts() const { return levelStarts_; }
   /// Those that a record's tuples are predicted by. REQUIRES: there are slopes.
   [[nodiscard]] std::span<const Slope> slopesAt(const Birth& b) const {
+    assert(withSlopes_ && b.firstSlope < slopes_.size());
     return std::span(slopes_).subspan(b.firstSlope, b.k == 2 ? 1 : b.k);
   }
 

@@ -98,6 +98,7 @@ class RecordCoder {
   /// The record of v, whose link is built (GrowingMesh::enter), into `split`; an encoder's truth is
   /// complete. False: not describable (encoder), not valid (decoder).
   [[nodiscard]] bool code(VertexId v, const RecordTruth& truth, Split& split) {
+    if constexpr (Coder::kEncoding) assert(truth.k >= 2 && truth.k <= 4);
     const auto size = std::min<std::size_t>(link_.triangles().size() / 24, 3);
     const std::size_t edge = link_.hasGhost();
     if (coder_.bit(truth.k == 4, models_.tetrahedron[size][edge]))

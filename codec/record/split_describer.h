@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,7 @@ class SplitDescriber {
   void place(VertexId slot);
   /// The fusion that a split of v undoes in the current level, or nullptr. REQUIRES: place(v).
   [[nodiscard]] const Fusion* fusionAt(VertexId v) const {
+    assert(v < next_.size());
     return next_[v].level == mirror_.mesh().level() ? &history_.fusions[next_[v].fusion] : nullptr;
   }
   /// A hint: the current level's splits are described in the order of their slots, that of v next.
@@ -46,8 +48,14 @@ class SplitDescriber {
     static constexpr std::size_t kMax = 8;
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] VertexId operator[](std::size_t i) const { return slots_[(first_ + i) % kMax]; }
-    void push(VertexId slot) { slots_[(first_ + size_++) % kMax] = slot; }
-    void pop() { first_ = (first_ + 1) % kMax, --size_; }
+    void push(VertexId slot) {
+      assert(size_ < kMax);
+      slots_[(first_ + size_++) % kMax] = slot;
+    }
+    void pop() {
+      assert(size_ > 0);
+      first_ = (first_ + 1) % kMax, --size_;
+    }
 
    private:
     std::array<VertexId, kMax> slots_{};

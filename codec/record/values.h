@@ -1,6 +1,7 @@
 // The integers that a chunk's value blocks hold, in both directions.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -57,7 +58,10 @@ class Values {
                       : code<kEncoding>(predicted, truth);
   }
   /// The value that is read next. REQUIRES: place <= the number of values.
-  void seek(std::size_t place) { next_ = place; }
+  void seek(std::size_t place) {
+    assert(place <= given_.size());
+    next_ = place;
+  }
   /// Marks the values as bad: a result is out of range.
   void spoil() { bad_ = true; }
   [[nodiscard]] bool bad() const { return bad_; }

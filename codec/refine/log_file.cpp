@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -134,6 +135,7 @@ void LogFile::release(std::uint64_t offset, std::uint64_t size) const {
   if (state_->address == nullptr || size == 0) return;
   // whole pages, also of the neighbours, who can be read again
   static const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  assert(offset + size <= state_->bytes);
   const std::uint64_t begin = offset / page * page;
   madvise(static_cast<std::uint8_t*>(state_->address) + begin,
           static_cast<std::size_t>(offset + size - begin), MADV_DONTNEED);
@@ -171,8 +173,9 @@ Status LogFile::verifyChecksums() const {
 }
 
 Result<std::vector<std::int32_t>> LogFile::values(std::uint32_t chunk, std::uint32_t part) const {
-  if (Status s = checkBlock(*this, chunk, part); !s) return std::unexpected(s.error());
   const LogIndex& index = state_->index;
+  assert(part != kStructurePart && index.blockCodec(chunk, part) != CodecId::kLifted);
+  if (Status s = checkBlock(*this, chunk, part); !s) return std::unexpected(s.error());
   auto out = decodeValueBlock(block(chunk, part), index.components(part), index.tuples(chunk, part),
                               index.blockCodec(chunk, part));
   releaseBlock(*this, chunk, part);

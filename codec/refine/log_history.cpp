@@ -1,6 +1,7 @@
 #include "codec/refine/log_history.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <numeric>
 #include <string>
@@ -128,6 +129,7 @@ Result<std::vector<std::int32_t>> codedValues(const LogFile& log, const LogHisto
 
 Result<std::vector<std::int32_t>> historyValues(const LogFile& log, const LogHistory& history,
                                                 std::uint32_t field) {
+  assert(field < log.fields().size());
   std::map<std::uint32_t, std::vector<std::int32_t>> known;
   for (const std::uint32_t f : withParents(log.fields(), std::span(&field, 1))) {
     Result<std::vector<std::int32_t>> values = codedValues(log, history, f);

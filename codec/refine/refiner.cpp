@@ -141,6 +141,7 @@ Status Refiner::applyField(std::uint32_t field, std::uint32_t chunk, ByteView bl
 }
 
 Status Refiner::readLater(ByteView part) {
+  assert(index().unreadBytes() > 0);
   LogIndex index = state_->plan.index;
   if (Status s = index.readLater(part); !s) return s;
   state_->plan.index = std::move(index);

@@ -4,6 +4,7 @@
 #include <sys/time.h>
 
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 
@@ -90,6 +91,7 @@ void Channel::setPatience(std::chrono::seconds most) const {
 }
 
 Status Channel::send(ByteView bytes, std::span<const int> files) const {
+  assert(bytes.size() <= limits::kMaxDecodeMessage && files.size() <= limits::kMaxDecodeFiles);
   ByteWriter length;
   length.write(static_cast<std::uint32_t>(bytes.size()));
   for (ByteView rest : {ByteView(length.bytes()), bytes})

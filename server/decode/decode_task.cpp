@@ -1,6 +1,7 @@
 #include "server/decode/decode_task.h"
 
 #include <bit>
+#include <cassert>
 #include <utility>
 
 namespace qtet {
@@ -32,6 +33,7 @@ Enum readEnum(ByteReader& in, Enum last) {
 
 void writeLevel(ByteWriter& out, const LevelTask& task) {
   const LevelRequest& request = task.request;
+  assert(request.names.empty() || request.names.size() == request.fields.size());
   writeText(out, task.digest);
   out.write(request.level);
   out.write(std::to_underlying(request.form));

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -141,6 +142,7 @@ void Decoder::bound(const TaskLimits& bounds) const {
 }
 
 std::unexpected<Error> Decoder::lost() {
+  assert(process_ > 0);
   int status = 0;
   // One that is about to end by itself keeps its own reason.
   ::kill(process_, SIGKILL);
@@ -180,6 +182,7 @@ Result<DecodeAnswer> Decoder::next(const std::stop_token& stop) {
 
 Result<DecodeAnswer> Decoder::ask(const DecodeTask& task, std::span<const int> files,
                                   const TaskLimits& bounds, const std::stop_token& stop) {
+  assert(process_ > 0);
   std::uint64_t earlier = 0;
   (void)!::read(wake_.number, &earlier, sizeof earlier);  // stops of tasks that have ended
   if (!ready_) {

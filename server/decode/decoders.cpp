@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <condition_variable>
 #include <cstring>
@@ -96,6 +97,7 @@ Decoders::State::Place& Decoders::State::take(const std::string& subject) {
     return std::tuple(place.busy, place.subject != subject, place.used);
   };
   Place& best = *std::ranges::min_element(places, {}, rank);
+  assert(!best.busy && counts.running < places.size());
   best.busy = true;
   best.subject = subject;
   ++counts.running;
@@ -104,6 +106,7 @@ Decoders::State::Place& Decoders::State::take(const std::string& subject) {
 
 void Decoders::State::giveBack(Place& place) {
   const std::scoped_lock lock(mutex);
+  assert(place.busy && counts.running > 0);
   place.busy = false;
   place.used = ++tasks;
   --counts.running;
@@ -154,7 +157,7 @@ Decoders::Decoders(DecoderOptions options) : state_(std::make_unique<State>(std:
   for (State::Place& place : state_->places) (void)state_->start(place);
 }
 
-Decoders::~Decoders() = default;
+Decoders::~Decoders() { assert(counts().running == 0); }
 
 Result<LevelFile> Decoders::level(const LevelRequest& request, const std::stop_token& stop) {
   const Descriptor file(fileForLevel());

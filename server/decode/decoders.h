@@ -34,7 +34,7 @@ struct DecoderCounts {
   std::size_t running = 0;  ///< tasks under way
 };
 
-/// Thread-safe.
+/// Thread-safe: a mutex guards the places, and a taken place is its task's alone.
 class Decoders {
  public:
   /// Starts the processes, so that none has to be waited for later.

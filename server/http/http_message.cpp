@@ -1,5 +1,6 @@
 #include "server/http/http_message.h"
 
+#include <cassert>
 #include <utility>
 
 #include "proto/json_reader.h"
@@ -55,6 +56,8 @@ std::string_view reasonPhrase(unsigned status) {
 }
 
 void appendHead(std::string& out, const Reply& reply, Afterwards afterwards) {
+  assert(reply.status >= 200 && reply.status < 600 && reply.status != kClientGone);
+  assert(!reply.file || std::holds_alternative<ByteView>(reply.body));
   out += "HTTP/1.1 ";
   out += std::to_string(reply.status);
   out += ' ';

@@ -1,5 +1,7 @@
 #include "server/http/http_resource.h"
 
+#include <cassert>
+
 #include "server/wire/http_date.h"
 
 namespace qtet {
@@ -53,6 +55,7 @@ Reply rangeReply(const RequestView& request, Reply begun, ByteView bytes,
   begun.owner = std::move(owner);
   begun.body = bytes;
   if (range.kind == ByteRange::Kind::kWhole) return begun;
+  assert(range.size > 0 && range.first + range.size <= bytes.size());
   begun.status = 206;
   begun.headers.remove("Accept-Ranges");  // the status says it
   begun.headers.add("Content-Range", "bytes " + std::to_string(range.first) + "-" +

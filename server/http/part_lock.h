@@ -2,10 +2,8 @@
 #pragma once
 
 #include <sys/file.h>
-#include <sys/stat.h>
 
 #include <cerrno>
-#include <filesystem>
 
 namespace qtet {
 
@@ -13,14 +11,6 @@ namespace qtet {
 /// system has no locks nobody has.
 [[nodiscard]] inline bool isLocked(int file) {
   return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-}
-
-/// Whether the file has its name still: between our opening and our locking it another server may
-/// have published or removed it.
-[[nodiscard]] inline bool isAt(const std::filesystem::path& path, int file) {
-  struct stat opened{}, named{};
-  return ::fstat(file, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 }  // namespace qtet

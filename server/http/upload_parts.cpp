@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <iterator>
 
+#include "codec/files/is_at.h"
 #include "proto/log_digest.h"
 #include "server/http/part_lock.h"
 #include "server/http/upload_limits.h"
@@ -73,6 +75,7 @@ std::vector<UploadParts::Part> UploadParts::kept(const fs::path& except) {
 }
 
 std::optional<Reply> UploadParts::begin(const UploadRequest& request, const fs::path& part) {
+  assert(!underWay(part));
   const std::uintmax_t toCome = request.totalBytes - std::min(request.first, request.totalBytes);
   std::uintmax_t promised = quota_.reserve + toCome;
   for (const auto& [path, upload] : underWay_) promised += upload.toCome;
@@ -114,6 +117,7 @@ std::optional<Reply> UploadParts::begin(const UploadRequest& request, const fs::
 }
 
 void UploadParts::end(const fs::path& part) {
+  assert(underWay(part));
   underWay_.erase(part);
   seen_.insert(part);
 }

@@ -29,8 +29,8 @@ struct PartQuota {
   FreeDiskBytes freeBytes = freeDiskBytes;
 };
 
-/// Not thread-safe. The token is known only for parts that arrived since the start. Earlier parts
-/// count for all tokens together.
+/// Not thread-safe: the mutex of Uploads guards it. The token is known only for parts that arrived
+/// since the start. Earlier parts count for all tokens together.
 class UploadParts {
  public:
   UploadParts(std::filesystem::path folder, PartQuota quota)

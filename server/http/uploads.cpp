@@ -12,6 +12,7 @@
 #include <exception>
 #include <new>
 
+#include "codec/files/is_at.h"
 #include "proto/json_reader.h"
 #include "proto/log_digest.h"
 #include "server/http/http_resource.h"
@@ -93,6 +94,7 @@ Reply Upload::diskTrouble(const std::string& what, int number) {
 }
 
 std::optional<Reply> Upload::append(ByteView bytes) {
+  assert(bytes.empty() || !isBusy());
   if (!delta_) return write(bytes);
   if (!bytes.empty()) delta_->feed(bytes);
   const std::size_t most = uploads_.options_.deltaPiece;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cstdint>
 #include <expected>
@@ -29,7 +30,7 @@ namespace qtet {
 
 class Uploads;
 
-/// One upload under way. Not thread-safe; `uploads` must outlive it.
+/// One upload under way. For one thread at a time; `uploads` must outlive it.
 class Upload {
  public:
   Upload(const Upload&) = delete;
@@ -65,6 +66,7 @@ class Upload {
         part_(std::move(part)),
         file_(file),
         remove_(!request_.digest) {
+    assert(file >= 0 && request_.first <= request_.totalBytes);
     if (base_) delta_.emplace(base_->log.bytes(), request_.totalBytes - request_.first);
   }
   std::optional<Reply> write(ByteView bytes);
@@ -100,8 +102,9 @@ struct UploadOptions {
   PartQuota parts{};  ///< of those that are kept
 };
 
-/// Thread-safe. Several servers may share the folder: each recognises the others' active uploads by
-/// their locks and leaves their parts alone.
+/// Thread-safe: `mutex_` guards the parts, `publishing_` every change of a mesh. Several servers
+/// may share the folder: each recognises the others' active uploads by their locks and leaves their
+/// parts alone.
 class Uploads {
  public:
   /// `store` must outlive it.

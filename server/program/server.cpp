@@ -98,10 +98,7 @@ struct Server::State {
                options.access != nullptr ? std::optional<Writing>({*options.access, uploads})
                                          : std::nullopt,
                options.frameAncestors),
-        lanes(std::max<std::size_t>(options.threads, 1)) {
-    services.addresses = &addresses;
-    if (!options.proxies.networks.empty()) services.proxies = &options.proxies;
-  }
+        lanes(std::max<std::size_t>(options.threads, 1)) {}
 
   asio::awaitable<void> acceptConnections(tcp::acceptor& acceptor, const Services& services);
   void handOver(tcp::socket socket, const tcp::endpoint& peer, asio::io_context& context,
@@ -155,38 +152,33 @@ struct Server::State {
   LevelJobs pointJobs{{limits::kPointThreads, limits::kMaxPointJobs, &points, maker(),
                        options.maxLevelsPerAddress}};
   asio::thread_pool writers{limits::kWriteThreads}, checkers{limits::kCheckThreads}, describers{1};
-  Services services{store,
-                    [this](const RequestView& request) { return router.route(request); },
-                    true,
-                    jobs,
-                    pointJobs,
-                    options.maxLevelBytes,
-                    metrics,
-                    options.accessLog,
-                    options.timeouts,
-                    &uploads,
-                    workersOf(writers),
-                    workersOf(checkers),
-                    workersOf(describers),
-                    options.access,
-                    &options.allowedOrigins,
-                    &handshakes};
-  Services adminServices{store,
-                         [this](const RequestView& request) { return routeAdmin(admin, request); },
-                         false,
-                         jobs,
-                         pointJobs,
-                         options.maxLevelBytes,
-                         metrics,
-                         options.accessLog,
-                         options.timeouts,
-                         nullptr,
-                         {},
-                         {},
-                         {},
-                         nullptr,
-                         nullptr,
-                         nullptr};
+  Services services{.store = store,
+                    .route = [this](const RequestView& request) { return router.route(request); },
+                    .jobs = jobs,
+                    .pointJobs = pointJobs,
+                    .maxLevelBytes = options.maxLevelBytes,
+                    .metrics = metrics,
+                    .accessLog = options.accessLog,
+                    .timeouts = options.timeouts,
+                    .uploads = &uploads,
+                    .writers = workersOf(writers),
+                    .checkers = workersOf(checkers),
+                    .describers = workersOf(describers),
+                    .access = options.access,
+                    .allowedOrigins = &options.allowedOrigins,
+                    .handshakes = &handshakes,
+                    .addresses = &addresses,
+                    .proxies = options.proxies.networks.empty() ? nullptr : &options.proxies};
+  Services adminServices{
+      .store = store,
+      .route = [this](const RequestView& request) { return routeAdmin(admin, request); },
+      .streams = false,
+      .jobs = jobs,
+      .pointJobs = pointJobs,
+      .maxLevelBytes = options.maxLevelBytes,
+      .metrics = metrics,
+      .accessLog = options.accessLog,
+      .timeouts = options.timeouts};
 };
 
 asio::awaitable<void> Server::State::acceptConnections(tcp::acceptor& from, const Services& whose) {

@@ -69,7 +69,8 @@ struct ServerOptions {
   std::chrono::milliseconds drain{0};
 };
 
-/// Store, viewer, cache, decoders, access log, TLS and access must outlive it.
+/// The thread that calls run() owns it, but for drain() and stop(). Store, viewer, cache, decoders,
+/// access log, TLS and access must outlive it.
 class Server {
  public:
   Server(const MeshStore& store, const ViewerFiles& viewer, ServerOptions options);

@@ -11,7 +11,7 @@
 
 namespace qtet {
 
-/// Thread-safe if its sources are.
+/// Immutable after construction, so thread-safe if its sources are.
 struct AdminRoutes {
   const Metrics& metrics;
   std::function<std::string_view()> unready;  ///< why new work is not welcome; "": it is

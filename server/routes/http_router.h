@@ -21,8 +21,9 @@ namespace qtet {
 /// Where a WebSocket handshake is to go; anything else there is answered by 426.
 inline constexpr std::string_view kStreamPath = "/v1/stream";
 
-/// Safe to use from any thread. Replies hold views into the viewer's files and the router, which
-/// must outlive them, and keep the logs that they are about.
+/// Thread-safe: immutable after construction, but for pages that guard themselves. Replies hold
+/// views into the viewer's files and the router, which must outlive them, and keep the logs that
+/// they are about.
 class Router {
  public:
   /// `admin` adds the operators' paths. `writing` restricts meshes to those who have a token for

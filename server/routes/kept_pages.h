@@ -30,7 +30,8 @@ struct KeptPage {
 };
 using KeptPagePointer = std::shared_ptr<const KeptPage>;
 
-/// Holds at most `maxBytes`, without those that were not used for longest. Thread-safe.
+/// Holds at most `maxBytes`, without those that were not used for longest. Thread-safe: `mutex_`
+/// guards it.
 class KeptPages {
  public:
   explicit KeptPages(std::size_t maxBytes = limits::kMaxKeptPageBytes) : maxBytes_(maxBytes) {}

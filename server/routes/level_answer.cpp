@@ -1,5 +1,6 @@
 #include "server/routes/level_answer.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "server/http/content_disposition.h"
@@ -15,7 +16,6 @@ std::string_view mediaType(LevelForm form) {
     case LevelForm::kGlb: return "model/gltf-binary";
     case LevelForm::kObj: return "model/obj";
     case LevelForm::kUsda: return "model/vnd.usda";
-    case LevelForm::kPng: return "image/png";
     case LevelForm::kWebp: return "image/webp";
     case LevelForm::kJson: return "application/json";
     case LevelForm::kCsv: return "text/csv";
@@ -24,16 +24,14 @@ std::string_view mediaType(LevelForm form) {
 }
 
 /// Whether it is looked at, not saved.
-bool isShown(LevelForm form) {
-  return form == LevelForm::kPng || form == LevelForm::kWebp || form == LevelForm::kJson;
-}
+bool isShown(LevelForm form) { return form == LevelForm::kWebp || form == LevelForm::kJson; }
 
 /// Whether the form is compressed already and is sent as it is.
 bool isCompressed(LevelForm form) { return form == LevelForm::kGlb || form == LevelForm::kDrc; }
 
 }  // namespace
 
-std::optional<std::uint32_t> parseLevel(std::string_view text) {
+std::optional<std::uint32_t> parseIndex(std::string_view text) {
   if (text.starts_with('0') && text != "0") return std::nullopt;
   return parseNumber<std::uint32_t>(text);
 }
@@ -48,6 +46,7 @@ std::string levelsText(const ServedMesh& mesh) {
 }
 
 Resource resourceOf(const LevelRequest& wanted, const std::string& name) {
+  assert(wanted.mesh && wanted.level < wanted.mesh->manifest.levels.size());
   Resource out{{'"' + wanted.key() + '"', wanted.mesh->modified},
                std::string(mediaType(wanted.form)),
                kForEver};

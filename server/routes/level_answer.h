@@ -32,8 +32,8 @@ template <class T>
   if (ec != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return out;
 }
-/// A level's number as every address writes it: no sign, no leading zero.
-[[nodiscard]] std::optional<std::uint32_t> parseLevel(std::string_view text);
+/// A level's or a chunk's number as every address writes it: no sign, no leading zero.
+[[nodiscard]] std::optional<std::uint32_t> parseIndex(std::string_view text);
 /// The same, neither infinite nor NaN.
 [[nodiscard]] std::optional<double> parseFinite(std::string_view text);
 

@@ -10,7 +10,6 @@
 #include "server/http/unwritable_level.h"
 #include "server/routes/level_answer.h"
 #include "server/routes/level_time.h"
-#include "server/store/preview.h"
 
 namespace qtet {
 namespace {
@@ -53,7 +52,7 @@ OrRefusal<std::uint32_t> fittingLevel(const RequestTarget& target, const ServedM
 OrRefusal<std::uint32_t> levelOfName(std::string_view name, const RequestTarget& target,
                                      const ServedMesh& mesh) {
   if (name == "fit") return fittingLevel(target, mesh);
-  const auto level = parseLevel(name);
+  const auto level = parseIndex(name);
   if (!level || *level >= mesh.manifest.levels.size())
     return notFound("there is no such level; this mesh has " + levelsText(mesh) +
                     ", and fit.vtu?tets=N");
@@ -136,28 +135,6 @@ Answer routeLevel(const RequestView& request, const RequestTarget& target, const
   Resource resource = resourceOf(wanted, log.name + "-level-" + std::to_string(*level));
   if (name.starts_with("fit.")) resource.headers.add("Content-Location", canonicalPath(wanted));
   chooseCodingOf(wanted, resource, request);
-  return toBeMade(request, resource, std::move(wanted));
-}
-
-Answer routePreview(const RequestView& request, const RequestTarget& target, const NamedLog& log) {
-  const MeshPointer& mesh = log.mesh;
-  const Manifest& manifest = mesh->manifest;
-  const auto small = [](const ManifestLevel& level) {
-    return level.boundaryTriangles <= kMaxPreviewTriangles;
-  };
-  const auto finest = std::find_if(manifest.levels.rbegin(), manifest.levels.rend(), small);
-  LevelRequest wanted{mesh, finest == manifest.levels.rend() ? 0 : finest->level, LevelForm::kPng};
-  if (const std::optional<std::string> name = target.parameter("field"); name && !name->empty()) {
-    const auto field = mesh->keys().fieldOfKey(*name);
-    if (!field || manifest.fields[*field].association != "point")
-      return problem(404, "not-found", "this mesh has no field of points '" + *name + "'");
-    wanted.fields = {*field};
-  } else if (!name) {
-    const auto first = std::ranges::find(manifest.fields, "point", &ManifestField::association);
-    if (first != manifest.fields.end())
-      wanted.fields = {static_cast<std::uint32_t>(first - manifest.fields.begin())};
-  }
-  const Resource resource = resourceOf(wanted, log.name + "-preview");
   return toBeMade(request, resource, std::move(wanted));
 }
 

@@ -19,11 +19,6 @@ struct NamedLog {
 [[nodiscard]] Answer routeLevel(const RequestView& request, const RequestTarget& target,
                                 const NamedLog& log, std::string_view level);
 
-/// The same for `/v1/logs/{sha256}/preview.png?field=NAME`: the level that is drawn, with the field
-/// or the first one of points.
-[[nodiscard]] Answer routePreview(const RequestView& request, const RequestTarget& target,
-                                  const NamedLog& log);
-
 /// The same for `/v1/logs/{sha256}/poster.webp` (codec/picture/poster.h).
 [[nodiscard]] Answer routePoster(const RequestView& request, const NamedLog& log);
 

@@ -1,10 +1,10 @@
 #include "server/routes/log_routes.h"
 
 #include <cassert>
-#include <charconv>
 #include <span>
 
 #include "server/http/http_resource.h"
+#include "server/routes/level_answer.h"
 #include "server/routes/series_routes.h"
 
 namespace qtet {
@@ -12,18 +12,10 @@ namespace {
 
 using Path = std::span<const std::string>;
 
-/// "12"; no sign, no leading zero.
-std::optional<std::uint32_t> parseIndex(std::string_view text) {
-  std::uint32_t out = 0;
-  const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (ec != std::errc() || end != text.data() + text.size() || (text.size() > 1 && text[0] == '0'))
-    return std::nullopt;
-  return out;
-}
-
 /// Bytes [first, end) of the log. `name` identifies the part in the tag; "" is the whole.
 Reply part(const RequestView& request, const MeshPointer& mesh, const std::string& name,
            std::uint64_t first, std::uint64_t end) {
+  assert(first <= end && end <= mesh->log.bytes().size());
   const std::string tag = '"' + mesh->log.digest() + (name.empty() ? "" : "-" + name) + '"';
   Resource resource{{tag, mesh->modified}, "application/octet-stream", kForEver};
   becomeMeasurable(resource);
@@ -78,7 +70,6 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
     return part(request, mesh, "base", 0, endOf(mesh->log.chunks().front().blocks[kPositionsPart]));
   if (path.size() == 1 && what == "manifest")
     return textAnswer(request, mesh, ServedMesh::Text::kManifest);
-  if (path.size() == 1 && what == "preview.png") return routePreview(request, target, log);
   if (path.size() == 1 && what == "poster.webp") return routePoster(request, log);
   if (path.size() == 1 && what == "series") return routeSeries(request, target, log);
   if (path.size() == 2 && what == "chunks") return chunkReply(request, mesh, path[1], std::nullopt);
@@ -86,7 +77,7 @@ Answer routeLog(const RequestView& request, const RequestTarget& target, const N
   if (path.size() > 1 && what == "fields") return fieldReply(request, mesh, path.subspan(1));
   return missingReply(
       "a log has log, manifest, base, chunks/{n}, fields/{name}/chunks/{n}, levels/{k}.vtu and in "
-      "other forms, series, preview.png, and poster.webp");
+      "other forms, series, and poster.webp");
 }
 
 }  // namespace qtet

@@ -47,7 +47,7 @@ OrRefusal<std::array<double, 3>> pointOf(const RequestTarget& target) {
 OrRefusal<std::uint32_t> namedLevel(const ServedMesh& mesh, const std::string& text) {
   if (!parseNumber<std::uint32_t>(text))
     return badRequest("level is '" + text + "'; give a whole number, like level=3");
-  const auto level = parseLevel(text);
+  const auto level = parseIndex(text);
   if (!level || *level >= mesh.manifest.levels.size())
     return notFound("there is no level " + text + "; this mesh has " + levelsText(mesh));
   return *level;

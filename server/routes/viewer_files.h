@@ -34,7 +34,8 @@ struct ViewerFile {
   bool immutable;        ///< its name changes with its content, as names under assets/ do
 };
 
-/// Safe to read from any thread, also while compressRest runs.
+/// Safe to read from any thread: immutable but for what compressRest() adds, which readers see once
+/// `restIsThere_` is set.
 class ViewerFiles {
  public:
   /// No viewer at all.

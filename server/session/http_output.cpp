@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/error.hpp>
+#include <cassert>
 #include <span>
 
 #include "server/http/deadline.h"
@@ -33,6 +34,7 @@ std::size_t writeSome(ClientSocket& socket, const OutgoingReply& reply, bool hea
 asio::awaitable<Sent> sendReply(ClientSocket& socket, OutgoingReply reply,
                                 std::chrono::milliseconds patience, bool unpaced) {
   Sent out;
+  assert(reply.bodyInHead <= reply.head.size());
   const std::size_t headBytes = reply.head.size() - reply.bodyInHead;
   std::size_t sent = 0;
   // The head goes with the first bytes, except before a large body for a client on this machine.
@@ -42,6 +44,7 @@ asio::awaitable<Sent> sendReply(ClientSocket& socket, OutgoingReply reply,
   for (std::size_t taken = 0; !reply.head.empty() || !reply.body.empty();) {
     error_code ec;
     const std::size_t count = writeSome(socket, reply, headWaits, ec);
+    assert(count <= reply.head.size() + reply.body.size());
     const std::size_t ofHead = std::min(count, reply.head.size());
     reply.head.remove_prefix(ofHead);
     reply.body = reply.body.subspan(count - ofHead);

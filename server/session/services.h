@@ -45,6 +45,7 @@ struct Timeouts {
   std::chrono::milliseconds grace = limits::kGraceTime;      ///< of all, once the server ends
 };
 
+/// Immutable once the server listens; what it refers to guards itself.
 struct Services {
   const MeshStore& store;
   std::function<Answer(const RequestView&)> route;

@@ -1,5 +1,6 @@
 #include "server/session/tls_greeting.h"
 
+#include <cassert>
 #include <chrono>
 #include <optional>
 
@@ -30,6 +31,7 @@ asio::awaitable<bool> waitForPlace(Peer& peer, Handshakes::Client& handshake,
 }  // namespace
 
 asio::awaitable<bool> shakeHandsInTurn(Peer& peer, const Services& services) {
+  assert(peer.socket.isTls() && services.handshakes != nullptr);
   const Deadline deadline(peer.socket, services.timeouts.header);
   const IdleScope idle(peer);
   bool done = co_await peer.socket.announcesSoundHello();

@@ -1,6 +1,7 @@
 #include "server/store/catalogue.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <iterator>
 
@@ -21,6 +22,7 @@ void Catalogue::count(const MeshEntry& mesh) {
 }
 
 EntryPointer Catalogue::put(const EntryPointer& mesh) {
+  assert(mesh);
   EntryPointer old = drop(mesh->id);
   meshes.put(mesh);
   logs.put(mesh);
@@ -33,7 +35,8 @@ EntryPointer Catalogue::drop(std::string_view id) {
   if (found == nullptr) return nullptr;
   EntryPointer old = *found;
   meshes.remove(id);
-  logs.remove(LogOf()(old));
+  [[maybe_unused]] const bool wasLog = logs.remove(LogOf()(old));
+  assert(wasLog);
   count(*old);
   return old;
 }

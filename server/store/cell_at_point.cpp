@@ -1,6 +1,7 @@
 #include "server/store/cell_at_point.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -94,6 +95,7 @@ bool hasVolume(const Corners& p) {
 std::optional<PointInCell> cellAtPoint(std::span<const LatticePoint> points,
                                        std::span<const Tetrahedron> cells,
                                        const std::array<double, 3>& point, double near) {
+  assert(near >= 0);
   std::optional<PointInCell> nearest;
   double least = near;
   for (CellId cell = 0; cell < cells.size(); ++cell) {

@@ -22,7 +22,6 @@ Json links(const ServedMesh& mesh) {
           {"vtu", log + "/levels/{k}.vtu"},
           {"glb", log + "/levels/{k}.glb"},
           {"drc", log + "/levels/{k}.drc"},
-          {"preview", log + "/preview.png"},
           {"poster", log + "/poster.webp"}};
 }
 

@@ -19,7 +19,7 @@ namespace qtet {
 
 /// Runs `changed` on a thread of its own, limits::kFolderRest after a log in the folder has
 /// changed. Runs it every limits::kFolderInterval in any case, since network folders report no
-/// changes. Ends with the object, after a running call.
+/// changes. For the thread that made it. Ends with the object, after a running call.
 class FolderWatch {
  public:
   /// Errors: io (no inotify left, or no such folder).

@@ -1,5 +1,6 @@
 #include "server/store/kept_points.h"
 
+#include <cassert>
 #include <functional>
 #include <utility>
 
@@ -33,9 +34,11 @@ Result<LevelFile> KeptPoints::put(const std::string& key, Result<LevelFile> made
 }
 
 void KeptPoints::forgetOldest() {
+  assert(!entries_.empty() && entries_.back().bytes <= bytes_);
   bytes_ -= entries_.back().bytes;
   byKey_.erase(entries_.back().key);
   entries_.pop_back();
+  assert(byKey_.size() == entries_.size());
 }
 
 std::uintmax_t KeptPoints::bytes() const {

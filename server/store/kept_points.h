@@ -12,7 +12,8 @@
 
 namespace qtet {
 
-/// The least recently used go when there are too many, or too many bytes.
+/// The least recently used go when there are too many, or too many bytes. Thread-safe: `mutex_`
+/// guards it.
 class KeptPoints final : public KeptAnswers {
  public:
   explicit KeptPoints(std::size_t most = limits::kMaxKeptPoints,

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <tuple>
 #include <vector>
 
@@ -96,6 +97,7 @@ Result<std::unique_ptr<LevelCache>> LevelCache::open(const fs::path& folder,
 }
 
 fs::path LevelCache::pathOf(const std::string& key) const {
+  assert(isKey(key));
   return folder_ / (key + std::string(kSuffix));
 }
 
@@ -107,11 +109,13 @@ void LevelCache::add(const std::string& key, std::uintmax_t bytes) {
   // whoever is sending one has it mapped
   while (bytes_ > maxBytes_ || entries_.size() > maxLevels_)
     discard(std::string(entries_.back().key));
+  assert(byKey_.size() == entries_.size() && open_ <= entries_.size());
 }
 
 void LevelCache::forget(const std::string& key) {
   const auto it = byKey_.find(key);
   if (it == byKey_.end()) return;
+  assert(it->second->bytes <= bytes_ && it->second->open.has_value() <= open_);
   bytes_ -= it->second->bytes;
   open_ -= it->second->open.has_value();
   entries_.erase(it->second);
@@ -125,6 +129,7 @@ void LevelCache::discard(const std::string& key) {
 }
 
 void LevelCache::hold(Entry& entry, const LevelFile& level, const FileIdentity& file) {
+  assert(level.bytes.size() == entry.bytes);
   open_ += !entry.open.has_value();
   entry.open = level, entry.file = file;
   for (auto it = entries_.rbegin(); open_ > limits::kMaxOpenLevels; ++it)

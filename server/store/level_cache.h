@@ -18,7 +18,8 @@
 
 namespace qtet {
 
-/// Thread-safe. The folder is this object's alone: nobody else may write into its files.
+/// Thread-safe: `mutex_` guards the entries; files are written and read without it. The folder is
+/// this object's alone: nobody else may write into its files.
 class LevelCache final : public KeptAnswers {
  public:
   /// Makes the folder if it does not exist. Takes over the levels of an earlier run, and removes

@@ -1,6 +1,7 @@
 #include "server/store/level_jobs.h"
 
 #include <algorithm>
+#include <cassert>
 #include <condition_variable>
 #include <deque>
 #include <map>
@@ -78,6 +79,7 @@ bool LevelJobs::State::workOnce(bool waits) {
 }
 
 JobPointer LevelJobs::State::takeNext() {
+  assert(!waiting.empty());
   // an address that wants nothing may have gone, and another one lie in its place
   std::erase_if(turns, [this](const auto& entry) {
     return std::ranges::none_of(waiting, [&](const JobPointer& job) {
@@ -132,6 +134,7 @@ void LevelJobs::State::withdraw(const JobPointer& job, std::uint64_t subscriptio
   gone = std::move(it->second.done);
   job->subscribers.erase(it);
   if (!job->subscribers.empty()) return;
+  assert(ending || (jobs.contains(job->key) && jobs.at(job->key) == job));
   ++counts.cancelled;
   job->stop.request_stop();
   jobs.erase(job->key);
@@ -199,6 +202,7 @@ bool LevelJobs::keeps(const LevelRequest& request) const {
 
 std::expected<LevelJobs::Subscription, LevelRefusal> LevelJobs::submit(const LevelRequest& request,
                                                                        Done done, Address from) {
+  assert(request.mesh && done);
   std::string key = request.key();
   const std::scoped_lock lock(state_->mutex);
   if (!state_->jobs.contains(key)) {

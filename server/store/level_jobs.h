@@ -37,7 +37,8 @@ enum class LevelRefusal : std::uint8_t {
   kGone,
 };
 
-/// Addresses take turns: a job of one waits for one of each other at most, beside those that run.
+/// Thread-safe: a mutex guards the queue; makers and `done` run without it. Addresses take turns: a
+/// job of one waits for one of each other at most, beside those that run.
 class LevelJobs {
  public:
   /// The origin of a subscription, identified by an object's address in memory; nullptr: an origin

@@ -8,20 +8,16 @@
 #include "codec/mesh/mesh.h"
 #include "codec/picture/poster.h"
 #include "codec/refine/write_level.h"
-#include "server/store/preview.h"
 #include "server/store/series_maker.h"
 
 namespace qtet {
 namespace {
 
-/// A file that is made of the whole level: a picture, or one that needs the lattice.
+/// A file that is made of the whole level: the poster, or one that needs the lattice.
 Result<Bytes> fileOf(LatticeMesh& mesh, const LevelRequest& request) {
   for (std::size_t f = 0; f < request.names.size(); ++f) mesh.fields[f].name = request.names[f];
-  switch (request.form) {
-    case LevelForm::kPng: return previewPng(mesh);
-    case LevelForm::kWebp: return posterWebp(mesh, request.mesh->manifest);
-    default: return meshFileBytes(mesh, "." + std::string(formName(request.form)));
-  }
+  if (request.form == LevelForm::kWebp) return posterWebp(mesh, request.mesh->manifest);
+  return meshFileBytes(mesh, "." + std::string(formName(request.form)));
 }
 
 Status sendWhole(const Result<Bytes>& file, const ByteSink& sink) {

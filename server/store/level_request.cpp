@@ -11,7 +11,7 @@
 namespace qtet {
 namespace {
 
-constexpr std::array<std::pair<LevelForm, std::string_view>, 11> kForms = {{
+constexpr std::array<std::pair<LevelForm, std::string_view>, 10> kForms = {{
     {LevelForm::kVtu, "vtu"},
     {LevelForm::kVtk, "vtk"},
     {LevelForm::kMsh, "msh"},
@@ -19,7 +19,6 @@ constexpr std::array<std::pair<LevelForm, std::string_view>, 11> kForms = {{
     {LevelForm::kGlb, "glb"},
     {LevelForm::kDrc, "drc"},
     {LevelForm::kUsda, "usda"},
-    {LevelForm::kPng, "png"},
     {LevelForm::kWebp, "webp"},
     {LevelForm::kJson, "json"},
     {LevelForm::kCsv, "csv"},
@@ -48,7 +47,6 @@ std::optional<LevelForm> formOfName(std::string_view name) {
 
 bool isMeshFile(LevelForm form) {
   switch (form) {
-    case LevelForm::kPng:
     case LevelForm::kWebp:
     case LevelForm::kJson:
     case LevelForm::kCsv: return false;

@@ -12,8 +12,8 @@
 
 namespace qtet {
 
-/// The kinds of file of codec/files/mesh_file.h, the preview, the poster, and the values of a
-/// series at a point.
+/// The kinds of file of codec/files/mesh_file.h, the poster, and the values of a series at a
+/// point.
 enum class LevelForm : std::uint8_t {
   kVtu,
   kVtk,
@@ -22,7 +22,6 @@ enum class LevelForm : std::uint8_t {
   kGlb,
   kDrc,
   kUsda,
-  kPng,
   kWebp,
   kJson,
   kCsv,

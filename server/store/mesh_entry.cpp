@@ -3,12 +3,14 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "server/store/descriptions.h"
 
 namespace qtet {
 
 void OpenMeshes::add(const EntryPointer& entry) {
+  assert(entry);
   EntryPointer oldest;
   {
     const std::scoped_lock lock(mutex_);
@@ -25,6 +27,7 @@ void OpenMeshes::add(const EntryPointer& entry) {
     const auto least = std::ranges::min_element(held_, {}, use);
     oldest = least->lock();
     held_.erase(least);
+    assert(held_.size() <= most_);
   }
   if (oldest) oldest->release();  // without the lock: closing a file may take its time
 }
@@ -87,6 +90,7 @@ Result<MeshPointer> MeshEntry::tryToOpen() const {
 }
 
 void MeshEntry::hold(MeshPointer mesh) const {
+  assert(mesh && mesh->log.digest() == digest);
   lastUse_ = openMeshes_->nextUse();
   {
     const std::scoped_lock lock(mutex_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
@@ -19,11 +20,12 @@ namespace qtet {
 class MeshEntry;
 using EntryPointer = std::shared_ptr<const MeshEntry>;
 
-/// Which logs are held open, the least recently used of which is let go for another. Thread-safe.
+/// Which logs are held open, the least recently used of which is let go for another. Thread-safe:
+/// `mutex_` guards the list.
 class OpenMeshes {
  public:
   /// At least one.
-  explicit OpenMeshes(std::size_t most) : most_(most) {}
+  explicit OpenMeshes(std::size_t most) : most_(most) { assert(most > 0); }
 
   /// A number above all that it gave before.
   [[nodiscard]] std::uint64_t nextUse() { return ++uses_; }

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cassert>
 #include <condition_variable>
 #include <mutex>
 #include <set>
@@ -176,6 +177,7 @@ void MeshStore::State::settle(const Found& found, Catalogue& next, FolderChange&
 }
 
 void MeshStore::State::retire(const EntryPointer& old, Catalogue& next) {
+  assert(old);
   if (!old->pin()) return;  // its file has gone: it cannot be had any more
   retired.emplace_back(Clock::now() + limits::kReplacedLogTime, old);
   if (!next.logs.contains(Catalogue::LogOf()(old))) next.logs.put(old);
@@ -261,6 +263,7 @@ Status MeshStore::State::beginNames() {
 
 /// REQUIRES: `names`.
 Result<FolderChange> MeshStore::State::lookAtNames(Clock::time_point end, std::string_view first) {
+  assert(names);
   const Result<bool> whole = names->read(end);
   if (!whole) {
     names.reset();

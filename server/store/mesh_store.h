@@ -54,7 +54,8 @@ struct StoreOptions {
   [[nodiscard]] static std::size_t descriptorsForLogs();
 };
 
-/// Thread-safe but for moves.
+/// Thread-safe but for moves: readers take an immutable snapshot, which a mutex guards while it is
+/// replaced.
 class MeshStore {
  public:
   /// No folder and no meshes.

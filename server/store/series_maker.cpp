@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -202,6 +203,8 @@ SeriesMaker::~SeriesMaker() = default;
 void SeriesMaker::forget() { kept_ = nullptr; }
 
 Result<Bytes> SeriesMaker::make(const LevelRequest& request, const std::stop_token& stop) {
+  assert(request.point && !request.fields.empty());
+  assert(request.form == LevelForm::kJson || request.form == LevelForm::kCsv);
   const Manifest& manifest = request.mesh->manifest;
   const Lattice lattice{manifest.latticeBits, manifest.latticeStep, manifest.latticeOrigin};
   // After an error nothing half decoded is kept.

@@ -42,6 +42,7 @@ struct Descriptor {
   const int number;  ///< -1: it could not be opened
 };
 
+/// A log that is served. Immutable but for its texts and keys, each of which is made once.
 struct ServedMesh {
   std::string id;  ///< the file's name without `.qtet`
   LogFile log;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <type_traits>
@@ -34,7 +36,10 @@ class SortedBlocks {
     using reference = const Value&;
 
     Iterator() = default;
-    reference operator*() const { return (**block_)[index_]; }
+    reference operator*() const {
+      assert(block_ != nullptr && index_ < (*block_)->size());
+      return (**block_)[index_];
+    }
     pointer operator->() const { return &**this; }
     Iterator& operator++() {
       if (++index_ == (*block_)->size()) *this = Iterator(block_ + 1, 0);
@@ -53,6 +58,7 @@ class SortedBlocks {
 
   /// REQUIRES: sorted by their keys, each key once.
   [[nodiscard]] static SortedBlocks ofSorted(std::vector<Value> values) {
+    assert(std::ranges::adjacent_find(values, std::not_fn(std::less()), KeyOf()) == values.end());
     SortedBlocks out;
     out.size_ = values.size();
     for (std::size_t at = 0; at < values.size(); at += kMaxBlock) {
@@ -111,6 +117,7 @@ class SortedBlocks {
     const auto place = placeIn(**found, key);
     if (KeyOf()(*place) != key) return false;
     const auto at = blocks_.begin() + (found - blocks_.begin());
+    assert(size_ > 0);
     --size_;
     if ((*at)->size() == 1) {
       blocks_.erase(at);

@@ -40,6 +40,7 @@ class ClientBlocks {
   [[nodiscard]] const FieldTurns& turns() const { return turns_; }
   /// Those of a turn, ascending. The first one begins with the mesh.
   [[nodiscard]] std::vector<std::size_t> columnsOf(std::size_t turn) const {
+    assert(turn < turns_.size());
     std::vector<std::size_t> out;
     if (turn == 0) out = {kStructurePart, kPositionsPart};
     for (const std::uint32_t f : turns_[turn])
@@ -59,6 +60,7 @@ class ClientBlocks {
   }
   /// The first `chunks` chunks. REQUIRES: the log has as many.
   void addLeading(std::uint32_t chunks, std::size_t column) {
+    assert(chunks <= index_->chunks.size());
     for (std::uint32_t c = 0; c < chunks; ++c) add(c, column);
   }
   /// Parts first..first+count-1 of a chunk. REQUIRES: parts of columns.

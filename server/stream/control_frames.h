@@ -25,7 +25,10 @@ struct ControlFrame {
 class ControlFrames {
  public:
   /// Answers a ping. Only the last one that is not answered yet needs an answer.
-  void pong(std::string payload) { pong_ = std::move(payload); }
+  void pong(std::string payload) {
+    assert(payload.size() <= 125);
+    pong_ = std::move(payload);
+  }
   void ping() { ping_ = true; }
   /// Closes by our own decision, unless a close frame is due or out already.
   /// `reason` is for people: UTF-8, at most 123 bytes (RFC 6455, 5.5).

@@ -1,6 +1,7 @@
 #include "server/stream/field_turns.h"
 
 #include <algorithm>
+#include <cassert>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,7 @@ namespace {
 
 /// Adds the fields of the instants that are wished to a turn each.
 void addInstants(const Series& series, const StreamTime& time, FieldTurns& turns) {
+  assert(series.fields.size() == series.times.size());
   const std::size_t count = std::min<std::size_t>(time.ahead + 1, series.times.size());
   const std::size_t first = nearestTime(series.times, time.at);
   if (turns.size() < count) turns.resize(count);
@@ -55,6 +57,7 @@ std::expected<FieldTurns, std::string> fieldTurns(std::span<const std::string> n
                                                   const FieldKeys& keys,
                                                   std::span<const Series> series,
                                                   std::span<const FieldShape> shapes) {
+  assert(keys.size() == shapes.size());
   FieldTurns turns(1);
   std::set<std::string_view> known;
   std::set<std::uint32_t> taken;
@@ -66,6 +69,7 @@ std::expected<FieldTurns, std::string> fieldTurns(std::span<const std::string> n
     }
     const auto meant = time ? keys.seriesOfKey(name) : std::nullopt;
     if (!meant) return std::unexpected(name);
+    assert(*meant < series.size());
     if (taken.insert(*meant).second) addInstants(series[*meant], *time, turns);
   }
   if (!time) {

@@ -13,6 +13,7 @@ void FrameGather::consume(std::size_t bytes) {
     parts_.pop_front();
   }
   if (bytes == 0) return;
+  assert(!parts_.empty());  // nobody takes more than there is
   parts_.front().bytes += bytes;
   parts_.front().file.offset += bytes;
 }

@@ -44,7 +44,7 @@ class FrameGather {
   }
   /// REQUIRES: not full().
   void add(OutgoingFrame frame) {
-    assert(!full());
+    assert(!full() && frame.mesh && frame.header.size == frame.payload.size());
     items_.push_back({{}, 0, {}, std::move(frame.mesh)});
     Item& item = items_.back();
     const WebSocketHeader header(WebSocketHeader::kBinary,
@@ -56,6 +56,7 @@ class FrameGather {
     const int file = item.mesh->descriptor->number;
     const auto offset =
         static_cast<std::uint64_t>(frame.payload.data() - item.mesh->log.bytes().data());
+    assert(offset + frame.payload.size() <= item.mesh->log.bytes().size());
     append(item, boost::asio::const_buffer(frame.payload.data(), frame.payload.size()),
            {file, offset});
   }

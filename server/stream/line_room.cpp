@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace qtet {
@@ -73,6 +74,7 @@ std::size_t LineRoom::room(const LineFigures& line, Clock::time_point now) {
   if (!queued && line.rtt.count() > 0)
     rate = std::max(rate, static_cast<double>(line.underWay) / Seconds(line.rtt).count());
   if (rate > 0) piece_ = static_cast<std::size_t>(std::max(rate * kAhead.count(), kMinPiece));
+  assert(piece_ > 0);
   const Seconds held = queued ? kAhead + Seconds(line.minRtt) : kAhead;
   const double bound =
       std::max(rate * held.count(), static_cast<double>(kMinPackets * line.packetBytes));

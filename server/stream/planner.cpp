@@ -27,6 +27,7 @@ std::optional<BlockRun> StreamPlan::next(const ClientBlocks& blocks) {
   assert(index_ != nullptr);
   if (!seek(blocks)) return std::nullopt;
   const auto partHere = [&] { return blocks.partOf(columns_[column_]); };
+  assert(chunk_ <= lastChunk_ && column_ < columns_.size());
   BlockRun out{chunk_, static_cast<std::uint16_t>(partHere()), 1};
   std::uint64_t bytes = index_->block(chunk_, partHere()).size;
   for (++column_; seek(blocks); ++column_, ++out.parts) {
@@ -51,8 +52,10 @@ std::uint64_t lackingBytes(const LogIndex& index, const ClientBlocks& blocks,
 FileSlice sliceOf(const LogIndex& index, const BlockRun& run) {
   if (run.firstPart == FrameHeader::kHead)
     return {0, static_cast<std::uint32_t>(index.headBytes())};
+  assert(run.parts > 0 && std::uint32_t{run.firstPart} + run.parts <= index.parts());
   const BlockEntry& first = index.block(run.chunk, run.firstPart);
   const BlockEntry& last = index.block(run.chunk, std::uint32_t{run.firstPart} + run.parts - 1);
+  assert(first.offset <= last.offset + last.size && last.offset + last.size <= index.fileBytes);
   return {first.offset, static_cast<std::uint32_t>(last.offset + last.size - first.offset)};
 }
 

@@ -1,6 +1,7 @@
 #include "server/stream/stream_protocol.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "codec/log/target_choice.h"
 #include "proto/sentence.h"
@@ -121,7 +122,10 @@ std::uint64_t StreamProtocol::plan(Stream& stream) {
   std::uint64_t planned = lackingBytes(index, stream.blocks, stream.lastChunk);
   if (!stream.hasHead) planned += sliceOf(index, head).size;
   for (const auto& [place, sent] : stream.begun)
-    if (place.first <= stream.lastChunk) planned -= sent;
+    if (place.first <= stream.lastChunk) {
+      assert(sent <= planned);
+      planned -= sent;
+    }
   return planned;
 }
 
@@ -132,6 +136,7 @@ void StreamProtocol::catchUp() {
 }
 
 void StreamProtocol::handle(const CreditMessage& message) {
+  assert(message.bytes <= kMaxCredit && (!stream_ || stream_->credit <= std::int64_t{kMaxCredit}));
   // Both lie below 2^53, so the sum cannot overflow; the bound keeps it so.
   if (stream_)
     stream_->credit = std::min(stream_->credit + static_cast<std::int64_t>(message.bytes),
@@ -185,6 +190,7 @@ void StreamProtocol::refuse(const char* code, std::string detail) {
 }
 
 std::optional<Outgoing> StreamProtocol::next(std::size_t room, std::size_t piece) {
+  assert(piece > 0);
   catchUp();
   if (!answers_.empty()) {
     std::string text = std::move(answers_.front());
@@ -203,10 +209,12 @@ std::optional<Outgoing> StreamProtocol::next(std::size_t room, std::size_t piece
 }
 
 OutgoingFrame StreamProtocol::nextFrame(Stream& stream, std::size_t room, std::size_t piece) const {
+  assert(stream.nextRun && !stream.paused && stream.credit > 0);
   BlockRun run = *stream.nextRun;
   const bool head = run.firstPart == FrameHeader::kHead;
   const bool whole = head || stream.rest(run) <= piece;
   const FileSlice slice = whole ? takeBlocks(stream, run, room) : takePiece(stream, run, piece);
+  assert(std::uint64_t{slice.offset} + slice.size <= stream.mesh->log.bytes().size());
   stream.credit -= slice.size;
   return {{opens_, run.chunk, run.firstPart, run.parts, slice.size},
           stream.mesh->log.bytes().subspan(slice.offset, slice.size),
@@ -214,6 +222,7 @@ OutgoingFrame StreamProtocol::nextFrame(Stream& stream, std::size_t room, std::s
 }
 
 FileSlice StreamProtocol::takePiece(Stream& stream, BlockRun& run, std::size_t piece) {
+  assert(piece < stream.rest(run));  // the last bytes go with the block's own frame
   const std::uint64_t offset = stream.mesh->log.index().block(run.chunk, run.firstPart).offset;
   run.parts = FrameHeader::kPiece;
   std::uint32_t& sent = stream.begun[{run.chunk, run.firstPart}];
@@ -228,6 +237,7 @@ FileSlice StreamProtocol::takeBlocks(Stream& stream, BlockRun& run, std::size_t 
   for (std::uint16_t i = 1; i < run.parts; ++i)
     if (stream.sentOf(run.chunk, std::uint32_t{run.firstPart} + i) > 0) run.parts = i;
   while (run.parts > 1 && sliceOf(index, run).size - sent > room) --run.parts;
+  assert(run.parts <= stream.nextRun->parts);
   stream.nextRun->firstPart += run.parts;
   stream.nextRun->parts -= run.parts;
   if (run.firstPart == FrameHeader::kHead) {

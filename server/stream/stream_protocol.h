@@ -2,6 +2,7 @@
 // socket, without the socket.
 #pragma once
 
+#include <cassert>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -92,8 +93,9 @@ class StreamProtocol {
     }
     /// Bytes to come of a run's first block.
     [[nodiscard]] std::uint32_t rest(const BlockRun& run) const {
-      return mesh->log.index().block(run.chunk, run.firstPart).size -
-             sentOf(run.chunk, run.firstPart);
+      const std::uint32_t size = mesh->log.index().block(run.chunk, run.firstPart).size;
+      assert(sentOf(run.chunk, run.firstPart) <= size);
+      return size - sentOf(run.chunk, run.firstPart);
     }
   };
   /// Returns the payload bytes to come.

@@ -1,5 +1,6 @@
 #include "server/stream/stream_report.h"
 
+#include <cassert>
 #include <utility>
 
 namespace qtet {
@@ -42,6 +43,7 @@ void StreamReport::wroteFrames(std::size_t frames, Clock::time_point now) {
 }
 
 void StreamReport::stalled(Clock::duration time) {
+  assert(time >= Clock::duration());
   entry_.stalled += time;
   metrics_.countStreamStall(time);
 }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -91,7 +92,9 @@ void Access::replace(Tokens tokens) {
 
 std::optional<std::string> Access::giveTicket(const SecretDigest& token, Clock::time_point now) {
   std::string ticket = issuer_ + endText() + randomSecret() + hexOf(token);
+  assert(ticket.size() == kSignedText);  // as takeForeign() takes it apart
   ticket += macOf(ticket, ticketKey_);
+  assert(ticket.size() == kSignedText + kMacText);
   const std::scoped_lock lock(mutex_);
   std::erase_if(tickets_, [&](const auto& entry) { return entry.second.end <= now; });
   const auto unused = std::ranges::count_if(

@@ -18,7 +18,7 @@ namespace qtet {
 /// Says of a mesh's name whether somebody may read it; an empty one: everything.
 using MayRead = std::function<bool(const std::string& mesh)>;
 
-/// Thread-safe. Must outlive the MayRead that it gives.
+/// Thread-safe: `mutex_` guards tokens and tickets. Must outlive the MayRead that it gives.
 class Access {
  public:
   /// Not the system clock: its jumps would end a ticket early or keep it too long.

@@ -46,7 +46,7 @@ struct StreamEntry {
   std::optional<std::chrono::nanoseconds> firstFrame{};  ///< of the first `open`
 };
 
-/// Thread-safe.
+/// Thread-safe: `mutex_` guards which logger is used; spdlog guards each logger.
 class AccessLog {
  public:
   /// `path` is a file, appended to, or "-" for the standard output. Errors: io.

@@ -1,3 +1,4 @@
+#include <cassert>
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include "server/wire/address_limits.h"
@@ -54,6 +55,7 @@ struct AddressLimits::Client::Address {
 
 AddressLimits::Client::~Client() {
   const std::scoped_lock lock(address_->mutex);
+  assert(address_->connections > 0);
   --address_->connections;
 }
 
@@ -71,6 +73,7 @@ void AddressLimits::Client::charge(std::chrono::nanoseconds time, Clock::time_po
   if (bounds_.requestsPerSecond == 0) return;
   const std::scoped_lock lock(address_->mutex);
   address_->forgive(now, bounds_.requestsPerSecond);
+  assert(time >= std::chrono::nanoseconds());
   address_->owed += time;
 }
 

@@ -17,7 +17,8 @@ class address;
 
 namespace qtet {
 
-/// Thread-safe. An IPv6 client counts as its /64, which is what a provider gives to one.
+/// Thread-safe: a mutex guards the addresses, and each address its own figures. An IPv6 client
+/// counts as its /64, which is what a provider gives to one.
 class AddressLimits {
  public:
   using Clock = std::chrono::steady_clock;

@@ -12,6 +12,7 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <cassert>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
@@ -149,6 +150,7 @@ bool ClientSocket::becomePlainForPlainHttp() {
 }
 
 std::size_t ClientSocket::read(std::span<char> into, error_code& ec) {
+  assert(!into.empty());
   if (!tls_) {
     const ssize_t count = ::recv(socket_.native_handle(), into.data(), into.size(), 0);
     if (count > 0) return static_cast<std::size_t>(count);
@@ -170,6 +172,7 @@ std::size_t ClientSocket::read(std::span<char> into, error_code& ec) {
 }
 
 std::size_t ClientSocket::write(std::span<const iovec> parts, bool more, error_code& ec) {
+  assert(!parts.empty());
   if (!tls_) {
     msghdr message{};
     message.msg_iov = const_cast<iovec*>(parts.data());

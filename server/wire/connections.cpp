@@ -1,3 +1,4 @@
+#include <cassert>
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include "server/wire/connections.h"
@@ -25,6 +26,7 @@ std::shared_ptr<Connection> Connections::enter(boost::asio::any_io_executor exec
                                     delete connection;
                                   });
   open_.emplace(entered_, out);
+  assert(open_.size() <= most_);
   return out;
 }
 
@@ -37,7 +39,8 @@ void Connections::leave(std::uint64_t number) {
   std::function<void()> whenEmpty;
   {
     const std::scoped_lock lock(mutex_);
-    open_.erase(number);
+    [[maybe_unused]] const std::size_t gone = open_.erase(number);
+    assert(gone == 1);
     if (ending_ && open_.empty()) whenEmpty = std::exchange(whenEmpty_, nullptr);
   }
   if (whenEmpty) whenEmpty();

@@ -31,7 +31,7 @@ class Connection {
   bool ending_ = false;
 };
 
-/// Thread-safe. Must outlive the connections that it hands out.
+/// Thread-safe: `mutex_` guards the list. Must outlive the connections that it hands out.
 class Connections {
  public:
   explicit Connections(std::size_t most) : most_(most) {}

@@ -19,6 +19,7 @@ struct DocumentForm {
   HeaderLines headers{};
 };
 
+/// A text in all codings. Immutable after construction.
 struct Document {
   DocumentForm identity{};
   std::optional<DocumentForm> gzip{}, zstd{};  ///< nullopt: compressing does not pay

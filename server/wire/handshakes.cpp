@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <cassert>
 
 namespace qtet {
 
@@ -32,10 +33,12 @@ void Handshakes::admitNextOf(const void* address) {
   const auto found = addresses_.find(address);
   if (found == addresses_.end()) return;
   auto& [admitted, aside] = found->second;
+  assert(admitted > 0);
   --admitted;
   if (!aside.empty()) {
     const EntryPointer next = aside.front();
     aside.pop_front();
+    assert(aside_ > 0);
     --aside_;
     admit(next);
     wake(next);
@@ -45,6 +48,7 @@ void Handshakes::admitNextOf(const void* address) {
 }
 
 void Handshakes::displace(const EntryPointer& entry) {
+  assert(entry->state == State::kHolds);
   open_.erase(entry->at);
   entry->state = State::kDisplaced;
   ++displaced_;
@@ -89,6 +93,7 @@ std::optional<Handshakes::Clock::time_point> Handshakes::enter(const EntryPointe
   entry->state = State::kHolds;
   entry->since = now;
   open_.splice(open_.end(), waiting_, entry->at);
+  assert(open_.size() <= bounds_.most);
   wakeFirst();
   return std::nullopt;
 }

@@ -23,7 +23,7 @@ namespace qtet {
 /// that has kept one for longer than `patience` loses it to the first in line. So clients that
 /// begin and do not go on cannot block others for longer. An address has a bounded number of
 /// clients with a place or in line; its further ones stand aside, and block nobody else.
-/// Thread-safe; must outlive its clients.
+/// Thread-safe: `mutex_` guards all lines. Must outlive its clients.
 class Handshakes {
  public:
   using Clock = std::chrono::steady_clock;

@@ -23,7 +23,7 @@ HeaderLines::HeaderLines(std::initializer_list<Line> lines) {
 }
 
 void HeaderLines::add(std::string_view name, std::string_view value) {
-  assert(isClean(name) && isClean(value));
+  assert(!name.empty() && isClean(name) && isClean(value));
   text_.append(name).append(kBetween).append(value).append(kEnd);
 }
 

@@ -5,6 +5,7 @@
 #endif
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 
@@ -41,6 +42,7 @@ double secondsOf(const std::atomic<std::uint64_t>& nanoseconds) {
 }  // namespace
 
 void Metrics::Histogram::count(std::chrono::nanoseconds time) {
+  assert(time.count() >= 0);
   nanoseconds_.fetch_add(static_cast<std::uint64_t>(time.count()), std::memory_order_relaxed);
   const double seconds = std::chrono::duration<double>(time).count();
   const auto bucket =
@@ -66,6 +68,7 @@ std::string Metrics::Histogram::text(const std::string& name, const std::string&
 
 void Metrics::countRequest(const RequestKind& kind, unsigned status, std::uint64_t bytes,
                            std::chrono::nanoseconds time, Refusal refusal) {
+  assert(kind.method < kMethodLabels.size());
   byStatus_[std::min<std::size_t>(status, kStatuses - 1)].fetch_add(1, std::memory_order_relaxed);
   bytes_.fetch_add(bytes, std::memory_order_relaxed);
   if (kind.isUpload() && status >= 400) failedUploads_.fetch_add(1, std::memory_order_relaxed);

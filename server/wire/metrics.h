@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -14,7 +15,7 @@
 
 namespace qtet {
 
-/// Thread-safe; relaxed, since every figure stands for itself.
+/// Thread-safe: figures are atomic and relaxed, since every figure stands for itself.
 class Metrics {
  public:
   /// `refusal`: why it was refused, where the status does not say it.
@@ -32,7 +33,10 @@ class Metrics {
     streams_.fetch_add(1, std::memory_order_relaxed);
     openStreams_.fetch_add(1, std::memory_order_relaxed);
   }
-  void endStream() { openStreams_.fetch_sub(1, std::memory_order_relaxed); }
+  void endStream() {
+    [[maybe_unused]] const auto before = openStreams_.fetch_sub(1, std::memory_order_relaxed);
+    assert(before > 0);
+  }
   void countStreamBytes(std::uint64_t bytes) {
     streamBytes_.fetch_add(bytes, std::memory_order_relaxed);
   }

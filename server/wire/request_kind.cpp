@@ -17,8 +17,8 @@ RouteLabel routeOfApi(const RequestTarget& target) {
   if (path[1] != "logs") return RouteLabel::kOther;
   if (path.size() > 3 && path[3] == "levels") return RouteLabel::kLevel;
   if (path.size() > 3 && path[3] == "series") return RouteLabel::kSeries;
-  const bool isPicture = path.size() > 3 && (path[3] == "preview.png" || path[3] == "poster.webp");
-  return isPicture ? RouteLabel::kPreview : RouteLabel::kLog;
+  const bool isPoster = path.size() > 3 && path[3] == "poster.webp";
+  return isPoster ? RouteLabel::kPoster : RouteLabel::kLog;
 }
 
 RouteLabel routeOf(std::string_view text) {

@@ -14,16 +14,16 @@ enum class RouteLabel : std::uint8_t {
   kAdmin,    ///< /livez, /readyz, /metrics, /version
   kMeshes,   ///< /v1/meshes
   kMesh,     ///< /v1/meshes/{id} and below
-  kLog,      ///< /v1/logs/{sha256}/... but levels, series and pictures
+  kLog,      ///< /v1/logs/{sha256}/... but levels, series and poster
   kLevel,    ///< /v1/logs/{sha256}/levels/...
   kSeries,   ///< /v1/logs/{sha256}/series
-  kPreview,  ///< /v1/logs/{sha256}/preview.png and poster.webp
+  kPoster,   ///< /v1/logs/{sha256}/poster.webp
   kTickets,  ///< /v1/tickets
   kStream,   ///< /v1/stream, where it becomes no WebSocket
 };
 inline constexpr std::array<std::string_view, 11> kRouteLabels = {
-    "other", "viewer", "admin",   "meshes",  "mesh",  "log",
-    "level", "series", "preview", "tickets", "stream"};
+    "other", "viewer", "admin",  "meshes",  "mesh",  "log",
+    "level", "series", "poster", "tickets", "stream"};
 /// The last one stands for all others.
 inline constexpr std::array<std::string_view, 7> kMethodLabels = {
     "GET", "HEAD", "PUT", "POST", "DELETE", "OPTIONS", "other"};

@@ -29,7 +29,8 @@ class TlsContext {
   [[nodiscard]] virtual std::chrono::system_clock::time_point expires() const = 0;
 };
 
-/// The context for new connections; SIGHUP brings another one. Thread-safe.
+/// The context for new connections; SIGHUP brings another one. Thread-safe: `mutex_` guards the
+/// pointer.
 class CurrentTls {
  public:
   explicit CurrentTls(std::shared_ptr<const TlsContext> context) : context_(std::move(context)) {}

@@ -14,7 +14,7 @@ class address;  // NOLINT(readability-identifier-naming): as Asio calls it
 
 namespace qtet {
 
-/// Blocks of addresses, as CIDR writes them.
+/// Blocks of addresses, as CIDR writes them. Immutable.
 class Networks {
  public:
   /// "10.0.0.0/8,2001:db8::/32,192.0.2.7": an address alone is a block of one. Errors: bad-value.

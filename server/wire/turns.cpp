@@ -1,3 +1,4 @@
+#include <cassert>
 #include <utility>  // before any Asio header: 1.74 uses std::exchange without it
 
 #include "server/wire/turns.h"
@@ -35,6 +36,7 @@ void Turns::schedule(const asio::any_io_executor& executor) {
 }
 
 void Turns::runFirst(const asio::any_io_executor& executor) {
+  assert(scheduled_ && !waiting_.empty());
   auto first = waiting_.extract(waiting_.begin());
   scheduled_ = false;
   if (!waiting_.empty()) schedule(executor);

@@ -69,6 +69,7 @@ std::expected<std::optional<WebSocketReader::Frame>, CloseCode> WebSocketReader:
 
 std::expected<std::optional<WebSocketReader::Event>, CloseCode> WebSocketReader::control(
     Frame frame) const {
+  assert(frame.last && frame.payload.size() <= kMaxControlBytes);
   if (frame.opcode == Opcode::kPing) return Event{Event::Kind::kPing, std::move(frame.payload)};
   if (frame.opcode == Opcode::kPong) return Event{Event::Kind::kPong, std::move(frame.payload)};
   if (frame.payload.size() == 1) return std::unexpected(CloseCode::kProtocol);
@@ -88,6 +89,7 @@ std::expected<std::optional<WebSocketReader::Event>, CloseCode> WebSocketReader:
   if (continues != kind_.has_value()) return std::unexpected(CloseCode::kProtocol);
   if (!continues) kind_ = frame.opcode;
   if (++fragments_ > limits::kMaxFragments) return std::unexpected(CloseCode::kPolicy);
+  assert(frame.payload.size() <= kMaxMessageBytes - message_.size());  // takeFrame() saw to it
   message_ += frame.payload;
   if (!frame.last) return std::nullopt;
   Event out{*kind_ == Opcode::kText ? Event::Kind::kText : Event::Kind::kBinary,
@@ -129,6 +131,7 @@ WebSocketHeader::WebSocketHeader(std::uint8_t kind, std::uint64_t payloadBytes) 
   put(kind, 1);
   put(lengthBytes == 0 ? payloadBytes : lengthBytes == 2 ? 126 : 127, 1);
   put(payloadBytes, lengthBytes);
+  assert(size == 2 + lengthBytes);
 }
 
 std::string webSocketAccept(std::string_view key) {

@@ -67,7 +67,7 @@ void addReadOptions(boost::program_options::options_description& options, const 
       "only cells where a field lies within bounds: FIELD=LOW:HIGH, either side may be empty")(
       "plot3d", po::value<std::string>(), "the input is a PLOT3D grid; its solution file, or none")(
       "read-seconds", po::value<int>()->default_value(60),
-      "how long VTK's readers and meshio may read nothing, and our own readers may take beside a "
+      "how long VTK and meshio may read nothing, and our own readers may take beside a "
       "second for each 128 kB of the file")(
       "format", po::value<std::string>(),
       "the kind of file, where the name does not say it or is - (the standard input): vtu, msh, "

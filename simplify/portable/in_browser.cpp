@@ -1,15 +1,14 @@
-// The readers that a browser does without: those of VTK, HDF5, meshio, EnSight, and OpenFOAM's
+// The readers that a browser does without: those of HDF5, VTK, meshio, EnSight, and OpenFOAM's
 // folders.
 #include "simplify/read/ensight/read_ensight.h"
 #include "simplify/read/foam/read_foam.h"
+#include "simplify/read/foreign/read_foreign.h"
 #include "simplify/read/hdf/read_vtkhdf.h"
 #include "simplify/read/listed_files.h"
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/process/reading_time.h"
-#include "simplify/read/process/run_meshio.h"
 #include "simplify/read/steps/read_apart.h"
-#include "simplify/read/vtk/run_vtk.h"
 #include "simplify/read/xdmf/read_xdmf.h"
 
 namespace qtet {
@@ -24,10 +23,6 @@ std::unexpected<Error> refusal(const std::filesystem::path& path) {
 
 }  // namespace
 
-Result<std::vector<TimedCells>> runVtk(const std::filesystem::path& path, MeshFormat,
-                                       const ReadOptions&, ReadReport&) {
-  return refusal(path);
-}
 Result<std::vector<TimedCells>> readApart(const std::filesystem::path& path, const ReadOptions&,
                                           ReadReport&, const StepReader&) {
   return refusal(path);
@@ -40,9 +35,13 @@ Result<std::vector<TimedCells>> readFoam(const std::filesystem::path& path, cons
                                          ReadReport&) {
   return refusal(path);
 }
-Status throughMeshio(const MeshioInput& input,
-                     const std::function<Status(const std::filesystem::path&)>&) {
+Result<std::vector<TimedCells>> readForeign(const ForeignInput& input, const ReadOptions&,
+                                            ReadReport&) {
   return refusal(input.path);
+}
+Result<std::vector<TimedCells>> readByVtk(const std::filesystem::path& path, MeshFormat,
+                                          const ReadOptions&, ReadReport&) {
+  return refusal(path);
 }
 
 // The module has no clock. Whoever waits for a page can close it.

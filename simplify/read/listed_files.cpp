@@ -26,13 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using Files = std::vector<fs::path>;
 
-/// Whether a file of this kind may be a step, as for the entries of a .pvd.
-bool mayBeStep(MeshFormat format) {
-  return format < MeshFormat::kGmsh && format != MeshFormat::kPvd &&
-         format != MeshFormat::kSeries && format != MeshFormat::kExodusPieces &&
-         format != MeshFormat::kOpenFoam && format != MeshFormat::kPlot3d;
-}
-
 Files filesLike(const fs::path& pattern) {
   glob_t found{};
   Files out;
@@ -65,11 +58,11 @@ Result<Files> filesIn(const fs::path& folder) {
     const MeshFormat format = formatOf(name);
     std::error_code unknown;
     if (entry.is_directory(unknown)) continue;
-    if (format == MeshFormat::kPvd || format == MeshFormat::kSeries)
+    if (traitsOf(format).isSeries)
       return badFile(folder,
                      "it has " + name.string() + ", which lists files with their times; give that");
     const auto parts = numberedName(name);
-    if (mayBeStep(format))
+    if (traitsOf(format).mayBeStep)
       families[parts ? parts->before + "*" + parts->behind : name.string()].push_back(entry.path());
     else
       others.push_back(name.string());
@@ -115,7 +108,7 @@ Status checkKinds(const Files& files, const fs::path& path) {
       return badFile(path, file.string() +
                                " is a piece of a parallel result; give it alone, and all others "
                                "are read with it");
-    if (!mayBeStep(format))
+    if (!traitsOf(format).mayBeStep)
       return badFile(path, file.string() +
                                " cannot be a step: files of VTK alone can; convert each to .vtu "
                                "with qtet convert");

@@ -1,29 +1,21 @@
 #include "simplify/read/read_mesh.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "proto/field_key.h"
 #include "simplify/clean/mend_faces.h"
-#include "simplify/read/abaqus/read_abaqus.h"
 #include "simplify/read/listed_files.h"
-#include "simplify/read/nastran/read_nastran.h"
-#include "simplify/read/options/byte_order_mark.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/options/mesh_format.h"
 #include "simplify/read/options/select_fields.h"
-#include "simplify/read/options/time_steps.h"
 #include "simplify/read/parts/own_points.h"
 #include "simplify/read/parts/piece_files.h"
 #include "simplify/read/parts/weld_points.h"
 #include "simplify/read/process/inflate_file.h"
-#include "simplify/read/process/run_meshio.h"
 #include "simplify/read/read_steps.h"
 #include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
-#include "simplify/read/text/text_readers.h"
 #include "simplify/read/unused_points.h"
-#include "simplify/read/vtu/grid_parts.h"
-#include "simplify/read/xdmf/read_xdmf.h"
 
 namespace qtet {
 namespace {
@@ -34,42 +26,6 @@ ReadOptions withThresholdField(ReadOptions options) {
   return options;
 }
 
-/// The first character of the file's text; 0: there is none.
-char firstCharacterOf(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  passMark(file);
-  char first = 0;
-  file >> first;
-  return file ? first : '\0';
-}
-
-/// Abaqus and AVS share the ending .inp; Abaqus' lines begin with stars.
-bool isAbaqus(const std::filesystem::path& path) {
-  std::error_code code;
-  // opening a pipe would wait for who writes
-  return std::filesystem::is_regular_file(path, code) && firstCharacterOf(path) == '*';
-}
-
-/// Fluent and Gmsh share the ending .msh; Fluent's begins with a parenthesis.
-bool isFluent(const std::filesystem::path& path) { return firstCharacterOf(path) == '('; }
-
-/// Fluent's own files tell cells by their faces, which VTK reads; other programs list the cells'
-/// nodes, which meshio reads.
-bool hasFaces(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t begin = line.find_first_not_of(" \t(");
-    const std::string_view section =
-        begin == std::string::npos ? std::string_view() : std::string_view(line).substr(begin);
-    for (const std::string_view faces : {"13", "2013", "3013"})
-      if (line.starts_with('(') && section.starts_with(faces) &&
-          section.substr(faces.size()).find_first_not_of(" \t(") != std::string_view::npos &&
-          std::string_view(" \t(").find(section[faces.size()]) != std::string_view::npos)
-        return true;
-  }
-  return false;
-}
-
 Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesystem::path& path,
                         const ReadOptions& options, ReadReport& report) {
   if (!steps) return std::unexpected(steps.error());
@@ -78,53 +34,16 @@ Result<CellMesh> joined(Result<std::vector<TimedCells>> steps, const std::filesy
   return joinSteps(std::move(*steps), path, options.fields, report, options.moves);
 }
 
-Result<CellMesh> readThroughMeshio(const std::filesystem::path& path, const std::string& kind,
-                                   const ReadOptions& options, ReadReport& report) {
-  Result<CellMesh> out = CellMesh{};
-  const Status done = throughMeshio({path, kind, options.time, options.patience},
-                                    [&](const std::filesystem::path& file) -> Status {
-                                      out = joined(readSteps(file, formatOf(file), options, report),
-                                                   path, options, report);
-                                      if (!out) return std::unexpected(out.error());
-                                      return {};
-                                    });
-  if (!done) return std::unexpected(done.error());
-  return out;
-}
-
-Result<CellMesh> readFluent(const std::filesystem::path& path, const ReadOptions& options,
-                            ReadReport& report) {
-  if (!hasFaces(path)) return readThroughMeshio(path, "ansys", options, report);
-  return joined(readSteps(path, MeshFormat::kFluent, options, report), path, options, report);
-}
-
 Result<CellMesh> readWhole(const std::filesystem::path& path, const ReadOptions& options,
                            ReadReport& report);
 
 bool isCompressed(const std::filesystem::path& path) { return path.extension() == ".gz"; }
 
-/// A file that names no other file can be read wherever it lies.
-bool standsAlone(MeshFormat format) {
-  switch (format) {
-    case MeshFormat::kVtu:
-    case MeshFormat::kVts:
-    case MeshFormat::kVtr:
-    case MeshFormat::kVti:
-    case MeshFormat::kLegacyVtk:
-    case MeshFormat::kAvsUcd:
-    case MeshFormat::kGmsh:
-    case MeshFormat::kMedit:
-    case MeshFormat::kSu2:
-    case MeshFormat::kUnv: return true;
-    default: return false;
-  }
-}
-
 Result<CellMesh> readCompressed(const std::filesystem::path& path, const ReadOptions& options,
                                 ReadReport& report) {
   const MeshFormat format = formatOf(
       options.format.empty() ? path.stem() : std::filesystem::path("mesh." + options.format));
-  if (!standsAlone(format))
+  if (!traitsOf(format).standsAlone)
     return fail(ErrorCode::kBadInput,
                 path.string() +
                     " is compressed, which is read of .vtu, .vts, .vtr, .vti, .vtk, .inp, .msh, "
@@ -160,43 +79,17 @@ Result<CellMesh> readWhole(const std::filesystem::path& path, const ReadOptions&
   const ReadOptions& options = *withFiles;
   if (!options.listed.files.empty()) return readListed(path, options, report);
   if (isCompressed(path) && !options.plot3d) return readCompressed(path, options, report);
+  const std::filesystem::path named =
+      options.format.empty() ? path : std::filesystem::path("mesh." + options.format);
   const MeshFormat format =
-      options.plot3d
-          ? MeshFormat::kPlot3d
-          : formatOf(options.format.empty() ? path
-                                            : std::filesystem::path("mesh." + options.format));
-  const bool ofAbaqus = format == MeshFormat::kAvsUcd && isAbaqus(path);
-  if (Status checked = checkMeshFile(path, ofAbaqus ? MeshFormat::kOther : format); !checked)
+      options.plot3d ? MeshFormat::kPlot3d : formatOfContent(path, formatOf(named));
+  if (Status checked = checkMeshFile(path, format); !checked)
     return std::unexpected(checked.error());
-  // they have no steps
-  if (ofAbaqus || (format >= MeshFormat::kMedit && format <= MeshFormat::kNastran)) {
-    if (const auto steps = chosenSteps({}, options.time, path, report.notes); !steps)
-      return std::unexpected(steps.error());
-  }
   if (path.extension() == ".qtet")
     return fail(ErrorCode::kBadInput,
                 path.string() +
                     " is a log, which holds a mesh that is simplified already: qtet info tells of "
                     "it, qtet convert gives the mesh back");
-  if (ofAbaqus) return readAbaqus(path, report, options.patience);
-  switch (format) {
-    case MeshFormat::kGmsh:
-      return isFluent(path) ? readFluent(path, options, report)
-                            : readGmsh(path, options.time, report, options.patience);
-    case MeshFormat::kMedit: return readMedit(path, report, options.patience);
-    case MeshFormat::kTetgen: return readTetgen(path, report, options.patience);
-    case MeshFormat::kSu2: return readSu2(path, report, options.patience);
-    case MeshFormat::kUnv: return readUnv(path, report, options.patience);
-    case MeshFormat::kNastran: return readNastran(path, report, options.patience);
-    case MeshFormat::kXdmf: {
-      const Result<XdmfFile> file = XdmfFile::open(path);
-      if (!file) return std::unexpected(file.error());
-      if (!file->isUnderstood()) return readThroughMeshio(path, "xdmf", options, report);
-      break;
-    }
-    case MeshFormat::kOther: return readThroughMeshio(path, options.format, options, report);
-    default: break;
-  }
   return joined(readSteps(path, format, options, report), path, options, report);
 }
 

@@ -1,5 +1,4 @@
-// Reads the formats whose files hold several time steps, blocks or pieces: VTK's, and those of
-// other programs that we or VTK's readers read.
+// The readers of all formats: one table.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +12,13 @@ namespace qtet {
 
 /// The step or steps that `options.time` asks for, all blocks of each in one mesh (join_blocks.h).
 /// They are unchecked beyond what the reader itself checks. Warnings become notes.
-/// Errors: those of the format's own reader and of readApart; not-found (a time that is none; a
-/// file that the file names). REQUIRES: a file that checkMeshFile has passed, of a format before
-/// kGmsh; or kSeries and `options.listed` as withListedFiles gives it. Not thread-safe: readers run
-/// in processes of their own.
+/// `depth` files have named this one. Errors: those of the format's own reader and of readApart;
+/// not-found (a time that is none; a file that the file names). REQUIRES: a file that checkMeshFile
+/// has passed; or kSeries and `options.listed` as withListedFiles gives it. Not thread-safe:
+/// readers run in processes of their own.
 [[nodiscard]] Result<std::vector<TimedCells>> readSteps(const std::filesystem::path& path,
                                                         MeshFormat format,
                                                         const ReadOptions& options,
-                                                        ReadReport& report);
+                                                        ReadReport& report, int depth = 0);
 
 }  // namespace qtet

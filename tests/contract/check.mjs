@@ -26,8 +26,6 @@ const kUnasked = new Set([
   'readLevel 503',
   'readSeries 500',
   'readSeries 503',
-  'readPreview 500',
-  'readPreview 503',
   'readPoster 500',
   'readPoster 503',
   'putMesh 503',
@@ -194,8 +192,7 @@ async function checkAll(port) {
     `${log}/chunks/0`,
     `${log}/fields/Density/chunks/0`,
   ];
-  const pictures = [`${log}/preview.png`, `${log}/poster.webp`];
-  const levels = kForms.map((form) => `${log}/levels/1.${form}`).concat(pictures);
+  const levels = kForms.map((form) => `${log}/levels/1.${form}`).concat(`${log}/poster.webp`);
   const place = `${log}/series?x=0.5&y=0.5&z=0.5&field=Velocity`;
   const series = [place, `${place}&format=csv`];
   for (const path of [...documents, ...binaries, ...levels, ...series]) {
@@ -250,7 +247,6 @@ async function checkAll(port) {
     `${log}/fields/none/chunks/0`,
     `${log}/levels/999.vtu`,
     `${log}/levels/fit.vtu?error=none:1`,
-    `${log}/preview.png?field=none`,
     `${log}/levels/1.vtu?time=0`,
     place.replace('Velocity', 'none'),
     place.replace('x=0.5', 'x=1e9'),
@@ -386,7 +382,7 @@ async function checkTooLarge(port) {
   const expect = expectsOf(port);
   const {digest} = JSON.parse((await expect(200, 'GET', '/v1/meshes/fin')).body);
   const series = 'series?x=0.5&y=0.5&z=0.5&field=Velocity';
-  for (const path of ['levels/0.vtu', series, 'preview.png', 'poster.webp'])
+  for (const path of ['levels/0.vtu', series, 'poster.webp'])
     await expect(413, 'GET', `/v1/logs/${digest}/${path}`);
 }
 

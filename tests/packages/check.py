@@ -15,7 +15,6 @@ OPTIONAL = {
     "mmdebstrap": "makes the Debian of make fresh and make test-deb",
     "debootstrap": "the same",
     "nginx": "tests/contract skips without it",
-    "promtool": "tests/contract skips without it",
     "gcc": "called inside the Debian of make test-deb",
     "pvbatch": "called inside the Debian of make test-deb",
     "pvpython": "ParaView excludes libvtk9-dev on Debian 12",

@@ -220,9 +220,15 @@ TEST(FrameHeader, contradictionsAreRefused) {
   EXPECT_TRUE(FrameHeader::parse(frame({1, 0, 0, 1, 0}, 0)));
   EXPECT_FALSE(FrameHeader::parse(frame({1, 0, 0, 1, 5}, 6)));
   EXPECT_TRUE(FrameHeader::parse(frame({1, 0, 0, FrameHeader::kPiece, 1}, 1)));
-  EXPECT_FALSE(FrameHeader::parse(frame({1, 0, 0, FrameHeader::kPiece, 0}, 0)));
-  EXPECT_FALSE(FrameHeader::parse(frame({1, 1, FrameHeader::kHead, 0, 5}, 5)));
-  EXPECT_FALSE(FrameHeader::parse(frame({1, 0, FrameHeader::kHead, 1, 5}, 5)));
+  constexpr std::size_t kChunkAt = 4, kPartsAt = 10;
+  const auto changed = [](Bytes bytes, std::size_t at, std::uint8_t to) {
+    bytes[at] = to;
+    return bytes;
+  };
+  const Bytes block = frame({1, 0, 0, 1, 0}, 0), head = frame({1, 0, FrameHeader::kHead, 0, 5}, 5);
+  EXPECT_FALSE(FrameHeader::parse(changed(block, kPartsAt, FrameHeader::kPiece)));
+  EXPECT_FALSE(FrameHeader::parse(changed(head, kChunkAt, 1)));
+  EXPECT_FALSE(FrameHeader::parse(changed(head, kPartsAt, 1)));
 }
 
 }  // namespace

@@ -5,10 +5,10 @@
 
 #include "simplify/read/ensight/ensight_values.h"
 #include "simplify/read/options/bad_file.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/process/inflate_file.h"
 #include "simplify/read/steps/join_blocks.h"
 #include "simplify/read/steps/step_reports.h"
-#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {

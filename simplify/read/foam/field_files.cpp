@@ -11,7 +11,7 @@
 
 #include "simplify/read/foam/foam_list.h"
 #include "simplify/read/options/bad_file.h"
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 
 namespace qtet {
 namespace {

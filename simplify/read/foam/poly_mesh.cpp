@@ -10,7 +10,7 @@
 #include "simplify/mesh/split_mix64.h"
 #include "simplify/read/foam/cell_shaper.h"
 #include "simplify/read/foam/foam_list.h"
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 
 namespace qtet {
 namespace {

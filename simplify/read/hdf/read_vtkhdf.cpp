@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 
 namespace qtet {
 namespace {

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <ranges>
 #include <string>
 #include <string_view>
 
@@ -106,33 +107,105 @@ Status checkLegacy(const fs::path& path, const FileEnds& ends) {
                                         "its header; save the volume mesh as .vtu");
 }
 
-struct Ending {
-  std::string_view text;
-  MeshFormat format;
-};
+constexpr auto kFormats = std::to_array<FormatTraits>({
+    {.format = MeshFormat::kVtu,
+     .endings = ".vtu",
+     .root = "UnstructuredGrid",
+     .standsAlone = true,
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kVts,
+     .endings = ".vts",
+     .root = "StructuredGrid",
+     .standsAlone = true,
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kVtr,
+     .endings = ".vtr",
+     .root = "RectilinearGrid",
+     .standsAlone = true,
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kVti,
+     .endings = ".vti",
+     .root = "ImageData",
+     .standsAlone = true,
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kPvtu,
+     .endings = ".pvtu",
+     .root = "PUnstructuredGrid",
+     .mayBePart = true,
+     .mayBeStep = true,
+     .namesPieces = true},
+    {.format = MeshFormat::kPvts,
+     .endings = ".pvts",
+     .root = "PStructuredGrid",
+     .mayBePart = true,
+     .mayBeStep = true,
+     .namesPieces = true},
+    {.format = MeshFormat::kPvtr,
+     .endings = ".pvtr",
+     .root = "PRectilinearGrid",
+     .mayBePart = true,
+     .mayBeStep = true,
+     .namesPieces = true},
+    {.format = MeshFormat::kPvti,
+     .endings = ".pvti",
+     .root = "PImageData",
+     .mayBePart = true,
+     .mayBeStep = true,
+     .namesPieces = true},
+    {.format = MeshFormat::kVtm,
+     .endings = ".vtm .vtmu .vtmb",
+     .root = "vtkMultiBlockDataSet",
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kPvd, .endings = ".pvd", .root = "Collection", .isSeries = true},
+    {.format = MeshFormat::kSeries, .endings = ".series", .isSeries = true},
+    {.format = MeshFormat::kLegacyVtk,
+     .endings = ".vtk",
+     .standsAlone = true,
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kVtkHdf, .endings = ".vtkhdf", .mayBePart = true, .mayBeStep = true},
+    {.format = MeshFormat::kExodus,
+     .endings = ".e .ex2 .exo .exii .g",
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kExodusPieces, .mayBePart = true},
+    {.format = MeshFormat::kEnSight,
+     .endings = ".case .encas",
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kCgns, .endings = ".cgns", .mayBePart = true, .mayBeStep = true},
+    {.format = MeshFormat::kAvsUcd,
+     .endings = ".inp",
+     .standsAlone = true,
+     .mayBePart = true,
+     .mayBeStep = true},
+    {.format = MeshFormat::kOpenFoam, .endings = ".foam", .mayBePart = true},
+    {.format = MeshFormat::kFluent, .endings = ".cas", .mayBePart = true, .mayBeStep = true},
+    {.format = MeshFormat::kXdmf, .endings = ".xdmf .xmf", .mayBePart = true, .mayBeStep = true},
+    {.format = MeshFormat::kPlot3d, .endings = ".xyz", .mayBePart = true},
+    {.format = MeshFormat::kGmsh, .endings = ".msh", .standsAlone = true},
+    {.format = MeshFormat::kMedit, .endings = ".mesh .meshb", .standsAlone = true},
+    {.format = MeshFormat::kTetgen, .endings = ".node .ele"},
+    {.format = MeshFormat::kSu2, .endings = ".su2", .standsAlone = true},
+    {.format = MeshFormat::kUnv, .endings = ".unv", .standsAlone = true},
+    {.format = MeshFormat::kAbaqus},
+    {.format = MeshFormat::kNastran, .endings = ".bdf .fem .nas"},
+    {.format = MeshFormat::kAnsys},
+    {.format = MeshFormat::kOther},
+});
 
-constexpr std::array<Ending, 39> kEndings{{
-    {".vtu", MeshFormat::kVtu},       {".pvtu", MeshFormat::kPvtu},
-    {".pvts", MeshFormat::kPvts},     {".pvtr", MeshFormat::kPvtr},
-    {".pvti", MeshFormat::kPvti},     {".vtm", MeshFormat::kVtm},
-    {".vtmu", MeshFormat::kVtm},      {".vtmb", MeshFormat::kVtm},
-    {".pvd", MeshFormat::kPvd},       {".vts", MeshFormat::kVts},
-    {".vtr", MeshFormat::kVtr},       {".vti", MeshFormat::kVti},
-    {".vtk", MeshFormat::kLegacyVtk}, {".e", MeshFormat::kExodus},
-    {".ex2", MeshFormat::kExodus},    {".exo", MeshFormat::kExodus},
-    {".exii", MeshFormat::kExodus},   {".g", MeshFormat::kExodus},
-    {".case", MeshFormat::kEnSight},  {".encas", MeshFormat::kEnSight},
-    {".cgns", MeshFormat::kCgns},     {".inp", MeshFormat::kAvsUcd},
-    {".foam", MeshFormat::kOpenFoam}, {".msh", MeshFormat::kGmsh},
-    {".mesh", MeshFormat::kMedit},    {".meshb", MeshFormat::kMedit},
-    {".node", MeshFormat::kTetgen},   {".ele", MeshFormat::kTetgen},
-    {".su2", MeshFormat::kSu2},       {".xyz", MeshFormat::kPlot3d},
-    {".series", MeshFormat::kSeries}, {".cas", MeshFormat::kFluent},
-    {".vtkhdf", MeshFormat::kVtkHdf}, {".xdmf", MeshFormat::kXdmf},
-    {".xmf", MeshFormat::kXdmf},      {".unv", MeshFormat::kUnv},
-    {".bdf", MeshFormat::kNastran},   {".fem", MeshFormat::kNastran},
-    {".nas", MeshFormat::kNastran},
-}};
+/// Calls back with each ending and its format until that returns true.
+template <class Visit>
+void forEachEnding(const Visit& visit) {
+  for (const FormatTraits& format : kFormats)
+    for (const auto word : std::views::split(format.endings, ' '))
+      if (visit(std::string_view(word), format.format)) return;
+}
 
 /// NAME.e.4.0 and the like.
 bool isExodusPiece(const fs::path& path) {
@@ -143,6 +216,32 @@ bool isExodusPiece(const fs::path& path) {
          formatOf(path.stem().stem()) == MeshFormat::kExodus;
 }
 
+/// The first character of the file's text; 0: there is none.
+char firstCharacterOf(const fs::path& path) {
+  std::ifstream file(path);
+  passMark(file);
+  char first = 0;
+  file >> first;
+  return file ? first : '\0';
+}
+
+/// Fluent's own files tell cells by their faces, which VTK reads; other programs list the cells'
+/// nodes, which meshio reads.
+bool hasFaces(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t begin = line.find_first_not_of(" \t(");
+    const std::string_view section =
+        begin == std::string::npos ? std::string_view() : std::string_view(line).substr(begin);
+    for (const std::string_view faces : {"13", "2013", "3013"})
+      if (line.starts_with('(') && section.starts_with(faces) &&
+          section.substr(faces.size()).find_first_not_of(" \t(") != std::string_view::npos &&
+          std::string_view(" \t(").find(section[faces.size()]) != std::string_view::npos)
+        return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 MeshFormat formatOf(const fs::path& path) {
@@ -150,35 +249,37 @@ MeshFormat formatOf(const fs::path& path) {
   std::string ending = path.extension().string();
   std::ranges::transform(ending, ending.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto at = std::ranges::find(kEndings, ending, &Ending::text);
-  return at == kEndings.end() ? MeshFormat::kOther : at->format;
+  MeshFormat out = MeshFormat::kOther;
+  forEachEnding([&](std::string_view known, MeshFormat format) {
+    if (known == ending && !ending.empty()) out = format;
+    return out != MeshFormat::kOther;
+  });
+  return out;
+}
+
+const FormatTraits& traitsOf(MeshFormat format) {
+  return *std::ranges::find(kFormats, format, &FormatTraits::format);
+}
+
+MeshFormat formatOfContent(const fs::path& path, MeshFormat named) {
+  std::error_code code;
+  // opening a pipe would wait for who writes
+  if ((named != MeshFormat::kAvsUcd && named != MeshFormat::kGmsh) ||
+      !fs::is_regular_file(path, code))
+    return named;
+  const char first = firstCharacterOf(path);
+  if (named == MeshFormat::kAvsUcd) return first == '*' ? MeshFormat::kAbaqus : named;
+  if (first != '(') return named;
+  return hasFaces(path) ? MeshFormat::kFluent : MeshFormat::kAnsys;
 }
 
 std::string knownEndings() {
   std::string out;
-  for (const Ending& ending : kEndings)
-    out += (out.empty() ? "" : ", ") + std::string(ending.text.substr(1));
+  forEachEnding([&](std::string_view ending, MeshFormat) {
+    out += (out.empty() ? "" : ", ") + std::string(ending.substr(1));
+    return false;
+  });
   return out;
-}
-
-bool namesPieces(MeshFormat format) {
-  return format >= MeshFormat::kPvtu && format <= MeshFormat::kPvti;
-}
-
-std::string_view rootType(MeshFormat format) {
-  switch (format) {
-    case MeshFormat::kVtu: return "UnstructuredGrid";
-    case MeshFormat::kPvtu: return "PUnstructuredGrid";
-    case MeshFormat::kPvts: return "PStructuredGrid";
-    case MeshFormat::kPvtr: return "PRectilinearGrid";
-    case MeshFormat::kPvti: return "PImageData";
-    case MeshFormat::kVtm: return "vtkMultiBlockDataSet";
-    case MeshFormat::kPvd: return "Collection";
-    case MeshFormat::kVts: return "StructuredGrid";
-    case MeshFormat::kVtr: return "RectilinearGrid";
-    case MeshFormat::kVti: return "ImageData";
-    default: return {};
-  }
 }
 
 Status checkMeshFile(const fs::path& path, MeshFormat format) {
@@ -201,8 +302,8 @@ Status checkMeshFile(const fs::path& path, MeshFormat format) {
   const Result<FileEnds> ends = readEnds(path, size);
   if (!ends) return std::unexpected(ends.error());
   if (isUtf16(ends->front)) return utf16Refused(path);
-  if (const std::string_view type = rootType(format); !type.empty())
-    return checkXml(path, *ends, type);
+  if (const std::string_view root = traitsOf(format).root; !root.empty())
+    return checkXml(path, *ends, root);
   if (format == MeshFormat::kAvsUcd) return checkAvs(path);
   return format == MeshFormat::kLegacyVtk ? checkLegacy(path, *ends) : Status{};
 }

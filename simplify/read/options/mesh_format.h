@@ -10,8 +10,12 @@
 
 namespace qtet {
 
+/// The reader of each stands in read_steps.cpp.
 enum class MeshFormat {
   kVtu,
+  kVts,
+  kVtr,
+  kVti,
   kPvtu,
   kPvts,
   kPvtr,
@@ -19,10 +23,8 @@ enum class MeshFormat {
   kVtm,
   kPvd,
   kSeries,
-  kVts,
-  kVtr,
-  kVti,
   kLegacyVtk,  // VTK's own
+  kVtkHdf,
   kExodus,
   kExodusPieces,
   kEnSight,
@@ -30,31 +32,42 @@ enum class MeshFormat {
   kAvsUcd,
   kOpenFoam,
   kFluent,
-  kVtkHdf,
-  kXdmf,    // our own reader, or meshio
-  kPlot3d,  // through VTK
+  kXdmf,
+  kPlot3d,
   kGmsh,
   kMedit,
   kTetgen,
   kSu2,
   kUnv,
-  kNastran,  // our own readers
-  // through meshio, if it knows them
-  kOther,
+  kAbaqus,
+  kNastran,
+  kAnsys,
+  kOther,  // whatever meshio knows
 };
+
+/// What holds for all files of a format.
+struct FormatTraits {
+  MeshFormat format = MeshFormat::kOther;
+  std::string_view endings{};  ///< ".e .exo": those by which its files are known
+  std::string_view root{};     ///< the type that the root of VTK's XML states
+  bool standsAlone = false;    ///< names no other file, so that it may be compressed
+  bool mayBePart = false;      ///< a list of VTK's may name it as a part of a mesh
+  bool mayBeStep = false;      ///< numbered files of it may be a series
+  bool namesPieces = false;    ///< a summary that names the pieces of one mesh
+  bool isSeries = false;       ///< lists files with their times
+};
+[[nodiscard]] const FormatTraits& traitsOf(MeshFormat format);
 
 /// Decides by the name's ending, in small or capital letters; kExodusPieces: by the last two
 /// (piece_files.h).
 [[nodiscard]] MeshFormat formatOf(const std::filesystem::path& path);
 
+/// The format of a file whose ending means `named`. Its first characters tell apart what shares an
+/// ending: Abaqus and AVS, Gmsh, Fluent and ANSYS. A file that cannot be read stays `named`.
+[[nodiscard]] MeshFormat formatOfContent(const std::filesystem::path& path, MeshFormat named);
+
 /// The endings that formatOf knows, as --format takes them: "vtu, pvtu, ...".
 [[nodiscard]] std::string knownEndings();
-
-/// Whether it is a summary of VTK's XML, which names the pieces of one mesh.
-[[nodiscard]] bool namesPieces(MeshFormat format);
-
-/// The type that the root of VTK's XML states, such as UnstructuredGrid; empty: no such format.
-[[nodiscard]] std::string_view rootType(MeshFormat format);
 
 /// Looks at existence, size, first and last bytes; all lines of AVS UCD (check_avs.h). Errors:
 /// not-found (no such file), io (not readable, a folder), truncated (empty, or its end is missing),

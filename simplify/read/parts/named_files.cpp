@@ -6,9 +6,9 @@
 #include <set>
 
 #include "simplify/read/options/bad_file.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/options/time_text.h"
 #include "simplify/read/parts/xml_tree.h"
-#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {
@@ -129,7 +129,7 @@ Result<std::vector<SeriesEntry>> entriesOfPvd(const std::filesystem::path& path)
 
 Result<std::vector<BlockFile>> piecesOf(const std::filesystem::path& path, MeshFormat format) {
   std::unique_ptr<XmlElement> tree;
-  const Result<const XmlElement*> grid = listIn(path, std::string(rootType(format)), tree);
+  const Result<const XmlElement*> grid = listIn(path, std::string(traitsOf(format).root), tree);
   if (!grid) return std::unexpected(grid.error());
   std::vector<BlockFile> out;
   for (const auto& element : (*grid)->children) {
@@ -147,7 +147,7 @@ Result<std::vector<BlockFile>> piecesOf(const std::filesystem::path& path, MeshF
 Result<std::vector<std::string>> statedArrays(const std::filesystem::path& path,
                                               MeshFormat format) {
   std::unique_ptr<XmlElement> tree;
-  const Result<const XmlElement*> grid = listIn(path, std::string(rootType(format)), tree);
+  const Result<const XmlElement*> grid = listIn(path, std::string(traitsOf(format).root), tree);
   if (!grid) return std::unexpected(grid.error());
   std::vector<std::string> out;
   for (const char* section : {"PPointData", "PCellData"}) {

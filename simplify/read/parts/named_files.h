@@ -22,12 +22,12 @@ struct BlockFile {
 };
 
 /// The Source of each Piece that a summary names. Errors: those of readXml; bad-input (no piece, or
-/// one without a file). REQUIRES: namesPieces(format).
+/// one without a file). REQUIRES: traitsOf(format).namesPieces.
 [[nodiscard]] Result<std::vector<BlockFile>> piecesOf(const std::filesystem::path& path,
                                                       MeshFormat format);
 
 /// The names of the arrays of points and cells that a summary states, but for those that mark
-/// ghosts. Errors: those of readXml; bad-input. REQUIRES: namesPieces(format).
+/// ghosts. Errors: those of readXml; bad-input. REQUIRES: traitsOf(format).namesPieces.
 [[nodiscard]] Result<std::vector<std::string>> statedArrays(const std::filesystem::path& path,
                                                             MeshFormat format);
 

@@ -17,8 +17,6 @@
 namespace qtet {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Between two looks at the copy, at first and at most: short trials are not made longer by it.
 constexpr std::chrono::microseconds kFirstPause{200}, kLongestPause{50'000};
 
@@ -43,17 +41,21 @@ void boundMemory() {
   ::setrlimit(RLIMIT_DATA, &data);
 }
 
+bool ProcessWatch::isStuck() {
+  const auto now = std::chrono::steady_clock::now();
+  if (const std::uint64_t moved = bytesMovedBy(process_); moved != moved_)
+    moved_ = moved, last_ = now;
+  return now - last_ > patience_;
+}
+
 std::optional<int> watchProcess(pid_t child, std::chrono::seconds patience) {
-  std::uint64_t moved = 0;
-  Clock::time_point last = Clock::now();
+  ProcessWatch watch(child, patience);
   for (auto pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
     int status = 0;
     const pid_t ended = ::waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
     if (ended < 0 && errno != EINTR) return SIGKILL;  // somebody else has waited for it
-    if (const std::uint64_t now = bytesMovedBy(child); now != moved)
-      moved = now, last = Clock::now();
-    if (Clock::now() - last > patience) {
+    if (watch.isStuck()) {
       ::kill(child, SIGKILL);
       while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
       }

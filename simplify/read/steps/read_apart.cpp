@@ -21,18 +21,19 @@ std::unexpected<Error> trialFailed(TrialEnd end, const std::filesystem::path& pa
                                    std::chrono::seconds patience) {
   switch (end) {
     case TrialEnd::kStuck:
-      return bad(path, "VTK has read nothing of it for " + std::to_string(patience.count()) +
+      return bad(path, "its reader has read nothing of it for " + std::to_string(patience.count()) +
                            " s, so that it seems to wait for what the file does not hold; if it "
                            "is only large, give it longer with `readSeconds`, else export the "
                            "mesh again, best as .vtu");
     case TrialEnd::kOutOfMemory:
       return bad(path,
-                 "VTK wants more memory for it than this machine has: a count in it is wrong, or "
+                 "reading it wants more memory than this machine has: a count in it is wrong, or "
                  "it is too large for this machine; export the mesh again, best as .vtu");
     default:
-      return bad(path,
-                 "VTK crashes on it: its counts contradict each other, or it is too large for this "
-                 "machine; export the mesh again, best as .vtu");
+      return bad(
+          path,
+          "its reader crashes on it: its counts contradict each other, or it is too large for "
+          "this machine; export the mesh again, best as .vtu");
   }
 }
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <tuple>
 
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/text/legacy_numbers.h"
 #include "simplify/read/text/mesh_scanner.h"
 #include "simplify/read/text/text_readers.h"
-#include "simplify/read/vtu/grid_parts.h"
 #include "simplify/read/vtu/old_hexahedra.h"
 
 namespace qtet {

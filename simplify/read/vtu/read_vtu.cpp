@@ -1,13 +1,15 @@
 #include "simplify/read/vtu/read_vtu.h"
 
 #include <algorithm>
+#include <cassert>
 #include <new>
 #include <stdexcept>
 #include <string_view>
 
 #include "proto/limits.h"
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/vtu/old_hexahedra.h"
+#include "simplify/read/vtu/structured_cells.h"
 #include "simplify/read/vtu/vtu_cells.h"
 #include "simplify/read/vtu/vtu_numbers.h"
 #include "simplify/split/higher_cells.h"
@@ -75,6 +77,10 @@ class VtuReader {
 
  private:
   Status readPoints() {
+    if (document_.kind == GridKind::kRectilinear || document_.kind == GridKind::kImage) {
+      out_.pointType = "float64";
+      return addGridPoints(file_, document_, document_.pieces.front(), out_.points);
+    }
     std::vector<Part> parts;
     for (const VtuPiece& piece : document_.pieces) {
       if (piece.points > 0 && !piece.coordinates)
@@ -132,6 +138,14 @@ class VtuReader {
   }
 
   Status readCells() {
+    if (document_.kind != GridKind::kUnstructured) {
+      if (Status done =
+              addGridCells(file_, document_, document_.pieces.front(), out_, rows_, report_);
+          !done)
+        return done;
+      if (rows_.isPartial()) out_.cellIds = rows_.rows();
+      return {};
+    }
     std::uint64_t firstPoint = 0;
     for (const VtuPiece& piece : document_.pieces) {
       if (Status done = readVtuCells(file_, document_, piece, firstPoint, out_, rows_, report_);
@@ -283,6 +297,7 @@ class VtuReader {
 
 Result<CellMesh> readVtu(const VtuFile& file, const VtuDocument& document, const FieldNames& fields,
                          ReadReport& report) {
+  assert(document.kind == GridKind::kUnstructured || document.pieces.size() == 1);
   try {
     return VtuReader(file, document, fields, report).read();
   } catch (const std::bad_alloc&) {

@@ -1,4 +1,4 @@
-// Reads an unstructured grid in VTK's XML (.vtu) without VTK. No file harms the process: every
+// Reads a grid in VTK's XML (.vtu, .vts, .vtr, .vti) without VTK. No file harms the process: every
 // count is compared with the bytes that remain before anything is allocated.
 #pragma once
 
@@ -14,7 +14,8 @@ namespace qtet {
 /// components noted. Ids are narrowed, not checked (checkCellMesh). Errors: bad-input (arrays that
 /// are missing, contradict each other or the counts, or cannot be decoded; the message names the
 /// array and its line), truncated, io, and bad-input where an array does not fit in memory.
-/// REQUIRES: a document of this file, without time steps.
+/// REQUIRES: a document of this file, without time steps. One that is not unstructured has one
+/// piece.
 [[nodiscard]] Result<CellMesh> readVtu(const VtuFile& file, const VtuDocument& document,
                                        const FieldNames& fields, ReadReport& report);
 

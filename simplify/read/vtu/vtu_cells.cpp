@@ -5,11 +5,24 @@
 #include <span>
 #include <string_view>
 
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/vtu/vtu_numbers.h"
 
 namespace qtet {
 namespace {
+
+Result<std::vector<std::int64_t>> wholeArray(const VtuFile& file, const VtuDocument& document,
+                                             const VtuArray& from, std::uint64_t told) {
+  const auto certain = certainNumbers(file, document, from, told);
+  if (!certain) return std::unexpected(certain.error());
+  std::vector<std::int64_t> out;
+  out.reserve(*certain);
+  const Status done = readIntegers(file, document, from, {told, 0, told}, [&](auto numbers) {
+    out.insert(out.end(), numbers.begin(), numbers.end());
+  });
+  if (!done) return std::unexpected(done.error());
+  return out;
+}
 
 /// Takes a piece's list of vertices, a batch at a time, and makes its cells of it.
 class CellIntake {
@@ -20,7 +33,9 @@ class CellIntake {
 
   Status read(CellMesh& out, KeptRows& rows, ReadReport& report) {
     if (Status done = readTypes(); !done) return done;
-    if (Status done = readHidden(); !done) return done;
+    Result<std::vector<bool>> hidden = hiddenCells(file_, document_, piece_);
+    if (!hidden) return std::unexpected(hidden.error());
+    hidden_ = std::move(*hidden);
     if (Status done = readEnds(); !done) return done;
     if (std::ranges::find(types_, kPolyhedronCell) != types_.end()) {
       if (Status done = readFaces(); !done) return done;
@@ -61,20 +76,8 @@ class CellIntake {
   Result<std::vector<std::int64_t>> integers(const char* name, std::uint64_t told) const {
     const auto from = array(name);
     if (!from) return std::unexpected(from.error());
-    return integersOf(**from, told);
+    return wholeArray(file_, document_, **from, told);
   }
-  Result<std::vector<std::int64_t>> integersOf(const VtuArray& from, std::uint64_t told) const {
-    const auto certain = certainNumbers(file_, document_, from, told);
-    if (!certain) return std::unexpected(certain.error());
-    std::vector<std::int64_t> out;
-    out.reserve(*certain);
-    const Status done = readIntegers(file_, document_, from, {told, 0, told}, [&](auto numbers) {
-      out.insert(out.end(), numbers.begin(), numbers.end());
-    });
-    if (!done) return std::unexpected(done.error());
-    return out;
-  }
-
   Status readTypes() {
     const auto from = array("types");
     if (!from) return std::unexpected(from.error());
@@ -92,24 +95,6 @@ class CellIntake {
     if (!done || wrong == 0) return done;
     return file_.bad((*from)->called() + ": cell " + std::to_string(first) +
                      " has a type that is not 0 to 255; the file is damaged, export it again");
-  }
-
-  /// Marks the cells that are another piece's, or blanked out.
-  Status readHidden() {
-    for (const VtuArray& from : piece_.cellFields.arrays) {
-      const bool isLevels = from.name == kGhostLevels;
-      const bool isTypes = from.name == kGhostTypes && from.type == NumberType::kUInt8;
-      if ((!isLevels && !isTypes) || bytesOf(from.type) == 0) continue;
-      const auto numbers = integersOf(from, piece_.cells * from.components);
-      if (!numbers) return std::unexpected(numbers.error());
-      hidden_.resize(types_.size());
-      for (std::size_t i = 0; i < hidden_.size(); ++i) {
-        const std::int64_t mark = (*numbers)[i * from.components];
-        if (isLevels ? mark > 0 : (static_cast<std::uint64_t>(mark) & kElsewhere) != 0)
-          hidden_[i] = true;
-      }
-    }
-    return {};
   }
 
   Status readEnds() {
@@ -294,6 +279,25 @@ class CellIntake {
 };
 
 }  // namespace
+
+Result<std::vector<bool>> hiddenCells(const VtuFile& file, const VtuDocument& document,
+                                      const VtuPiece& piece) {
+  std::vector<bool> hidden;
+  for (const VtuArray& from : piece.cellFields.arrays) {
+    const bool isLevels = from.name == kGhostLevels;
+    const bool isTypes = from.name == kGhostTypes && from.type == NumberType::kUInt8;
+    if ((!isLevels && !isTypes) || bytesOf(from.type) == 0) continue;
+    const auto numbers = wholeArray(file, document, from, piece.cells * from.components);
+    if (!numbers) return std::unexpected(numbers.error());
+    hidden.resize(piece.cells);
+    for (std::size_t i = 0; i < hidden.size(); ++i) {
+      const std::int64_t mark = (*numbers)[i * from.components];
+      if (isLevels ? mark > 0 : (static_cast<std::uint64_t>(mark) & kElsewhere) != 0)
+        hidden[i] = true;
+    }
+  }
+  return hidden;
+}
 
 Status readVtuCells(const VtuFile& file, const VtuDocument& document, const VtuPiece& piece,
                     std::uint64_t firstPoint, CellMesh& out, KeptRows& rows, ReadReport& report) {

@@ -40,6 +40,12 @@ class KeptRows {
   std::vector<std::uint64_t> rows_;
 };
 
+/// Marks the cells that are another piece's, or blanked out; empty: none is. Errors: those of
+/// readVtu.
+[[nodiscard]] Result<std::vector<bool>> hiddenCells(const VtuFile& file,
+                                                    const VtuDocument& document,
+                                                    const VtuPiece& piece);
+
 /// Appends the piece's volume cells to `out`, their vertices counted from `firstPoint` on, and adds
 /// one of `rows` for each cell of the piece. Errors: those of readVtu.
 [[nodiscard]] Status readVtuCells(const VtuFile& file, const VtuDocument& document,

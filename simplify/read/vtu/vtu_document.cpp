@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -42,6 +43,18 @@ constexpr std::uint64_t kMaxVersion = 2;
 constexpr const char* kTimeName = "TimeValue";
 /// VTK counts in 64 bits with a sign.
 constexpr std::uint64_t kMaxCount = ~std::uint64_t{0} >> 1;
+
+/// Points of one grid, which an extent states without a byte for each.
+constexpr std::uint64_t kMaxExtentPoints = std::uint64_t{1} << 32;
+/// Points that an extent may state for each byte of the file: more than LZMA makes of a byte.
+constexpr std::uint64_t kMaxPointsPerByte = 8192;
+
+constexpr std::array<std::pair<std::string_view, GridKind>, 4> kGrids{{
+    {"UnstructuredGrid", GridKind::kUnstructured},
+    {"StructuredGrid", GridKind::kStructured},
+    {"RectilinearGrid", GridKind::kRectilinear},
+    {"ImageData", GridKind::kImage},
+}};
 
 constexpr std::array<std::pair<std::string_view, NumberType>, 12> kTypes{{
     {"Int8", NumberType::kInt8},
@@ -100,7 +113,8 @@ class DocumentParser {
               "it declares a document type, which no mesh needs; remove the <!DOCTYPE ...>");
         });
     if (Status done = parse(); !done) return std::unexpected(done.error());
-    if (!hasGrid_) return file_.bad("it holds no <UnstructuredGrid>; export the mesh again");
+    if (!hasGrid_)
+      return file_.bad("it holds no <UnstructuredGrid> or other grid; export the mesh again");
     if (out_.pieces.empty()) out_.pieces.push_back(std::move(implicit_));
     return std::move(out_);
   }
@@ -109,7 +123,15 @@ class DocumentParser {
   struct Free {
     void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
   };
-  enum class Section : std::uint8_t { kNone, kPoints, kCells, kPointData, kCellData, kFieldData };
+  enum class Section : std::uint8_t {
+    kNone,
+    kPoints,
+    kCoordinates,
+    kCells,
+    kPointData,
+    kCellData,
+    kFieldData
+  };
 
   Status parse() {
     std::vector<char> chunk(kChunkBytes);
@@ -166,8 +188,9 @@ class DocumentParser {
     if (array_ && array_->end == 0) array_->end = byte();  // a child ends the array's text
     if (depth == 0) return startRoot(name, attributes);
     if (depth == 1) {
-      isInGrid_ = name == "UnstructuredGrid" && !hasGrid_;
-      if (isInGrid_) return startGrid(attributes);
+      const auto grid = std::ranges::find(kGrids, name, [](const auto& g) { return g.first; });
+      isInGrid_ = grid != kGrids.end() && !hasGrid_;
+      if (isInGrid_) return startGrid(grid->second, attributes);
       if (name == "AppendedData") startAppended(attributes);
       return;
     }
@@ -230,9 +253,15 @@ class DocumentParser {
     return 0;
   }
 
-  void startGrid(const Attributes& attributes) {
+  void startGrid(GridKind kind, const Attributes& attributes) {
     hasGrid_ = true;
+    out_.kind = kind;
     out_.hasTimeSteps = attributes["TimeValues"].has_value();
+    if (kind == GridKind::kImage) {
+      readNumbers(attributes, "Origin", out_.origin);
+      readNumbers(attributes, "Spacing", out_.spacing);
+      readNumbers(attributes, "Direction", out_.direction);
+    }
     if (attributes["NumberOfPoints"]) readCounts(attributes, implicit_);
   }
 
@@ -243,8 +272,52 @@ class DocumentParser {
 
   void readCounts(const Attributes& attributes, VtuPiece& piece) {
     piece.line = line();
+    if (out_.kind != GridKind::kUnstructured) return readExtent(attributes, piece);
     piece.points = count(attributes, "NumberOfPoints", "<Piece>");
     piece.cells = count(attributes, "NumberOfCells", "<Piece>");
+  }
+
+  /// The counts of points and cells between the first and the last point of each axis. An axis with
+  /// one point has no cells of its own: the cells are flat.
+  void readExtent(const Attributes& attributes, VtuPiece& piece) {
+    if (!attributes["Extent"])
+      return refuse("<Piece> has no Extent; the file is damaged, export it again");
+    if (!readNumbers(attributes, "Extent", piece.extent)) return;
+    piece.points = piece.cells = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t last = piece.extent[2 * axis + 1], first = piece.extent[2 * axis];
+      const auto points = static_cast<std::uint64_t>(std::max<std::int64_t>(0, last - first + 1));
+      if (piece.points > 0 && points > kMaxExtentPoints / piece.points)
+        return refuse("Extent states more than 2^32 points; the file is damaged, export it again");
+      piece.points *= points;
+      piece.cells *= std::max<std::uint64_t>(1, points) - (points > 1 ? 1 : 0);
+    }
+    if (piece.points == 0) piece.cells = 0;
+    if (piece.points / kMaxPointsPerByte > file_.size())
+      refuse("Extent states " + std::to_string(piece.points) + " points, which a file of " +
+             std::to_string(file_.size()) + " bytes cannot hold; it is damaged, export it again");
+  }
+
+  /// The attribute's numbers, between blanks; a missing one leaves them. False: they are wrong.
+  template <class T, std::size_t N>
+  bool readNumbers(const Attributes& attributes, const char* name, std::array<T, N>& out) {
+    const auto value = attributes[name];
+    if (!value) return true;
+    constexpr std::string_view kBlanks = " \t\r\n";
+    std::string_view left = *value;
+    for (T& number : out) {
+      left.remove_prefix(std::min(left.find_first_not_of(kBlanks), left.size()));
+      const auto read = std::from_chars(left.data(), left.data() + left.size(), number);
+      bool isNumber = read.ec == std::errc{};
+      if constexpr (std::is_floating_point_v<T>) isNumber = isNumber && std::isfinite(number);
+      if (!isNumber) {
+        refuse(std::string(name) + " is " + quoted(*value) + ", not " + std::to_string(N) +
+               " numbers; the file is damaged, export it again");
+        return false;
+      }
+      left.remove_prefix(static_cast<std::size_t>(read.ptr - left.data()));
+    }
+    return true;
   }
 
   static std::string quoted(std::string_view value) {
@@ -277,8 +350,9 @@ class DocumentParser {
   VtuPiece& piece() { return isInPiece_ ? out_.pieces.back() : implicit_; }
 
   void startSection(std::string_view name, const Attributes& attributes) {
-    constexpr std::array<std::pair<std::string_view, Section>, 5> kSections{
+    constexpr std::array<std::pair<std::string_view, Section>, 6> kSections{
         {{"Points", Section::kPoints},
+         {"Coordinates", Section::kCoordinates},
          {"Cells", Section::kCells},
          {"PointData", Section::kPointData},
          {"CellData", Section::kCellData},
@@ -305,6 +379,8 @@ class DocumentParser {
       fields->arrays = std::move(arrays_);
     else if (section_ == Section::kPoints && arrays_.size() == 1)
       piece().coordinates = std::move(arrays_.front());
+    else if (section_ == Section::kCoordinates)
+      piece().axisCoordinates = std::move(arrays_);
     else if (section_ == Section::kCells && !arrays_.empty())
       piece().cellArrays = std::move(arrays_);
     else if (section_ == Section::kFieldData && !isInPiece_)

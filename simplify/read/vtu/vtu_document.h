@@ -1,7 +1,9 @@
-// The XML of an unstructured grid (.vtu): the counts of its pieces, and where each array lies.
+// The XML of VTK's grids (.vtu, .vts, .vtr, .vti): the counts of their pieces, and where each array
+// lies.
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -57,15 +59,23 @@ struct VtuFields {
   std::string globalIds, degrees, weights;  ///< names of the arrays with that role; empty: none
 };
 
+enum class GridKind : std::uint8_t { kUnstructured, kStructured, kRectilinear, kImage };
+
 struct VtuPiece {
   std::uint64_t points = 0, cells = 0;
-  std::uint64_t line = 0;               ///< of its tag, from 1
-  std::optional<VtuArray> coordinates;  ///< the only array of <Points>
-  std::vector<VtuArray> cellArrays;     ///< of <Cells>
+  std::uint64_t line = 0;                 ///< of its tag, from 1
+  std::array<std::int32_t, 6> extent{};   ///< of other grids: first and last point of each axis
+  std::optional<VtuArray> coordinates;    ///< the only array of <Points>
+  std::vector<VtuArray> axisCoordinates;  ///< of <Coordinates>: the three of a rectilinear grid
+  std::vector<VtuArray> cellArrays;       ///< of <Cells>
   VtuFields pointFields, cellFields;
 };
 
 struct VtuDocument {
+  GridKind kind = GridKind::kUnstructured;
+  /// An image's first point, the distances of neighbours, and its axes as columns, row by row.
+  std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
+  std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};
   bool isBigEndian = false;
   std::uint32_t wordBytes = 4;  ///< of the numbers in front of binary data
   VtuCompressor compressor = VtuCompressor::kNone;

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <string_view>
 
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/vtu/vtu_numbers.h"
 
 namespace qtet {

@@ -9,11 +9,11 @@
 #include <set>
 #include <utility>
 
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/read/options/select_fields.h"
 #include "simplify/read/options/time_text.h"
 #include "simplify/read/steps/cell_labels.h"
 #include "simplify/read/steps/join_blocks.h"
-#include "simplify/read/vtu/grid_parts.h"
 
 namespace qtet {
 namespace {

@@ -331,7 +331,7 @@ def levels(life, rng):
         [f"{rng.randrange(len(mesh['levels']))}.{form}", f"fit.{form}?tets={rng.randrange(20000)}"]
     )
     if rng.random() < 0.1:
-        path = f"/v1/logs/{mesh['digest']}/preview.png"
+        path = f"/v1/logs/{mesh['digest']}/poster.webp"
     if rng.random() < 0.6:  # leaves before it is made, or in the midst of it
         socket = life.connect()
         socket.sendall(

@@ -352,18 +352,5 @@ TEST(Operators, theTimeOfDrainingEndsByItself) {
   server.join();
 }
 
-TEST(Operators, theFiguresAreWhatPrometheusReads) {
-  if (std::system("command -v promtool > /dev/null") != 0)
-    GTEST_SKIP() << "promtool (Debian: prometheus) is not installed";
-  const test::ServedFolder folder;
-  test::RunningServer server(folder.store(), folder.viewer());
-  test::RawClient client(server.port());
-  (void)client.get("/v1/meshes");
-  const test::TempFolder out;
-  out.write("metrics", std::string_view(client.get("/metrics").body));
-  EXPECT_EQ(std::system(("promtool check metrics < " + (out.path() / "metrics").string()).c_str()),
-            0);
-}
-
 }  // namespace
 }  // namespace qtet

@@ -278,7 +278,6 @@ TEST_F(RouterTest, whatIsSavedIsCalledByTheMeshAndTheLevel) {
   };
   EXPECT_EQ(savedAs("levels/11.vtu"), "attachment; filename=\"noise-level-11.vtu\"");
   EXPECT_EQ(savedAs("levels/fit.glb?tets=1"), "attachment; filename=\"noise-level-0.glb\"");
-  EXPECT_EQ(savedAs("preview.png"), "inline; filename=\"noise-preview.png\"");
   EXPECT_EQ(savedAs("poster.webp"), "inline; filename=\"noise-poster.webp\"");
 }
 
@@ -512,7 +511,7 @@ TEST_F(RouterTest, thePagesLinksGoInItsHeadToo) {
 
 TEST_F(RouterTest, anElementOfAnyPageMayLoadAFileAPictureAndALevel) {
   for (const std::string& target :
-       {std::string("/"), folder_.log("preview.png"), folder_.log("levels/1.glb")}) {
+       {std::string("/"), folder_.log("poster.webp"), folder_.log("levels/1.glb")}) {
     EXPECT_EQ(header(get(target), "Cross-Origin-Resource-Policy"), "cross-origin") << target;
     EXPECT_EQ(header(get(target), "Timing-Allow-Origin"), "*") << target;
   }

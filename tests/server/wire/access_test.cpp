@@ -275,8 +275,7 @@ TEST_F(GuardedTest, aMeshIsForItsTokenAndNamesAreNotTold) {
 }
 
 TEST_F(GuardedTest, whatIsUnderADigestIsThereForThoseAloneWhoMayReadItUnderSomeName) {
-  for (const char* part :
-       {"log", "manifest", "base", "chunks/0", "levels/0.vtu", "preview.png", "poster.webp"}) {
+  for (const char* part : {"log", "manifest", "base", "chunks/0", "levels/0.vtu", "poster.webp"}) {
     EXPECT_EQ(get(folder_.log(part)).status, 404u) << part;
     EXPECT_EQ(get(folder_.log(part), bearer(kOther)).status, 404u) << part;
   }

@@ -34,8 +34,7 @@ TEST(RequestKind, routesAreNamedByTheirPath) {
                           Case{"/v1/logs/a/log", kLog},
                           Case{"/v1/logs/a", kLog},
                           Case{"/v1/logs/a/levels/3.vtu", kLevel},
-                          Case{"/v1/logs/a/preview.png", kPreview},
-                          Case{"/v1/logs/a/poster.webp", kPreview},
+                          Case{"/v1/logs/a/poster.webp", kPoster},
                           Case{"/v1/tickets", kTickets},
                           Case{"/v1/stream?ticket=a", kStream},
                           Case{"*", kOther},
@@ -88,7 +87,7 @@ TEST(Metrics, timesAreCountedByRouteAndMethod) {
   EXPECT_TRUE(holds(text, name + "_bucket" + ofPut + ",le=\"600\"} 1"));
   EXPECT_TRUE(holds(text, name + "_bucket" + ofPut + ",le=\"+Inf\"} 2"));
   EXPECT_TRUE(holds(text, "qtet_uploads_failed_total 1"));
-  EXPECT_EQ(text.find("preview"), std::string::npos) << "nothing was asked of it";
+  EXPECT_EQ(text.find("poster"), std::string::npos) << "nothing was asked of it";
 }
 
 TEST(Metrics, refusalsAreCountedByReason) {

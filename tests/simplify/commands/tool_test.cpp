@@ -297,9 +297,9 @@ TEST_F(Tool, filesAtFaultEndWithOne) {
 }
 
 TEST_F(Tool, whatVtkSaysIsToldInOurForm) {
-  std::ofstream(folder_ / "hole.vti")
-      << "<VTKFile type=\"ImageData\"><ImageData><Piece/></ImageData></VTKFile>";
-  expectFailure("simplify hole.vti -o out.qtet", 1, "VTK could not read it");
+  std::ofstream(folder_ / "hole.vtk") << "# vtk DataFile Version 3.0\nx\nASCII\nDATASET "
+                                         "STRUCTURED_GRID\nDIMENSIONS 2 2 2\nPOINTS 8";
+  expectFailure("simplify hole.vtk -o out.qtet", 1, "VTK could not read it: ");
 }
 
 TEST_F(Tool, anErrorIsAJsonObjectWhereJsonIsAsked) {

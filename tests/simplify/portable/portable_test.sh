@@ -46,13 +46,11 @@ for program in qtet portable; do
 done
 cmp "$scratch/qtet.qtet" "$scratch/portable.qtet" || fail "its log is another one"
 
-# VTK's own format through meshio, others not at all
-"$qtet" convert "$scratch/box.vtu" -o "$scratch/box.vtk" --quiet
-"$portable" convert "$scratch/box.vtk" -o "$scratch/back.msh" --quiet
-"$qtet" convert "$scratch/box.vtk" -o "$scratch/box.msh" --quiet
-cmp "$scratch/back.msh" "$scratch/box.msh" || fail "box.vtk is read otherwise"
-! "$portable" check "$meshes/structured.cgns" >"$scratch/words" 2>&1 || fail "it reads CGNS"
-grep -q 'built without' "$scratch/words" || fail "it does not say that VTK is missing"
+# through VTK's module for Python
+for program in qtet portable; do
+  "${!program}" convert "$meshes/structured.cgns" -o "$scratch/$program.vtu" --quiet 2>/dev/null
+done
+cmp "$scratch/qtet.vtu" "$scratch/portable.vtu" || fail "CGNS is read otherwise"
 ! QTET_TOKEN=x "$portable" push "$scratch/qtet.qtet" http://localhost/ 2>"$scratch/words" ||
   fail "it pushes"
 grep -q 'curl -T' "$scratch/words" || fail "it does not say how to send a log"

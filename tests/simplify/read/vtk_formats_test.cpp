@@ -1,5 +1,5 @@
-// Formats that VTK reads for us: files that VTK's own writers made (meshes/), and text files made
-// here.
+// VTK's formats, and those that it reads for us: files that its own writers made (meshes/), and
+// text files made here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ TEST(VtkFormats, extentsOfStructuredDataThatNoFileHoldsAreRefused) {
   }
 }
 
-// VTK alone would leave the rest of the field as the memory was, and report nothing.
+// VTK leaves the rest of the field as the memory was, and reports nothing.
 TEST(VtkFormats, aFieldWhoseBase64EndsTooEarlyIsRefused) {
   const auto grid = [](const std::string& base64) {
     return "<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\" "
@@ -88,7 +88,7 @@ TEST(VtkFormats, aFieldWhoseBase64EndsTooEarlyIsRefused) {
   EXPECT_EQ(field(*sound, "T")->values, (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}));
   const Result<ReadMesh> cut = readMesh(fileWith("cut.vti", grid("CAAAAAECAw==BgcI")));
   ASSERT_FALSE(cut);
-  EXPECT_EQ(cut.error().code, ErrorCode::kBadInput) << cut.error().text();
+  EXPECT_EQ(cut.error().code, ErrorCode::kTruncated) << cut.error().text();
 }
 
 // Two pieces with a common cell, which the second one marks as a ghost.

@@ -6,7 +6,7 @@ import type {SimplifiedFile, SimplifyProgress} from './simplify_file';
 import type {SimplifyMessage, SimplifyRequest} from './simplify_worker';
 
 /** Endings of files that name others, in the order in which they are preferred. */
-const kNaming = ['.pvd', '.vtm', '.pvtu', '.node'];
+const kNaming = ['.pvd', '.vtm', '.pvtu', '.pvts', '.pvtr', '.pvti', '.node'];
 
 /** The file to read among those that were chosen together. REQUIRES: at least one. */
 export function mainFile(files: readonly File[]): File {

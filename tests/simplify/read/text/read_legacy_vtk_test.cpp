@@ -14,12 +14,12 @@
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnsignedShortArray.h>
+#include <vtkUnstructuredGridReader.h>
 #include <vtkUnstructuredGridWriter.h>
 
 #include <array>
 
 #include "simplify/read/text/text_readers.h"
-#include "simplify/read/vtk/run_vtk.h"
 #include "tests/simplify/read/vtu/vtk_written.h"
 
 namespace qtet {
@@ -99,11 +99,16 @@ fs::path written(vtkUnstructuredGrid* grid, const Form& form) {
 
 Way byVtk(const fs::path& path, const FieldNames& fields) {
   Way out{CellMesh{}, {}};
-  ReadOptions options;
-  options.fields = fields;
-  auto steps = runVtk(path, MeshFormat::kLegacyVtk, options, out.report);
-  if (!steps) return {std::unexpected(steps.error()), {}};
-  out.mesh = std::move(steps->front().cells);
+  vtkNew<vtkUnstructuredGridReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllTCoordsOn();
+  reader->ReadAllFieldsOn();
+  reader->Update();
+  out.mesh = testing::cellsOf(*reader->GetOutput(), fields, path, out.report);
   return out;
 }
 

@@ -15,9 +15,9 @@
 #include <random>
 #include <string>
 
-#include "simplify/read/vtk/vtk_cells.h"
 #include "simplify/read/vtu/read_vtu.h"
 #include "tests/simplify/mesh/tet_meshes.h"
+#include "tests/simplify/read/vtu/vtk_cells.h"
 
 namespace qtet::testing {
 

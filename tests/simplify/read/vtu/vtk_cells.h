@@ -1,4 +1,4 @@
-// Makes a CellMesh of VTK's data sets.
+// A CellMesh of data sets as VTK has read them, to judge our own readers by.
 #pragma once
 
 #include <vtkDataSet.h>
@@ -8,7 +8,7 @@
 #include "simplify/read/options/read_options.h"
 #include "simplify/split/cell_mesh.h"
 
-namespace qtet {
+namespace qtet::testing {
 
 /// The volume cells that are visible and no other piece's (ghosts), with the points as they are and
 /// the fields meant by `fields`. Cells of lower dimension are counted in the report, fields of
@@ -17,4 +17,4 @@ namespace qtet {
 [[nodiscard]] Result<CellMesh> cellsOf(vtkDataSet& data, const FieldNames& fields,
                                        const std::filesystem::path& path, ReadReport& report);
 
-}  // namespace qtet
+}  // namespace qtet::testing

@@ -1,4 +1,4 @@
-#include "simplify/read/vtk/vtk_cells.h"
+#include "tests/simplify/read/vtu/vtk_cells.h"
 
 #include <vtkAOSDataArrayTemplate.h>
 #include <vtkCellArray.h>
@@ -24,10 +24,10 @@
 
 #include "codec/coding/float_bits.h"
 #include "simplify/read/options/bad_file.h"
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 #include "simplify/split/higher_cells.h"
 
-namespace qtet {
+namespace qtet::testing {
 namespace {
 
 template <class T>
@@ -293,4 +293,4 @@ Result<CellMesh> cellsOf(vtkDataSet& data, const FieldNames& fields,
   return out;
 }
 
-}  // namespace qtet
+}  // namespace qtet::testing

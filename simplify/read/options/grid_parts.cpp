@@ -1,4 +1,4 @@
-#include "simplify/read/vtu/grid_parts.h"
+#include "simplify/read/options/grid_parts.h"
 
 #include <algorithm>
 #include <array>
