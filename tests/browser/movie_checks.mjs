@@ -47,7 +47,7 @@ const timeOf = (viewer) =>
   viewer.page.evaluate(() => {
     const {shadowRoot} = window.qtetViewer;
     const attribute = window.qtetViewer.getAttribute('time');
-    return [attribute, shadowRoot.querySelector('.time output').textContent];
+    return [attribute, shadowRoot.querySelector('.time input').ariaValueText];
   });
 
 /** Presses Tab until the button has the focus, then Enter. */

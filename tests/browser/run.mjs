@@ -25,6 +25,7 @@ import {posterChecks} from './poster_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {segmentChecks} from './segment_checks.mjs';
+import {timeChecks} from './time_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
 import {undoChecks} from './undo_checks.mjs';
 import {volumeChecks} from './volume_checks.mjs';
@@ -56,7 +57,7 @@ const lists = {
   volume: volumeChecks,
   edge: {...edgeChecks, ...warpChecks},
   legend: {...legendChecks, ...histogramChecks, ...undoChecks},
-  panel: {...panelChecks, ...pictureChecks},
+  panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,
   baseline: baselineChecks,

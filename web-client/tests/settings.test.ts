@@ -106,6 +106,8 @@ describe('settings', () => {
       warpScale: null,
       restEdges: false,
       time: null,
+      timePart: null,
+      timeLoops: true,
       volume: null,
       hasFirstOpacities: false,
     });

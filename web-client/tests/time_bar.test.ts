@@ -25,8 +25,15 @@ class Part {
     this.parts.set(selector, part);
     return part;
   }
-  setAttribute(): void {
-    return;
+  private readonly attributes = new Map<string, string>();
+  setAttribute(name: string, value: string): void {
+    this.attributes.set(name, value);
+  }
+  getAttribute(name: string): string | null {
+    return this.attributes.get(name) ?? null;
+  }
+  matches(): boolean {
+    return false;
   }
   addEventListener(type: string, listener: () => void): void {
     this.listeners.set(type, listener);
@@ -99,6 +106,9 @@ beforeEach(() => {
 });
 afterEach(() => void vi.useRealTimers());
 
+const part = (selector: string): Part => root.querySelector('.time').querySelector(selector);
+const shownTime = (): string | null => part('.track input').getAttribute('aria-valuetext');
+
 test('onlyASeriesThatPlaysHasFieldsAhead', () => {
   bar.step(1);
   expect(mesh.ahead).toEqual([]);
@@ -114,14 +124,13 @@ test('theTimeBeginsAtTheOpeningAndGoesOnFromThere', () => {
   mesh = new ShownMesh();
   mesh.manifest = {fields} as Manifest;
   write('field', null);
-  const time = (): string => root.querySelector('.time').querySelector('output').textContent;
-  expect([time(), mesh.firstTime?.text]).toEqual(['t = 1', '1']);
+  expect([shownTime(), mesh.firstTime?.text]).toEqual(['t = 1', '1']);
   bar.step(1);
-  expect([time(), attributes.get('time')]).toEqual(['t = 2', '2']);
+  expect([shownTime(), attributes.get('time')]).toEqual(['t = 2', '2']);
   bar.step(1);
-  expect([time(), attributes.get('time')]).toEqual(['t = 0', '0']);
+  expect([shownTime(), attributes.get('time')]).toEqual(['t = 0', '0']);
   bar.step(1);
-  expect([time(), attributes.get('time')]).toEqual(['t = 1', undefined]);
+  expect([shownTime(), attributes.get('time')]).toEqual(['t = 1', undefined]);
 });
 
 test('anotherSeriesHasOtherFieldsAheadAndAFieldOfNoneHasNone', () => {
@@ -156,10 +165,7 @@ test('aListenerMaySetTheTimeThatItIsTold', () => {
 test('theInstantsOfAMovieAreShownAndNotTold', () => {
   mesh.filmed = {time: 1, ahead: [1]};
   write('range', '0,1');
-  expect([root.querySelector('.time').querySelector('output').textContent, mesh.ahead]).toEqual([
-    't = 1',
-    [1],
-  ]);
+  expect([shownTime(), mesh.ahead]).toEqual(['t = 1', [1]]);
   mesh.filmed = null;
   write('range', '0,2');
   expect([attributes.get('time'), told]).toEqual([undefined, []]);
@@ -206,7 +212,7 @@ test.each([
   const shown = times.map((_, i) => {
     vi.advanceTimersByTime(125);
     if (i > 0) drawn();
-    return root.querySelector('.time').querySelector('output').textContent;
+    return shownTime();
   });
   expect(shown).toEqual(times);
 });
@@ -226,10 +232,52 @@ test('atTheBeatBehindAnotherMeshTheBarIsStill', () => {
 test('whilePlayingTheHandleStaysWhereItIsHeld', () => {
   showSeries(kAll);
   bar.toggle();
-  const slider = root.querySelector('.time').querySelector('input');
+  const slider = part('.track input');
   slider.value = '7';
   slider.dispatch('input');
   expect([slider.value, attributes.get('time')]).toEqual(['7', '7']);
+});
+
+test('aTypedTimeShowsTheNearestInstant', () => {
+  showSeries(kAll);
+  const typed = part('label input');
+  for (const [text, time] of [
+    ['6,6', '7'],
+    ['-3', '0'],
+    ['no number', '0'],
+  ]) {
+    typed.value = text!;
+    typed.dispatch('change');
+    expect([typed.value, shownTime()]).toEqual([time, `t = ${time}`]);
+  }
+});
+
+test('aPartIsMarkedAtTheShownInstantsAndItsInstantsAreFetchedAhead', () => {
+  showSeries(kAll);
+  const mark = (at: number, end: string): string | undefined => {
+    bar.goTo(at);
+    part(end).dispatch('click');
+    return attributes.get('time-range');
+  };
+  expect([mark(3, '.from'), mark(5, '.to')]).toEqual(['3,9', '3,5']);
+  expect([part('.to').getAttribute('aria-pressed'), mark(7, '.from')]).toEqual(['true', '7,9']);
+  bar.toggle();
+  expect(mesh.playing).toEqual([7, 8, 9]);
+  expect(mark(7, '.from')).toBeUndefined();
+});
+
+test('playingOnceEndsAtTheLastInstant', () => {
+  showSeries(kAll);
+  part('.loop').dispatch('click');
+  expect(attributes.get('time-loop')).toBe('off');
+  write('time-range', '2,3');
+  bar.toggle();
+  drawn();
+  for (let i = 0; i < 3; ++i) {
+    vi.advanceTimersByTime(125);
+    drawn();
+  }
+  expect([bar.isPlaying, shownTime()]).toEqual([false, 't = 3']);
 });
 
 test('fieldsAheadGoRoundTheEndAndLeaveGapsOut', () => {
@@ -270,7 +318,7 @@ function openSecond(): void {
 
 test('theBarHasTheInstantsOfAllSegments', () => {
   showSegments();
-  const {max, value} = root.querySelector('.time').querySelector('input') as unknown as {
+  const {max, value} = part('.track input') as unknown as {
     max: string;
     value: string;
   };

@@ -5,6 +5,7 @@ import {TimeClock} from '../viewer/panels/time_clock';
 let here: readonly number[];
 let onScreen: number;
 let clock: TimeClock;
+let hasEnded: boolean;
 const kAll = Array.from({length: 10}, (_, i) => i);
 
 beforeEach(() => {
@@ -19,7 +20,15 @@ beforeEach(() => {
     isOpening: false,
     areTogether: () => true,
   };
-  clock = new TimeClock(line, () => undefined);
+  hasEnded = false;
+  clock = new TimeClock(
+    line,
+    () => undefined,
+    () => {
+      hasEnded = true;
+      clock.stop();
+    },
+  );
   clock.play();
 });
 afterEach(() => {
@@ -78,4 +87,48 @@ test('anInstantThatIsLateForASecondIsPassedOver', () => {
   expect(clock.at).toBe(1);
   vi.advanceTimersByTime(100);
   expect(clock.at).toBe(4);
+});
+
+/** The instants that are drawn in so many steps. */
+function played(steps: number): number[] {
+  return Array.from({length: steps}, () => {
+    vi.advanceTimersByTime(100);
+    drawn();
+    return clock.at;
+  });
+}
+
+test('aPartIsPlayedRoundAndRound', () => {
+  clock.part = [3, 5];
+  clock.play();
+  drawn();
+  expect(clock.at).toBe(3);
+  expect(played(5)).toEqual([4, 5, 3, 4, 5]);
+});
+
+test('anInstantOutsideThePartIsFollowedByItsFirstOne', () => {
+  clock.part = [3, 5];
+  clock.show(8);
+  drawn();
+  expect(played(2)).toEqual([3, 4]);
+});
+
+test('playingOnceEndsWithTheLastInstantOfThePart', () => {
+  clock.loops = false;
+  clock.part = [7, 8];
+  clock.play();
+  drawn();
+  expect(played(3)).toEqual([8, 8, 8]);
+  expect([hasEnded, clock.isPlaying]).toEqual([true, false]);
+  clock.play(); // from its beginning
+  expect(clock.at).toBe(7);
+});
+
+test('slowPicturesDoNotPassOverTheEnd', () => {
+  clock.loops = false;
+  clock.part = [0, 2];
+  clock.play();
+  vi.advanceTimersByTime(1000);
+  drawn();
+  expect([clock.at, hasEnded]).toEqual([2, false]);
 });

@@ -7,6 +7,8 @@
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
 //   time         of a series: the instant nearest to it is shown; by default the log's choice.
+//   time-range   "FROM,TO": the times that playing begins and ends at.
+//   time-loop    on (default), or off: playing ends at the last instant.
 //   time-group   a name: viewers of the document with the same one show the same time.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
 //   range        "auto" (default), "full", "symmetric", "LOW,HIGH" or, of a series, "instant".
@@ -35,7 +37,7 @@
 //                time-change (another instant, or playing begins or ends). `detail` holds the
 //                figures, the error, the camera, the attribute or the time.
 // Slots          poster (shown until the first picture), progress (instead of the viewer's own).
-// Parts          canvas, panel, progress, legend, hint, marks, result, notice.
+// Parts          canvas, panel, progress, legend, time, hint, marks, result, notice.
 // Methods        digest(), pause(), resume(), resetView(), look(direction), picture(),
 //                movie(options).
 // Properties     counts, statistics, state, view, cameraState, playing, token.

@@ -29,6 +29,7 @@ import {displacementKey, kNoWarp} from './settings/warp';
 const kOfOneMesh = [
   'field',
   'range',
+  'time-range',
   ...fieldLayers().map(({name}) => name),
   'warp',
   'warp-scale',

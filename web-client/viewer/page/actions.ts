@@ -19,6 +19,7 @@ export interface ActionsHost {
     readonly time: {
       toggle(): void;
       step(by: number): void;
+      goTo(at: number): void;
       readonly isShown: boolean;
       isPlaying: boolean;
     };
@@ -95,6 +96,7 @@ export class Actions {
       toggle: (what) => this.toggle(what),
       moveClip: (step) => this.moveClip(step),
       stepTime: (by) => this.host.later?.time.step(by),
+      goToTime: (at) => this.host.later?.time.goTo(at),
       inspect: () => this.host.later?.panels.inspect.pickMiddle(),
       picture: () => this.picture(),
       help: () => this.help(),

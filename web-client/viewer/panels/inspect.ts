@@ -293,7 +293,7 @@ export class Inspect {
     if (!view) return;
     const at = ({lattice}: Pick): Point => view.project(lattice);
     const whole = this.root.host.getBoundingClientRect();
-    const cards = ['.panel', '.legend', '.tool-hint'].map((name) =>
+    const cards = ['.panel', '.legend', '.time', '.tool-hint'].map((name) =>
       this.root.querySelector(name)!.getBoundingClientRect(),
     );
     this.card.place({

@@ -1,8 +1,9 @@
-// The time of a series: play, step, loop, and which instants are here.
+// The time of a series: play all of it or a part, step, and which instants are here.
 
+import {parseNumbers} from '../../core/layers/field_values';
 import {nearestTo} from '../../core/protocol/series';
 import {untilBeat} from '../page/beat';
-import {find, onClick, setText} from '../page/find';
+import {find, onClick, setAttribute, setText} from '../page/find';
 import type {Attributes} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import {setMarkup} from '../page/trusted';
@@ -18,18 +19,42 @@ const kNone = 'transparent';
 const kPlay = 'M6.5 4.5v11l9-5.5z';
 const kPause = 'M7.5 5v10M12.5 5v10';
 
+/** Class: [title, path of the icon]. Those of kSwitches are pressed or not. */
+const kButtons: Record<string, [string, string]> = {
+  first: ['First instant', 'M14.5 4.5v11L7 10zM5 4.5v11'],
+  play: ['Play', kPlay],
+  last: ['Last instant', 'M5.5 4.5v11L13 10zM15 4.5v11'],
+  from: ['Play from here', 'M12 4H8v12h4'],
+  to: ['Play to here', 'M8 4h4v12H8'],
+  loop: [
+    'Begin again at the end',
+    'M5 8.5a5.5 5.5 0 0 1 10 0M15 11.5a5.5 5.5 0 0 1-10 0M15 4.5v4h-4M5 15.5v-4h4',
+  ],
+};
+const kSwitches = ['play', 'from', 'to', 'loop'];
+
+const buttons = Object.entries(kButtons)
+  .map(([name, [title, path]]) => {
+    const pressed = kSwitches.includes(name) ? ' aria-pressed="false"' : '';
+    return `
+  <button type="button" class="icon ${name}" aria-label="${title}" title="${title}"${pressed}>
+    <svg viewBox="0 0 20 20" aria-hidden="true"><path d="${path}"/></svg>
+  </button>`;
+  })
+  .join('');
+
 const kMarkup = `
-<button type="button" class="icon play" aria-pressed="false">
-  <svg viewBox="0 0 20 20" aria-hidden="true"><path/></svg>
-</button>
 <div class="track">
-  <i class="here"></i>
+  <i class="part"></i><i class="here"></i>
   <input type="range" name="time" min="0" step="1" aria-label="Time">
 </div>
-<output></output>
-<select class="small" name="speed" aria-label="Speed">${kSpeeds
-  .map((speed) => `<option value="${speed}">${speed}\u00d7</option>`)
-  .join('')}</select>`;
+<div class="row">${buttons}
+  <label>t = <input type="text" name="instant" inputmode="decimal" autocomplete="off"
+    aria-label="Go to the time"><span class="unit"></span></label>
+  <select class="small" name="speed" aria-label="Speed">${kSpeeds
+    .map((speed) => `<option value="${speed}">${speed}\u00d7</option>`)
+    .join('')}</select>
+</div>`;
 
 export interface TimeHost extends TimeLineHost {
   /** The graphics are too slow for what plays. */
@@ -62,13 +87,25 @@ export class TimeBar {
     signal: AbortSignal,
   ) {
     this.line = new TimeLine(host);
-    this.clock = new TimeClock(this.line, () => this.ask());
+    this.clock = new TimeClock(
+      this.line,
+      () => this.ask(),
+      () => this.toggle(),
+    );
     this.bar = find(root, '.time');
     setMarkup(this.bar, kMarkup);
     const speed = find<HTMLSelectElement>(this.bar, 'select');
     speed.value = '1';
     this.showPlaying();
     onClick(this.bar, '.play', () => this.toggle());
+    onClick(this.bar, '.first', () => this.goTo(0));
+    onClick(this.bar, '.last', () => this.goTo(-1));
+    onClick(this.bar, '.from', () => this.mark(0));
+    onClick(this.bar, '.to', () => this.mark(1));
+    onClick(this.bar, '.loop', () =>
+      attributes.write('time-loop', this.clock.loops ? 'off' : null),
+    );
+    this.typed.addEventListener('change', () => this.take(this.typed.value));
     this.slider.addEventListener('input', () => {
       this.seen = Number(this.slider.value); // the handle stays where it is held
       this.clock.show(this.seen);
@@ -98,7 +135,7 @@ export class TimeBar {
   }
 
   /** Brings the bar in line with the attributes and the mesh. */
-  update({time, warp}: Settings, mesh: ShownMesh): void {
+  update({time, timePart, timeLoops, warp}: Settings, mesh: ShownMesh): void {
     const {clock, line} = this;
     const {manifest, firstField} = mesh;
     if (line.take(mesh)) this.end();
@@ -110,8 +147,12 @@ export class TimeBar {
     line.choose([color?.field ?? -1, warpField(warp, fields)], fields);
     this.first = nearestTo(line.times, mesh.firstTime!.time);
     clock.at = time === null ? this.first : nearestTo(line.times, time);
-    mesh.playing = this.isPlaying ? line.ahead(clock.at) : [];
-    this.slider.max = String(line.times.length - 1);
+    const last = line.times.length - 1;
+    clock.loops = timeLoops;
+    clock.part = timePart ? partOf(line.times, timePart) : [0, last];
+    mesh.playing = this.isPlaying ? line.ahead(clock.at, clock.part) : [];
+    this.slider.max = String(last);
+    this.showPart();
     this.follow();
     this.tell();
   }
@@ -138,8 +179,32 @@ export class TimeBar {
 
   /** To the next instant or the one before, round the ends. */
   step(by: number): void {
+    this.goTo(this.clock.at + by);
+  }
+
+  /** To an instant; the first one is 0, and the last one -1. */
+  goTo(at: number): void {
     this.end();
-    this.clock.show(this.clock.at + by);
+    this.clock.show(at);
+  }
+
+  /** The instant that is nearest to a typed time. */
+  private take(text: string): void {
+    const [time, ...more] = parseNumbers(text.replace(',', '.'));
+    if (time !== undefined && more.length === 0) this.goTo(nearestTo(this.line.times, time));
+    this.showTyped();
+  }
+
+  /** Playing begins (end 0) or ends (end 1) at this instant, or no longer does. */
+  private mark(end: 0 | 1): void {
+    const {at, part} = this.clock;
+    const whole = [0, this.line.times.length - 1] as const;
+    const next: [number, number] = [...part];
+    next[end] = part[end] === at ? whole[end] : at;
+    if (next[0] >= next[1]) next[1 - end] = whole[1 - end]!;
+    const isWhole = next.every((its, i) => its === whole[i]);
+    const texts = next.map((its) => this.line.times[its]!.text);
+    this.attributes.write('time-range', isWhole ? null : texts.join());
   }
 
   private play(): void {
@@ -175,10 +240,32 @@ export class TimeBar {
     this.beat = undefined;
     const {slider} = this;
     const {text} = this.line.times[this.seen]!;
+    const unit = this.host.mesh.manifest?.units?.get('') ?? '';
     slider.value = String(this.seen);
-    slider.setAttribute('aria-valuetext', text);
-    const unit = this.host.mesh.manifest?.units?.get('');
-    setText(find(this.bar, 'output'), `t = ${text}${unit === undefined ? '' : `\u00a0${unit}`}`);
+    setAttribute(slider, 'aria-valuetext', `t = ${text}${unit && `\u00a0${unit}`}`);
+    setText(find(this.bar, '.unit'), unit);
+    if (!this.typed.matches(':focus')) this.showTyped();
+    this.showMarks();
+  }
+
+  private showTyped(): void {
+    this.typed.value = this.line.times[this.seen]!.text;
+  }
+
+  /** Which ends of the part are at the shown instant. */
+  private showMarks(): void {
+    const {part} = this.clock;
+    const isPart = part[0] > 0 || part[1] < this.line.times.length - 1;
+    for (const [i, name] of ['from', 'to'].entries())
+      press(find(this.bar, `.${name}`), isPart && part[i] === this.seen);
+  }
+
+  private showPart(): void {
+    const {clock, line} = this;
+    press(find(this.bar, '.loop'), clock.loops);
+    const [from, to] = clock.part.map((at) => `${(100 * at) / (line.times.length - 1)}%`);
+    const band = `${kNone} ${from}, ${kHere} ${from}, ${kHere} ${to}, ${kNone} ${to}`;
+    find(this.bar, '.part').style.backgroundImage = `linear-gradient(to right, ${band})`;
   }
 
   /** Draws the runs of instants that are here. */
@@ -205,11 +292,25 @@ export class TimeBar {
     const button = find<HTMLButtonElement>(this.bar, '.play');
     const [title, path] = this.isPlaying ? ['Stop', kPause] : ['Play', kPlay];
     button.ariaLabel = button.title = title;
-    button.ariaPressed = String(this.isPlaying);
+    press(button, this.isPlaying);
     find(button, 'path').setAttribute('d', path);
   }
 
   private get slider(): HTMLInputElement {
-    return find<HTMLInputElement>(this.bar, 'input');
+    return find<HTMLInputElement>(this.bar, '.track input');
   }
+
+  private get typed(): HTMLInputElement {
+    return find<HTMLInputElement>(this.bar, 'label input');
+  }
+}
+
+function press(button: HTMLElement, isPressed: boolean): void {
+  setAttribute(button, 'aria-pressed', String(isPressed));
+}
+
+/** The instants that are nearest to two times. */
+function partOf(times: TimeLine['times'], part: readonly [number, number]): [number, number] {
+  const [from, to] = part.map((time) => nearestTo(times, time));
+  return [from!, to!];
 }

@@ -18,19 +18,24 @@ export class TimeClock {
   /** It was not here when it was asked for. */
   isLate = false;
   speed = 1;
+  /** The first and the last instant that play. */
+  part: readonly [number, number] = [0, Infinity];
+  /** Playing goes on at the part's first instant; otherwise it ends at the last. */
+  loops = true;
   private timer: ReturnType<typeof setInterval> | undefined;
   /** When the next instant is due. */
   private dueAt = 0;
   /** 0: `at` is on the screen, or nothing plays. */
   private waitingSince = 0;
 
-  /** `ask` is called when `at` is another one. */
+  /** `ask` is called when `at` is another one, `ended` when the last instant was shown. */
   constructor(
     private readonly line: Pick<
       TimeLine,
       'times' | 'isHere' | 'isOnScreen' | 'awaitsFrame' | 'isOpening' | 'areTogether'
     >,
     private readonly ask: () => void,
+    private readonly ended: () => void = () => undefined,
   ) {}
 
   get isPlaying(): boolean {
@@ -47,6 +52,7 @@ export class TimeClock {
     this.waitingSince = 0;
     this.dueAt = performance.now() + this.stepMs;
     this.timer = setInterval(() => this.tick(), kTickMs);
+    if (!this.isInPart || (!this.loops && this.at === this.last)) this.show(this.part[0]);
   }
 
   stop(): void {
@@ -77,15 +83,17 @@ export class TimeClock {
       if (this.isLate) this.dueAt = Math.max(this.dueAt, now);
       this.isLate = false;
       if (now < this.dueAt) return;
+      if (this.left === 0) return this.ended();
       const due = 1 + Math.floor((now - this.dueAt) / this.stepMs);
       const by = this.stepsTo(due);
       this.dueAt = by === due ? this.dueAt + by * this.stepMs : now + this.stepMs;
-      return this.show(at + by);
+      return this.show(this.after(by));
     }
     if (this.waitingSince === 0) this.waitingSince = now;
     if (now - this.waitingSince < kPatienceMs) return;
     if (line.isOpening) return; // a segment that is slow would only begin again
-    for (let next = at + 1; next < at + line.times.length; ++next) {
+    for (let by = 1; by <= this.left; ++by) {
+      const next = this.after(by);
       if (!line.isHere(next) && line.areTogether(at, next)) continue;
       this.waitingSince = 0;
       return this.show(next);
@@ -98,9 +106,31 @@ export class TimeClock {
    */
   private stepsTo(due: number): number {
     const {at, line} = this;
-    let by = Math.min(due, line.times.length - 1);
-    for (let i = 1; i < by; ++i) if (!line.areTogether(at, at + i)) return i;
-    while (by > 1 && !line.isHere(at + by)) --by;
+    let by = Math.min(due, this.left);
+    for (let i = 1; i < by; ++i) if (!line.areTogether(at, this.after(i))) return i;
+    while (by > 1 && !line.isHere(this.after(by))) --by;
     return Math.max(1, by);
+  }
+
+  private get last(): number {
+    return Math.min(this.part[1], this.line.times.length - 1);
+  }
+
+  private get isInPart(): boolean {
+    return this.at >= this.part[0] && this.at <= this.last;
+  }
+
+  /** So many other instants play before the part begins again, or ends. */
+  private get left(): number {
+    const [first] = this.part;
+    if (!this.isInPart) return this.last - first + 1;
+    return this.loops ? this.last - first : this.last - this.at;
+  }
+
+  /** The instant that plays `by` steps after this one. Outside the part its first one is next. */
+  private after(by: number): number {
+    const [first] = this.part;
+    const from = this.isInPart ? this.at : first - 1;
+    return first + ((from - first + by) % (this.last - first + 1));
   }
 }

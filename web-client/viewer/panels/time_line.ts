@@ -51,9 +51,10 @@ export class TimeLine {
     });
   }
 
-  /** The fields to fetch while instant `at` plays. */
-  ahead(at: number): number[] {
-    return this.tracks.flatMap((track) => fieldsAhead(track, at));
+  /** The fields to fetch while instant `at` plays, of the instants `from` to `to`. */
+  ahead(at: number, [from, to]: readonly [number, number]): number[] {
+    const place = at < from || at > to ? 0 : at - from;
+    return this.tracks.flatMap((track) => fieldsAhead(track.slice(from, to + 1), place));
   }
 
   /** False without a series. */

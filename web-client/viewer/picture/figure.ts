@@ -82,10 +82,10 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   const text = (name: string): string => (part(name).hidden ? '' : part(name).textContent);
   const isOpen = (end: string): boolean => part('bar').classList.contains(`open-${end}`);
   const at = (its: HTMLElement): number => parseFloat(its.style.left) / 100;
-  const time = legend.querySelector<HTMLElement>('.time')!;
+  const time = root.querySelector<HTMLElement>('.time')!;
   const notes = [
     part('labels').hidden ? '' : (part('labels').querySelector('.more')?.textContent ?? ''),
-    time.hidden ? '' : (time.querySelector('output')?.textContent ?? ''),
+    time.hidden ? '' : (time.querySelector('input')?.getAttribute('aria-valuetext') ?? ''),
     text('note'),
     text('warp'),
     text('missing').trim(),

@@ -18,6 +18,8 @@ const kBeforeLayers = [
   'mesh',
   'field',
   'time',
+  'time-range',
+  'time-loop',
   'colormap',
   'range',
   'scale',
@@ -75,6 +77,10 @@ export interface Settings {
   restEdges: boolean;
   /** The time that is shown of series; null: that which opens. */
   time: number | null;
+  /** The times that playing begins and ends at; null: all instants of a series play. */
+  timePart: [number, number] | null;
+  /** Playing begins again at the end. */
+  timeLoops: boolean;
 }
 
 export function readSettings(get: (name: ViewAttribute) => string | null): Settings {
@@ -101,13 +107,21 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     warpScale: parseNumber(get('warp-scale')),
     restEdges: get('rest-edges') === 'on',
     time: parseNumber(get('time')),
+    timePart: parsePair(get('time-range')),
+    timeLoops: get('time-loop') !== 'off',
   };
 }
 
 function parseRange(text: string | null): Settings['range'] {
   if (text === 'symmetric' || text === 'full' || text === 'instant') return text;
-  const numbers = parseNumbers(text ?? '');
-  return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
+  return parsePair(text) ?? 'auto';
+}
+
+/** Two numbers, the smaller first. */
+function parsePair(text: string | null): [number, number] | null {
+  const [low, high, more] = parseNumbers(text ?? '');
+  const isPair = low !== undefined && high !== undefined && more === undefined && low < high;
+  return isPair ? [low, high] : null;
 }
 
 function parseCamera(text: string | null): CameraState | null {

@@ -72,6 +72,8 @@ function isSameCamera(before: string | undefined, after: string | undefined): bo
 
 const kTitles: Record<string, string> = {
   colormap: 'colour map',
+  'time-range': 'part that plays',
+  'time-loop': 'play once',
   edges: 'cell edges',
   'clip-mode': 'clip',
   warp: 'deformed shape',

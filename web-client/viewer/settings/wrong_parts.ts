@@ -54,6 +54,8 @@ const kRules: Partial<Record<Name, Rule>> = {
     kRanges,
   ],
   time: [(text) => parseNumbers(text).length === 1, 'a number, a time of the series'],
+  'time-range': [isRange, 'two times, the smaller first: 0.5,2'],
+  'time-loop': oneOf('on', 'off'),
   scale: oneOf('log', 'linear'),
   edges: oneOf('on', 'off'),
   creases: oneOf('on', 'off'),
