@@ -73,4 +73,37 @@ async function theTimeIsAsWideAsThePicture({server, browser, out, bin}) {
   assert.deepEqual(viewer.problems, []);
 }
 
-export const timeChecks = {theTimeIsAsWideAsThePicture};
+/** In the legend, a point's card, and a plot's readout. */
+async function unitsStandWhereValuesAre({server, browser, out, bin}) {
+  const options = ['--unit', 'Density=kg/m3', '--unit', 'Velocity=m/s', '--time-unit', 's'];
+  makeLog(bin, 'units', out, ['fin', '--steps', '4', '--cells', '5000'], options);
+  server.kill();
+  await server.start();
+  for (const [name, device] of [
+    ['desktop', kDesktop],
+    ['phone-dark', {...kPhone, colorScheme: 'dark'}],
+  ]) {
+    const viewer = await browser.open(`${server.url}?mesh=units&field=Velocity`, device);
+    await viewer.waitForState('complete');
+    const {page} = viewer;
+    await page.getByRole('button', {name: 'First instant'}).waitFor();
+    await viewer.settle();
+    assert.equal(await viewer.text('.legend-name'), 'Velocity, magnitude [m/s]');
+    await page.locator('qtet-viewer canvas.scene').focus();
+    await page.keyboard.press('i');
+    const card = page.locator('qtet-viewer .result');
+    await card.waitFor();
+    const titles = await card.locator('dt').allInnerTexts();
+    assert.ok(
+      titles.some((title) => /^Velocity.*, magnitude \[m\/s\]$/.test(title)),
+      titles.join(),
+    );
+    await page.getByRole('button', {name: 'Over time'}).click();
+    await card.locator('canvas').waitFor();
+    await viewer.settle();
+    await viewer.screenshot(`units-${name}`);
+    assert.deepEqual(viewer.problems, []);
+  }
+}
+
+export const timeChecks = {theTimeIsAsWideAsThePicture, unitsStandWhereValuesAre};

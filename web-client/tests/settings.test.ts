@@ -88,6 +88,7 @@ describe('settings', () => {
     readSettings((name) => attributes[name] ?? null);
   test('withoutAttributesAreThePlainOnes', () => {
     expect(of({})).toEqual({
+      title: null,
       map: 'viridis',
       reversed: false,
       range: 'auto',

@@ -6,6 +6,7 @@
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
+//   field-title  its title in the legend, plots and pictures; by default its name and unit.
 //   time         of a series: the instant nearest to it is shown; by default the log's choice.
 //   time-range   "FROM,TO": the times that playing begins and ends at.
 //   time-loop    on (default), or off: playing ends at the last instant.

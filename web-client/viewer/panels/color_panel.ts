@@ -139,6 +139,7 @@ class ColorPanel implements Panel {
       this.ranges.set(this.field, range);
       this.attributes.write('range', null);
     }
+    this.attributes.write('field-title', null);
     this.attributes.write('field', field);
     const kept = this.ranges.get(field);
     if (kept !== undefined) this.attributes.write('range', kept);

@@ -11,6 +11,7 @@ import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
 import {segments} from './markup';
+import {withUnit} from './panel';
 import {ResultCard} from './result_card';
 
 export type Tool = 'none' | 'point' | 'line';
@@ -201,8 +202,9 @@ export class Inspect {
       const info = fields[field]!;
       if (info.instant && !info.instant.isShown) continue; // there may be a thousand
       const format = (value: number): string => formatIn(info, value);
-      rows.push([info.name, values.map(format).join(', ')]);
-      if (values.length > 1) rows.push([`${info.name}, magnitude`, format(Math.hypot(...values))]);
+      rows.push([withUnit(info.name, info), values.map(format).join(', ')]);
+      if (values.length > 1)
+        rows.push([withUnit(`${info.name}, magnitude`, info), format(Math.hypot(...values))]);
     }
     rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
     const {isOpen} = this.overTime;

@@ -44,7 +44,7 @@ export class Legend {
     marked: readonly number[],
   ): void {
     this.figure.hidden = false;
-    const title = scalarTitle(scalar, fields);
+    const title = settings.title ?? scalarTitle(scalar, fields);
     const name = this.part('.legend-name');
     setText(name, title);
     setAttribute(name, 'title', title);

@@ -75,10 +75,11 @@ const kAxes = ['x', 'y', 'z'];
 
 /** scalarName, with the unit that the log knows beside it: "Velocity, x [m/s]". */
 export function scalarTitle(scalar: Scalar, fields: readonly FieldInfo[]): string {
-  const {unit} = fields[scalar.field]!;
-  const name = scalarName(scalar, fields);
-  return unit === undefined ? name : `${name} [${unit}]`;
+  return withUnit(scalarName(scalar, fields), fields[scalar.field]!);
 }
+
+export const withUnit = (name: string, {unit}: Pick<FieldInfo, 'unit'>): string =>
+  unit === undefined ? name : `${name} [${unit}]`;
 
 /**
  * "Velocity, x", or "Velocity, magnitude" for a vector without a component. More than three are

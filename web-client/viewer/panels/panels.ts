@@ -50,7 +50,8 @@ export class Panels {
       apply: () => host.apply(),
       showTime: (text) => page.write('time', text),
       get fieldTitle() {
-        return this.color ? scalarTitle(this.color, host.mesh.manifest!.fields) : '';
+        const {color} = this;
+        return host.settings.title ?? (color ? scalarTitle(color, host.mesh.manifest!.fields) : '');
       },
       announce: (text) => page.announce(text),
     });

@@ -263,9 +263,13 @@ export class TimeBar {
   private showPart(): void {
     const {clock, line} = this;
     press(find(this.bar, '.loop'), clock.loops);
-    const [from, to] = clock.part.map((at) => `${(100 * at) / (line.times.length - 1)}%`);
+    const last = line.times.length - 1;
+    const [from, to] = clock.part.map((at) => `${(100 * at) / last}%`);
     const band = `${kNone} ${from}, ${kHere} ${from}, ${kHere} ${to}, ${kNone} ${to}`;
-    find(this.bar, '.part').style.backgroundImage = `linear-gradient(to right, ${band})`;
+    const isWhole = clock.part[0] === 0 && clock.part[1] === last;
+    find(this.bar, '.part').style.backgroundImage = isWhole
+      ? 'none'
+      : `linear-gradient(to right, ${band})`;
   }
 
   /** Draws the runs of instants that are here. */

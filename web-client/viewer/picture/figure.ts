@@ -245,7 +245,8 @@ function drawLegend(pen: Pen, legend: LegendTexts, figure: Figure, height: numbe
   const factor = {align: 'right', soft: true} as const;
   pen.write(legend.factor, kText, left + bar, y, factor);
   const free = bar - (legend.factor ? context.measureText(legend.factor).width + kText : 0);
-  const name = unit ? `${legend.name} (${unit})` : legend.name;
+  // The log may know another unit, "T [K]".
+  const name = unit ? `${legend.name.replace(/ \[[^\]]*\]$/, '')} [${unit}]` : legend.name;
   pen.write(name, kText, left, y, {bold: true, maxWidth: free});
   y += kText * (kLine - 1) + 8;
   const place = {left, top: y, width: bar};

@@ -17,6 +17,7 @@ import type {CameraState} from '../../webgl/camera';
 const kBeforeLayers = [
   'mesh',
   'field',
+  'field-title',
   'time',
   'time-range',
   'time-loop',
@@ -49,7 +50,12 @@ export const kViewAttributes: readonly ViewAttribute[] = [
   ...kAfterLayers,
 ];
 
+/** A legend has two lines. */
+const kMaxTitle = 120;
+
 export interface Settings {
+  /** The title of the shown field; null: its name and its unit. */
+  title: string | null;
   map: ColorMapName;
   reversed: boolean;
   range: 'auto' | 'full' | 'symmetric' | 'instant' | [number, number];
@@ -88,6 +94,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
   const mode = get('clip-mode') as ClipMode;
   const opacity = Number(get('opacity') ?? 1);
   return {
+    title: get('field-title')?.trim().slice(0, kMaxTitle) || null,
     map: isColorMapName(map) ? map : 'viridis',
     reversed: reversed === 'reversed',
     range: parseRange(get('range')),
