@@ -9,6 +9,7 @@ import {Browser} from './browser.mjs';
 import {processorSeconds} from './browser_processes.mjs';
 import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
+import {colorChecks} from './color_checks.mjs';
 import {dropChecks} from './drop_checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
@@ -56,7 +57,7 @@ const lists = {
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
   edge: {...edgeChecks, ...warpChecks},
-  legend: {...legendChecks, ...histogramChecks, ...undoChecks},
+  legend: {...legendChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,

@@ -91,6 +91,7 @@ describe('settings', () => {
       title: null,
       map: 'viridis',
       reversed: false,
+      beyond: [null, null],
       range: 'auto',
       logarithmic: false,
       edges: true,

@@ -1,5 +1,6 @@
 // The parts of a viewer that the first picture does not need. They are loaded behind it.
 
+import {errorText} from '../core/protocol/errors';
 import type {View} from '../webgl/view';
 import {beginsLog} from '../core/protocol/magic';
 import type {StreamState} from '../core/session/worker_messages';
@@ -199,8 +200,20 @@ export class Later {
     if (beginsLog(first)) this.host.stream.openFile(file, leftOut(file, files));
     else if (file.name.endsWith('.qtet'))
       this.host.failed('dropped-mesh', `${file.name} is no log, or it is damaged. Copy it again.`);
+    else if (file.name.endsWith('.json')) await this.takeColors(file);
     else if (file.type.startsWith('image/')) await (await this.pictures.get())?.open(file);
     else await (await this.meshDrop.get())?.take(files);
+  }
+
+  /** A colour map of ParaView. */
+  private async takeColors(file: File): Promise<void> {
+    const {host, page} = this;
+    try {
+      const {readColorMap} = await import('./drop/color_map_file');
+      page.write('colormap', await readColorMap(file));
+    } catch (thrown) {
+      host.failed('dropped-colors', errorText(thrown));
+    }
   }
 
   /** Must be called after every frame. */

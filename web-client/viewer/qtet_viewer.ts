@@ -12,6 +12,8 @@
 //   time-loop    on (default), or off: playing ends at the last instant.
 //   time-group   a name: viewers of the document with the same one show the same time.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
+//                "viridis/8" has eight steps; "custom:0=0000ff,1=ff0000" are own colours.
+//   beyond       colours of values below and above the range: "1f3fbf,ff00ff".
 //   range        "auto" (default), "full", "symmetric", "LOW,HIGH" or, of a series, "instant".
 //   scale        "log".
 //   edges        "off" hides them.

@@ -7,7 +7,9 @@ import {
   labelGradient,
   type ColorMapName,
 } from '../../core/picture/color_maps';
+import {isSteps, splitColorMap} from '../../core/picture/color_map_text';
 import {labelsOf} from '../../core/picture/labels';
+import {find} from '../page/find';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
 import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
@@ -22,15 +24,21 @@ const kMapTitles = {
   turbo: 'Turbo',
   grey: 'Grey',
   labels: 'One colour a label',
+  custom: 'Own colours',
 };
 /** The ends of the range are shown to this share of it. */
 const kRangeShare = 1e-4;
 
-const swatches = [...kColorMapNames, 'labels' as const]
+const kRare = ['labels', 'custom'] as const;
+/** Of a panel's first choice. */
+const kBeyond = '8c8c8c,ff00ff';
+
+const swatches = [...kColorMapNames, ...kRare]
   .map((name) => {
     const title = kMapTitles[name];
+    const hidden = (kRare as readonly string[]).includes(name) ? ' hidden' : '';
     return `
-  <label class="swatch ${name}" title="${title}"${name === 'labels' ? ' hidden' : ''}>
+  <label class="swatch ${name}" title="${title}"${hidden}>
     <input type="radio" name="colormap" value="${name}" aria-label="${title}">
     <span></span>
   </label>`;
@@ -45,6 +53,14 @@ const kMarkup = `
 <div class="row wrap">
   <label class="toggle"><input type="checkbox" name="reversed"><span>Reversed</span></label>
   <label class="toggle"><input type="checkbox" name="log"><span>Log scale</span></label>
+</div>
+<div class="row">
+  <label class="row"><span class="name">Steps</span><input type="text" name="steps"
+    class="steps" inputmode="numeric" placeholder="none" autocomplete="off"></label>
+  <label class="toggle" title="Colours of values beyond the range"><input type="checkbox"
+    name="beyond"><span>Beyond</span></label>
+  <input type="color" name="below" aria-label="Colour below the range" hidden>
+  <input type="color" name="above" aria-label="Colour above the range" hidden>
 </div>
 <div class="row">
   <span class="name">Range</span>
@@ -62,8 +78,13 @@ const kMarkup = `
   <input type="text" inputmode="decimal" name="range-high" aria-label="End of the range">
 </div>`;
 
-function gradientOf(map: string): string {
-  return map === 'labels' ? labelGradient(kShownLabels) : colorGradient(map as ColorMapName);
+/** Gives a swatch the colours of its map. */
+function paint(swatch: HTMLInputElement): void {
+  const {value} = swatch;
+  const isLabels = value === 'labels';
+  (swatch.nextElementSibling as HTMLElement).style.background = isLabels
+    ? labelGradient(kShownLabels)
+    : colorGradient(value as ColorMapName);
 }
 
 class ColorPanel implements Panel {
@@ -79,7 +100,18 @@ class ColorPanel implements Panel {
     private readonly attributes: Attributes,
   ) {
     for (const swatch of root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
-      (swatch.nextElementSibling as HTMLElement).style.background = gradientOf(swatch.value);
+      if (swatch.value !== 'custom') paint(swatch);
+    this.on('input[name=steps]', () => this.writeMap());
+    this.on('input[name=beyond]', (box) =>
+      attributes.write('beyond', (box as HTMLInputElement).checked ? kBeyond : null),
+    );
+    for (const end of ['below', 'above'])
+      this.on(`input[name=${end}]`, () =>
+        attributes.write(
+          'beyond',
+          ['below', 'above'].map((name) => this.input(name).value.slice(1)).join(),
+        ),
+      );
     this.on('select[name=field]', (select) => this.chooseField(select.value));
     this.on('.swatches', () => this.writeMap());
     this.on('input[name=reversed]', () => this.writeMap());
@@ -92,8 +124,13 @@ class ColorPanel implements Panel {
   }
 
   update(settings: Settings, scene: Scene | null): void {
+    const [map, steps] = splitColorMap(settings.map);
+    if (map.startsWith('custom:')) this.offerOwn(map);
     for (const swatch of this.root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
-      swatch.checked = swatch.value === settings.map;
+      swatch.checked = swatch.value === map;
+    this.input('steps').value = steps > 0 ? String(steps) : '';
+    this.input('steps').disabled = map === 'labels';
+    this.showBeyond(settings);
     this.input('reversed').checked = settings.reversed;
     this.input('log').checked = settings.logarithmic;
     const fields = scene?.manifest.fields ?? [];
@@ -104,6 +141,27 @@ class ColorPanel implements Panel {
     const menu = this.find<HTMLSelectElement>('select[name=field]');
     fillScalars(menu, fields, chosen);
     this.field = menu.value;
+  }
+
+  /** Own colours stay among the choices. */
+  private offerOwn(map: string): void {
+    const label = this.find('.swatch.custom');
+    const swatch = find<HTMLInputElement>(label, 'input');
+    label.hidden = false;
+    if (swatch.value === map) return;
+    swatch.value = map;
+    paint(swatch);
+  }
+
+  private showBeyond({beyond}: Settings): void {
+    const isOn = beyond.some((color) => color !== null);
+    this.input('beyond').checked = isOn;
+    for (const [i, name] of ['below', 'above'].entries()) {
+      const input = this.input(name);
+      input.hidden = !isOn;
+      const hex = beyond[i]?.map((channel) => channel.toString(16).padStart(2, '0')).join('');
+      input.value = `#${hex ?? kBeyond.split(',')[i]!}`;
+    }
   }
 
   /** Only a series can have the range of an instant. */
@@ -146,7 +204,12 @@ class ColorPanel implements Panel {
   }
 
   private writeMap(): void {
-    const map = this.root.querySelector<HTMLInputElement>('input[name=colormap]:checked')!.value;
+    const {value} = this.find<HTMLInputElement>('input[name=colormap]:checked');
+    const steps = this.input('steps').value.trim();
+    const isRight = steps === '' || isSteps(steps);
+    this.input('steps').setCustomValidity(isRight ? '' : 'Steps are a number from 2 to 64.');
+    if (!isRight) return void this.input('steps').reportValidity();
+    const map = steps === '' || value === 'labels' ? value : `${value}/${steps}`;
     this.attributes.write('colormap', this.input('reversed').checked ? `${map} reversed` : map);
   }
 

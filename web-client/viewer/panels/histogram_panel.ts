@@ -1,7 +1,7 @@
 // The histogram of the coloured field with the colours below it. Two handles set the range.
 
 import {scalarText} from '../../core/layers/field_values';
-import {colorGradient} from '../../core/picture/color_maps';
+import {gradientStops} from '../../core/picture/color_maps';
 import type {Axis, Histogram} from '../../core/picture/histogram';
 import {find, onClick} from '../page/find';
 import {formatValue, roundTo} from '../page/format';
@@ -261,12 +261,16 @@ function endTexts(extent: Histogram['extent']): [string, string] {
   return [`Lowest ${shortText(low)}`, `Highest ${shortText(high)}`];
 }
 
-/** The colours on the axis: beyond the range, those of its ends. */
-function stripOf({map, reversed}: Settings, first: number, last: number): string {
+/** The colours on the axis, also beyond the range. */
+function stripOf({map, reversed, beyond}: Settings, first: number, last: number): string {
   const kStops = 17;
-  const colors = colorGradient(map, reversed, kStops).match(/rgb\([^)]*\)/g)!;
-  const stops = colors.map(
-    (color, i) => `${color} ${(100 * (first + (i * (last - first)) / (kStops - 1))).toFixed(2)}%`,
+  const stops = gradientStops(map, reversed, kStops).map(
+    ([at, color]) => `${color} ${(100 * (first + at * (last - first))).toFixed(2)}%`,
   );
-  return `linear-gradient(90deg, ${stops.join()})`;
+  const [below, above] = [first, last].map((share, i): string[] => {
+    const color = beyond[i] && `rgb(${beyond[i].join(' ')})`;
+    return color ? [`${color} ${100 * i}%`, `${color} ${(100 * share).toFixed(2)}%`] : [];
+  });
+  const all = [...below!, ...stops, ...above!.reverse()];
+  return `linear-gradient(90deg, ${all.join()})`;
 }

@@ -1,5 +1,6 @@
 // The panels of sections.ts, and what one points with; this updates them together.
 
+import type {Scalar} from '../../core/picture/field_scale';
 import {isEqual} from '../../core/protocol/equal';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import {seriesServer} from '../../core/transport/series_server';
@@ -50,7 +51,7 @@ export class Panels {
       apply: () => host.apply(),
       showTime: (text) => page.write('time', text),
       get fieldTitle() {
-        const {color} = this;
+        const color: Scalar | null = this.color;
         return host.settings.title ?? (color ? scalarTitle(color, host.mesh.manifest!.fields) : '');
       },
       announce: (text) => page.announce(text),

@@ -5,6 +5,7 @@ import {parseClip, type ClipSetting} from '../../core/layers/clip';
 import {parseNumbers, parseScalar} from '../../core/layers/field_values';
 import {kLayers, type LayerAttribute} from '../../core/layers/layers';
 import {readVolume} from '../../core/layers/volume';
+import {parseBeyond} from '../../core/picture/color_map_text';
 import {isColorMapName, kLabelColors, type ColorMapName} from '../../core/picture/color_maps';
 import {kClipModes, type ClipMode} from '../../core/picture/display';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
@@ -22,6 +23,7 @@ const kBeforeLayers = [
   'time-range',
   'time-loop',
   'colormap',
+  'beyond',
   'range',
   'scale',
   'edges',
@@ -58,6 +60,8 @@ export interface Settings {
   title: string | null;
   map: ColorMapName;
   reversed: boolean;
+  /** The colours below and above the range; null: those of its ends. */
+  beyond: [number[] | null, number[] | null];
   range: 'auto' | 'full' | 'symmetric' | 'instant' | [number, number];
   logarithmic: boolean;
   edges: boolean;
@@ -94,9 +98,10 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
   const mode = get('clip-mode') as ClipMode;
   const opacity = Number(get('opacity') ?? 1);
   return {
-    title: get('field-title')?.trim().slice(0, kMaxTitle) || null,
+    title: parseTitle(get('field-title')),
     map: isColorMapName(map) ? map : 'viridis',
     reversed: reversed === 'reversed',
+    beyond: parseBeyond(get('beyond') ?? '') ?? [null, null],
     range: parseRange(get('range')),
     logarithmic: get('scale') === 'log',
     edges: get('edges') !== 'off',
@@ -129,6 +134,11 @@ function parsePair(text: string | null): [number, number] | null {
   const [low, high, more] = parseNumbers(text ?? '');
   const isPair = low !== undefined && high !== undefined && more === undefined && low < high;
   return isPair ? [low, high] : null;
+}
+
+function parseTitle(text: string | null): string | null {
+  const title = text?.trim().slice(0, kMaxTitle) ?? '';
+  return title === '' ? null : title;
 }
 
 function parseCamera(text: string | null): CameraState | null {

@@ -75,6 +75,7 @@ const kTitles: Record<string, string> = {
   colormap: 'colour map',
   'time-range': 'part that plays',
   'time-loop': 'play once',
+  beyond: 'colours beyond the range',
   edges: 'cell edges',
   'clip-mode': 'clip',
   warp: 'deformed shape',
