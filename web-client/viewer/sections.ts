@@ -2,7 +2,7 @@
 
 import {filePanel} from './drop/file_panel';
 import {clipPanel} from './panels/clip_panel';
-import {colorPanel} from './panels/color_panel';
+import {colorPanel, stepsPanel} from './panels/color_panel';
 import {histogramPanel} from './panels/histogram_panel';
 import {kToolMarkup} from './panels/inspect';
 import {levelPanel} from './panels/level_panel';
@@ -23,7 +23,7 @@ interface Section {
 }
 
 const kSections: readonly Section[] = [
-  {name: 'colours', title: 'Field and colours', panels: [colorPanel, histogramPanel]},
+  {name: 'colours', title: 'Field and colours', panels: [colorPanel, histogramPanel, stepsPanel]},
   {name: 'surface', title: 'Surface', panels: [surfacePanel]},
   {name: 'deform', title: 'Deform', panels: [warpPanel]},
   {

@@ -55,14 +55,6 @@ const kMarkup = `
   <label class="toggle"><input type="checkbox" name="log"><span>Log scale</span></label>
 </div>
 <div class="row">
-  <label class="row"><span class="name">Steps</span><input type="text" name="steps"
-    class="steps" inputmode="numeric" placeholder="none" autocomplete="off"></label>
-  <label class="toggle" title="Colours of values beyond the range"><input type="checkbox"
-    name="beyond"><span>Beyond</span></label>
-  <input type="color" name="below" aria-label="Colour below the range" hidden>
-  <input type="color" name="above" aria-label="Colour above the range" hidden>
-</div>
-<div class="row">
   <span class="name">Range</span>
   <select name="range" class="small" aria-label="Range of the colours">
     <option value="auto">Automatic</option>
@@ -76,6 +68,17 @@ const kMarkup = `
   <input type="text" inputmode="decimal" name="range-low" aria-label="Start of the range">
   <span class="name">to</span>
   <input type="text" inputmode="decimal" name="range-high" aria-label="End of the range">
+</div>`;
+
+/** It stands below the histogram, which a low sheet shows as well. */
+const kStepsMarkup = `
+<div class="row">
+  <label class="row"><span class="name">Steps</span><input type="text" name="steps"
+    class="steps" inputmode="numeric" placeholder="none" autocomplete="off"></label>
+  <label class="toggle" title="Colours of values beyond the range"><input type="checkbox"
+    name="beyond"><span>Beyond</span></label>
+  <input type="color" name="below" aria-label="Colour below the range" hidden>
+  <input type="color" name="above" aria-label="Colour above the range" hidden>
 </div>`;
 
 /** Gives a swatch the colours of its map. */
@@ -251,3 +254,5 @@ export const colorPanel: PanelKind = {
   markup: kMarkup,
   make: ({page}) => new ColorPanel(page.root, page),
 };
+/** Its controls are served by colorPanel. */
+export const stepsPanel: PanelKind = {markup: kStepsMarkup};
