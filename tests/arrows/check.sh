@@ -153,7 +153,7 @@ declare -A below=(
   [viewer/page]='core(/.*)?|webgl|viewer/settings'
   [viewer/panels]='core(/.*)?|webgl|viewer/(settings|page)'
   [viewer/picture]='core(/.*)?|webgl|viewer/(settings|page|panels)'
-  [viewer/drop]='core(/.*)?|viewer/page'
+  [viewer/drop]='core(/.*)?|viewer/(page|panels)'
   [viewer]='core(/.*)?|webgl|viewer/.*'
 )
 while read -r from to; do

@@ -302,8 +302,7 @@ export class ViewerPage {
   async waitForLines() {
     const [worker] = this.page.workers().filter((its) => /\/worker\b/.test(its.url()));
     for (const end = Date.now() + kTimeoutMs; Date.now() < end; await this.page.waitForTimeout(50))
-      if (await worker.evaluate(() => globalThis.qtetPublisher.creases !== null))
-        return this.settle();
+      if (await worker.evaluate(() => globalThis.qtetPublisher.hasCreases)) return this.settle();
     throw new Error('there are no lines');
   }
 

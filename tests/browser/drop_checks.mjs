@@ -26,7 +26,7 @@ async function withMesh({server, browser}) {
 }
 
 /** `files`: [name, bytes], dropped together. */
-const drop = (viewer, ...files) =>
+export const drop = (viewer, ...files) =>
   viewer.page.evaluate(
     (list) => {
       const dataTransfer = new DataTransfer();

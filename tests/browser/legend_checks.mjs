@@ -217,7 +217,7 @@ async function movesAndCentresByKeys({server, browser}) {
     page.evaluate(() => {
       const {meshView, viewing} = window.qtetViewer;
       const {bounds} = viewing.mesh;
-      const {pointed: point} = viewing;
+      const point = viewing.later?.panels.inspect.pointed;
       const [x, y] = viewing.shell.cards.middle;
       return {
         mesh: meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2)),

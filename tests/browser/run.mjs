@@ -9,6 +9,7 @@ import {Browser} from './browser.mjs';
 import {processorSeconds} from './browser_processes.mjs';
 import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
+import {colorChecks} from './color_checks.mjs';
 import {dropChecks} from './drop_checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
@@ -25,6 +26,7 @@ import {posterChecks} from './poster_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
 import {recoveryChecks} from './recovery_checks.mjs';
 import {segmentChecks} from './segment_checks.mjs';
+import {timeChecks} from './time_checks.mjs';
 import {transportChecks} from './transport_checks.mjs';
 import {undoChecks} from './undo_checks.mjs';
 import {volumeChecks} from './volume_checks.mjs';
@@ -55,8 +57,8 @@ const lists = {
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
   edge: {...edgeChecks, ...warpChecks},
-  legend: {...legendChecks, ...histogramChecks, ...undoChecks},
-  panel: {...panelChecks, ...pictureChecks},
+  legend: {...legendChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
+  panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,
   baseline: baselineChecks,

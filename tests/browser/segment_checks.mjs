@@ -62,8 +62,8 @@ const countFrames = (view) => {
 const barOf = ({page}) =>
   page.evaluate(() => {
     const bar = window.qtetViewer.shadowRoot.querySelector('.time');
-    const {max, value} = bar.querySelector('input');
-    return [max, value, bar.querySelector('output').textContent];
+    const {ariaValueText, max, value} = bar.querySelector('input');
+    return [max, value, ariaValueText];
   });
 
 async function waitForDigest(viewer, {meshDigest}) {

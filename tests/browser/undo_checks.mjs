@@ -27,7 +27,9 @@ async function undoesSettingsAndTheCamera({server, browser}) {
   await page.getByRole('radio', {name: 'Turbo'}).check({force: true});
   await viewer.settle();
   // one drag of a slider, with rests, is one step
-  const {x, y, width, height} = await page.locator('qtet-viewer input[name=opacity]').boundingBox();
+  const slider = page.locator('qtet-viewer input[name=opacity]');
+  await slider.scrollIntoViewIfNeeded();
+  const {x, y, width, height} = await slider.boundingBox();
   await page.mouse.move(x + width - 8, y + height / 2);
   await page.mouse.down();
   for (const share of [0.8, 0.6, 0.4]) {

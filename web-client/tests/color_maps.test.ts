@@ -1,4 +1,5 @@
 import {expect, test} from 'vitest';
+import {parseBeyond} from '../core/picture/color_map_text';
 import {
   colorGradient,
   colorTable,
@@ -61,6 +62,59 @@ test('gradientsRunFromTheFirstToTheLastEntry', () => {
   const gradient = colorGradient('viridis', false, 5);
   expect(gradient).toMatch(/^linear-gradient\(90deg, rgb\(68 1 84\), .*rgb\(253 231 37\)\)$/);
   expect(gradient.split('rgb(')).toHaveLength(6);
+});
+
+test('stepsHaveOneColourEachAndBothEndsOfTheMap', () => {
+  const table = colorTable('grey/4');
+  const reds = Array.from({length: 256}, (_, i) => table[4 * i]!);
+  expect([...new Set(reds)]).toEqual([26, 96, 166, 236]);
+  expect([reds[63], reds[64]]).toEqual([26, 96]);
+  const turned = colorTable('grey/4', true);
+  expect([turned[0], turned[4 * 255]]).toEqual([236, 26]);
+  expect(colorGradient('grey/2')).toBe(
+    'linear-gradient(90deg, rgb(26 26 26) 0%, rgb(26 26 26) 50%, ' +
+      'rgb(236 236 236) 50%, rgb(236 236 236) 100%)',
+  );
+});
+
+test('ownColoursAreMixedBetweenTheirShares', () => {
+  const table = colorTable('custom:0=000000,0.5=ff0000,1=ffffff');
+  const at = (i: number): number[] => [...table.subarray(4 * i, 4 * i + 3)];
+  expect([at(0), at(51), at(255)]).toEqual([
+    [0, 0, 0],
+    [102, 0, 0],
+    [255, 255, 255],
+  ]);
+});
+
+test.each([
+  ['viridis/8', true],
+  ['viridis/1', false],
+  ['viridis/64', true],
+  ['viridis/65', false],
+  ['viridis/8/8', false],
+  ['labels/8', false],
+  ['custom:0=000000,1=ffffff', true],
+  ['custom:0=000000,1=ffffff/5', true],
+  ['custom:0=000000', false],
+  ['custom:0.5=000000,0.5=ffffff', false],
+  ['custom:0=000000,1.1=ffffff', false],
+  ['custom:0=000,1=ffffff', false],
+  ['custom:=000000,1=ffffff', false],
+  [`custom:${Array.from({length: 64}, (_, i) => `${i / 64}=000000`).join()}`, true],
+  [`custom:${Array.from({length: 65}, (_, i) => `${i / 65}=000000`).join()}`, false],
+])('ofTextsOnlyMapsAreTaken %s', (text, isRight) => {
+  expect(isColorMapName(text)).toBe(isRight);
+});
+
+test('coloursBeyondTheRangeAreTwoOfWhichOneMayBeMissing', () => {
+  expect(parseBeyond('ff0000,00ff00')).toEqual([
+    [255, 0, 0],
+    [0, 255, 0],
+  ]);
+  expect(parseBeyond(',0000ff')).toEqual([null, [0, 0, 255]]);
+  for (const wrong of ['', ',', 'ff0000', 'red,', 'ff0000,00ff00,0000ff'])
+    expect(parseBeyond(wrong)).toBeNull();
 });
 
 test('onlyKnownNamesAreNames', () => {

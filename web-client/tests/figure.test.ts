@@ -23,7 +23,7 @@ const kLegend: LegendTexts = {
   factor: '',
   gradient: '',
   ticks: [],
-  openEnds: [false, false],
+  endColors: ['', ''],
   marks: [],
   labels: [],
   notes: [],

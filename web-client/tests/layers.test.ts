@@ -14,7 +14,7 @@ import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
 import {displayOf} from '../viewer/requests';
 import {kViewAttributes, type ViewAttribute} from '../viewer/settings/settings';
 import {unfittingParts, wrongParts} from '../viewer/settings/wrong_parts';
-import {kControls} from '../viewer/controls_template';
+import {kControls} from '../viewer/sections';
 import {toy} from './toy_layer';
 
 vi.mock('../core/layers/layers', async (original) => {
@@ -42,7 +42,9 @@ function displayFor(attributes: Record<string, string>): ReturnType<typeof displ
 }
 
 test('hasAnAttributeThatIsCheckedAndControls', () => {
-  expect(kViewAttributes.slice(10, 16).join(' ')).toBe('clip clip-mode iso threshold volume toy');
+  const first = kViewAttributes.indexOf('clip');
+  const layers = kViewAttributes.slice(first, first + 6).join(' ');
+  expect(layers).toBe('clip clip-mode iso threshold volume toy');
   expect(wrongParts(read({toy: 'p=1'}))).toEqual([]);
   expect(wrongParts(read({toy: 'p=1,2'}))).toEqual([
     'toy="p=1,2" is not understood. It takes a field, "=" and a number.',

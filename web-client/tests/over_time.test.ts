@@ -102,6 +102,7 @@ describe('a plot over time', () => {
       at: [0, 1],
       values: [5, NaN],
       title: 'u',
+      atTitle: 'time',
       time: 0,
       status: '1 of 2 instants are here, 0\u00a0B so far.',
     });

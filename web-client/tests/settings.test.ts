@@ -88,8 +88,10 @@ describe('settings', () => {
     readSettings((name) => attributes[name] ?? null);
   test('withoutAttributesAreThePlainOnes', () => {
     expect(of({})).toEqual({
+      title: null,
       map: 'viridis',
       reversed: false,
+      beyond: [null, null],
       range: 'auto',
       logarithmic: false,
       edges: true,
@@ -106,6 +108,8 @@ describe('settings', () => {
       warpScale: null,
       restEdges: false,
       time: null,
+      timePart: null,
+      timeLoops: true,
       volume: null,
       hasFirstOpacities: false,
     });

@@ -1,11 +1,12 @@
 // The parts of a viewer that the first picture does not need. They are loaded behind it.
 
+import {errorText} from '../core/protocol/errors';
 import type {View} from '../webgl/view';
 import {beginsLog} from '../core/protocol/magic';
 import type {StreamState} from '../core/session/worker_messages';
 import styles from './controls.css?inline';
-import {kCards, kControls, kCube, kDialogs} from './controls_template';
-import type {ShownRange} from './settings/settings';
+import {kCards, kCube, kDialogs} from './controls_template';
+import {kControls, kPanelKinds} from './sections';
 import {unfittingParts, unknownNames, wrongParts} from './settings/wrong_parts';
 import {Actions, type ActionsHost} from './page/actions';
 import {find} from './page/find';
@@ -14,11 +15,10 @@ import type {Page} from './page/page';
 import {adopt, insertMarkup, setMarkup} from './page/trusted';
 import {Undo} from './page/undo';
 import {ErrorCurve} from './panels/error_curve';
-import {FilePanel} from './drop/file_panel';
-import {HistogramPanel} from './panels/histogram_panel';
 import {Hover} from './panels/hover';
 import {OrientationCube} from './panels/orientation_cube';
-import {Panels, type PanelsHost} from './panels/panels';
+import type {PanelsHost} from './panels/panel';
+import {Panels} from './panels/panels';
 import type {Shell} from './panels/shell';
 import {TimeBar, type TimeHost} from './panels/time_bar';
 import type {MeshDrop} from './drop/mesh_drop';
@@ -27,9 +27,6 @@ import type {MovieOptions} from './picture/movies';
 import type {Pictures} from './picture/pictures';
 
 export interface LaterHost extends ActionsHost, PanelsHost, TimeHost {
-  readonly range: ShownRange | null;
-  /** A series plays. */
-  readonly isPlaying: boolean;
   readonly stream: {
     readonly state: StreamState;
     choose(mesh: string): void;
@@ -99,7 +96,10 @@ export class Later {
         ),
     );
     this.actions = new Actions(page, host);
-    this.panels = new Panels(page, host, this.actions, shell.cards);
+    const {actions} = this;
+    const {signal} = this.ends;
+    const take = (files: File[]): void => void this.take(files);
+    this.panels = new Panels({page, host, actions, signal, take}, kPanelKinds, shell.cards);
     shell.progress.attach(new ErrorCurve(find(root, '.curve')));
     this.cube = new OrientationCube(find(page.root, '.orientation-cube'), (direction) =>
       host.look(direction),
@@ -122,11 +122,9 @@ export class Later {
         if (camera && host.view) host.view.cameraState = camera;
         else host.look(null);
       },
-      this.ends.signal,
+      signal,
     );
-    new HistogramPanel(page, host, this.ends.signal);
-    this.time = new TimeBar(page.root, page, host, this.ends.signal);
-    new FilePanel(page, host, (files) => void this.take(files));
+    this.time = new TimeBar(page.root, page, host, signal);
     this.takeDrops();
     this.panels.showState(host.stream.state);
     if (host.view) this.attach(host.view);
@@ -139,7 +137,6 @@ export class Later {
 
   /** Must be called with each new view. */
   attach(view: View): void {
-    this.panels.attach(view);
     bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
     this.follow();
   }
@@ -203,8 +200,20 @@ export class Later {
     if (beginsLog(first)) this.host.stream.openFile(file, leftOut(file, files));
     else if (file.name.endsWith('.qtet'))
       this.host.failed('dropped-mesh', `${file.name} is no log, or it is damaged. Copy it again.`);
+    else if (file.name.endsWith('.json')) await this.takeColors(file);
     else if (file.type.startsWith('image/')) await (await this.pictures.get())?.open(file);
     else await (await this.meshDrop.get())?.take(files);
+  }
+
+  /** A colour map of ParaView. */
+  private async takeColors(file: File): Promise<void> {
+    const {host, page} = this;
+    try {
+      const {readColorMap} = await import('./drop/color_map_file');
+      page.write('colormap', await readColorMap(file));
+    } catch (thrown) {
+      host.failed('dropped-colors', errorText(thrown));
+    }
   }
 
   /** Must be called after every frame. */

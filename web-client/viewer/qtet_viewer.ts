@@ -6,9 +6,14 @@
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
 //   field        name of the field, "NAME[0]" for a component; by default the log's choice.
+//   field-title  its title in the legend, plots and pictures; by default its name and unit.
 //   time         of a series: the instant nearest to it is shown; by default the log's choice.
+//   time-range   "FROM,TO": the times that playing begins and ends at.
+//   time-loop    on (default), or off: playing ends at the last instant.
 //   time-group   a name: viewers of the document with the same one show the same time.
 //   colormap     viridis (default), cividis, cool-warm, turbo, grey or labels; "turbo reversed".
+//                "viridis/8" has eight steps; "custom:0=0000ff,1=ff0000" are own colours.
+//   beyond       colours of values below and above the range: "1f3fbf,ff00ff".
 //   range        "auto" (default), "full", "symmetric", "LOW,HIGH" or, of a series, "instant".
 //   scale        "log".
 //   edges        "off" hides them.
@@ -35,7 +40,7 @@
 //                time-change (another instant, or playing begins or ends). `detail` holds the
 //                figures, the error, the camera, the attribute or the time.
 // Slots          poster (shown until the first picture), progress (instead of the viewer's own).
-// Parts          canvas, panel, progress, legend, hint, marks, result, notice.
+// Parts          canvas, panel, progress, legend, time, hint, marks, result, notice.
 // Methods        digest(), pause(), resume(), resetView(), look(direction), picture(),
 //                movie(options).
 // Properties     counts, statistics, state, view, cameraState, playing, token.

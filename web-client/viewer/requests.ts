@@ -4,6 +4,7 @@ import {sharesOf} from '../core/layers/field_values';
 import {fieldLayers} from '../core/layers/layers';
 import {kPlainDisplay, type Display} from '../core/picture/display';
 import type {Plane} from '../core/protocol/geometry';
+import {isEqual} from '../core/protocol/equal';
 import type {Client} from '../core/session/client';
 import type {ShownMesh} from './page/shown_mesh';
 import {planeOf} from './settings/clip_plane';
@@ -11,20 +12,19 @@ import {warpOf} from './settings/warp';
 import {shownScalar, type Settings, type ViewAttribute} from './settings/settings';
 
 export class Requests {
-  private display = '';
+  private display: Display | null = null;
 
   constructor(private readonly client: Client) {}
 
   /** Must be called before another mesh: the worker knows nothing about it. */
   forget(): void {
-    this.display = '';
+    this.display = null;
   }
 
   /** Returns true if the display has changed. */
   show(display: Display): boolean {
-    const text = JSON.stringify(display);
-    if (text === this.display) return false;
-    this.display = text;
+    if (isEqual(display, this.display)) return false;
+    this.display = display;
     this.client.show(display);
     return true;
   }

@@ -28,7 +28,9 @@ import {displacementKey, kNoWarp} from './settings/warp';
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
 const kOfOneMesh = [
   'field',
+  'field-title',
   'range',
+  'time-range',
   ...fieldLayers().map(({name}) => name),
   'warp',
   'warp-scale',

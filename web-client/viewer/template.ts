@@ -27,9 +27,10 @@ export const kTemplate = `
 <div class="layer" aria-hidden="true"><svg class="marks" part="marks"></svg></div>
 <div class="visually-hidden live" role="status" aria-live="polite"></div>
 
+<section class="card time" part="time" aria-label="Time" hidden></section>
+
 <figure class="card legend" part="legend" hidden>
   <figcaption><span class="legend-name"></span><span class="legend-factor"></span></figcaption>
-  <div class="time" hidden></div>
   <div class="legend-bar"></div>
   <div class="legend-ticks"></div>
   <ul class="legend-labels" role="list" hidden></ul>

@@ -1,22 +1,23 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
 import type {BaseFigures} from '../core/picture/base_figures';
-import {latticeChange, type LatticeChange, type Vector} from '../core/protocol/geometry';
+import {latticeChange, type LatticeChange} from '../core/protocol/geometry';
+import {isEqual} from '../core/protocol/equal';
 import type {CoarseCells} from '../core/picture/volume';
 import type {Client} from '../core/session/client';
 import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
-import {kMovingMs} from '../webgl/frame_budget';
 import type {View} from '../webgl/view';
 import {Graphics, type ViewStart} from './graphics';
 import {CameraWatch} from './page/camera_watch';
 import {isOnDark, watchGround} from './page/ground';
+import {Hurry} from './page/hurry';
 import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
 import {kMaxAhead, settingsFor, ShownMesh, type SegmentPlace} from './page/shown_mesh';
 import {Shell} from './panels/shell';
 import {displayOf, Requests} from './requests';
-import {kViewAttributes, readSettings, type Settings, type ShownRange} from './settings/settings';
+import {readSettings, type Settings, type ShownRange} from './settings/settings';
 import type {Later, LaterHost} from './later';
 import type {MovieOptions} from './picture/movies';
 import {StreamControl} from './stream_control';
@@ -37,8 +38,6 @@ export class Viewing implements LaterHost {
   settings: Settings;
   /** The values that the colours span; null if nothing is coloured. */
   range: ShownRange | null = null;
-  /** The place that is pointed at, on the lattice. */
-  private pointed: Vector | null = null;
   readonly stream: StreamControl;
   readonly notices: Notices;
   private readonly graphics: Graphics;
@@ -50,13 +49,9 @@ export class Viewing implements LaterHost {
   /** The controls; null before they are loaded. */
   later: Later | null = null;
   private readonly timer: ReturnType<typeof setTimeout>;
-  /** The settings in the panels, as text. */
-  private shownSettings = '';
   /** The `complete` event has been dispatched. */
   private completeTold = false;
-  /** The graphics are too slow for what plays: the page spares them what it can. */
-  isHurried = false;
-  private wasSlow = false;
+  private readonly hurry: Hurry;
 
   /** REQUIRES: the page's root holds the markup. */
   constructor(
@@ -67,6 +62,7 @@ export class Viewing implements LaterHost {
     // The stream of a file begins at once and needs the limit.
     this.settings = readSettings((name) => page.read(name));
     this.requests = new Requests(client);
+    this.hurry = new Hurry(page.element);
     this.notices = new Notices(page.root, (source) =>
       source === 'graphics' ? this.restartGraphics() : void this.stream.open(),
     );
@@ -106,7 +102,7 @@ export class Viewing implements LaterHost {
   }
 
   dispose(): void {
-    this.hurry(false);
+    this.hurry.end();
     clearTimeout(this.timer);
     this.endGround();
     this.camera.dispose();
@@ -136,32 +132,17 @@ export class Viewing implements LaterHost {
     this.stream.follow();
     const {mesh} = this;
     this.later?.tellWrongParts();
-    this.updatePanels();
+    this.later?.panels.update(this.settings, mesh);
     this.later?.time.update(this.settings, mesh);
     this.startPlaying();
     view?.setLook({...this.settings, onDark: isOnDark(page.element)});
     view?.setParallel(this.settings.parallel);
     view?.setPlaying(this.playsEveryMs);
-    if (!this.isPlaying) {
-      this.wasSlow = false;
-      this.hurry(false);
-    }
+    if (!this.isPlaying) this.hurry.end();
     const {limit} = this.settings;
-    if (JSON.stringify(before.limit) !== JSON.stringify(limit)) this.stream.setLimit(limit);
+    if (!isEqual(before.limit, limit)) this.stream.setLimit(limit);
     this.showDisplay();
     this.showRange();
-  }
-
-  /** While a series plays, panels that do not show the time would be written again for nothing. */
-  private updatePanels(): void {
-    const {later, mesh, page, settings} = this;
-    if (!later) return;
-    const texts = kViewAttributes.filter((name) => name !== 'time').map((name) => page.read(name));
-    const its = {...settings, time: null};
-    const shown = JSON.stringify([texts, its, mesh.bounds, mesh.snapshot === null]);
-    if (!this.isPlaying || shown !== this.shownSettings) later.panels.update(settings, mesh);
-    else later.panels.inspect.update();
-    this.shownSettings = shown;
   }
 
   get isPlaying(): boolean {
@@ -171,19 +152,6 @@ export class Viewing implements LaterHost {
   /** Between two instants; 0: nothing plays. */
   private get playsEveryMs(): number {
     return this.isPlaying ? this.later!.time.stepMs : 0;
-  }
-
-  /** One slow picture may be chance, as where the mesh has just grown. */
-  private notePace(drawingMs: number): void {
-    const isSlow = this.isPlaying && drawingMs > Math.min(kMovingMs, this.playsEveryMs);
-    if (isSlow && this.wasSlow) this.hurry(true);
-    this.wasSlow = isSlow;
-  }
-
-  private hurry(isHurried: boolean): void {
-    if (isHurried === this.isHurried) return;
-    this.isHurried = isHurried;
-    this.page.element.classList.toggle('hurried', isHurried);
   }
 
   private startPlaying(): void {
@@ -210,34 +178,16 @@ export class Viewing implements LaterHost {
     this.stream.togglePause();
   }
 
-  moveClip(step: number): void {
-    const [plane] = this.settings.planes;
-    if (plane) this.later?.panels.clip.move(0, plane.share + step);
-  }
-
-  centre(): void {
-    if (this.pointed) this.view?.centre(this.pointed);
-    else this.look(null);
-  }
-
   look(direction: Direction | null): void {
     this.shell?.cards.refit();
     this.view?.look(direction);
   }
 
-  inspect(): void {
-    this.later?.panels.inspect.pickMiddle();
-  }
-
-  endTool(): void {
-    this.later?.panels.inspect.use('none');
-  }
-
-  pointAt(point: Vector | null): void {
-    this.pointed = point;
-  }
-
   // ---- TimeHost
+
+  get isHurried(): boolean {
+    return this.hurry.isOn;
+  }
 
   get opening(): StreamState | null {
     return this.next ? this.stream.state : null;
@@ -342,13 +292,13 @@ export class Viewing implements LaterHost {
         page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
         mesh.drawn = snapshot.statistics;
         page.element.classList.add('loaded');
-        this.notePace(drawingMs);
+        if (this.isPlaying) this.hurry.note(drawingMs, this.playsEveryMs);
         void this.loadLater();
         this.tellComplete();
       },
       change,
     );
-    this.later?.panels.showFigures(snapshot, view.pose.frameMs);
+    this.later?.panels.showPicture(snapshot, view.pose.frameMs);
     this.later?.time.follow();
   }
 
@@ -360,7 +310,7 @@ export class Viewing implements LaterHost {
     this.later ??= new Later(this.page, this, this.shell);
     this.apply();
     const {snapshot} = this.mesh;
-    if (snapshot && this.view) this.later.panels.showFigures(snapshot, this.view.pose.frameMs);
+    if (snapshot && this.view) this.later.panels.showPicture(snapshot, this.view.pose.frameMs);
   }
 
   /** Keeps the camera. The mesh comes again from the worker that decodes. */

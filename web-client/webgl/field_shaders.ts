@@ -52,6 +52,8 @@ export const kFieldFragmentShader = /* glsl */ `
   uniform vec2 scaleRange; // the values that vValue 0 and 1 stand for
   uniform bool logarithmic;
   uniform float linear; // linearPart of the range
+  uniform vec4 below; // the colours beyond the range; those of its ends if transparent
+  uniform vec4 above;
   uniform bool colored;
   uniform vec3 plainColor;
   uniform bool lit;
@@ -75,6 +77,8 @@ ${kBendShader}
       float low = bend(range.x, linear, range.x);
       t = (bend(value, linear, range.x) - low) / (bend(range.y, linear, range.x) - low);
     }
+    if (t < 0.0 && below.a > 0.0) return below.rgb;
+    if (t > 1.0 && above.a > 0.0) return above.rgb;
     t = clamp(t, 0.0, 1.0);
     // Sample the centres of entries, so that both ends of the range show the table's own ends.
     float at = (t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0;

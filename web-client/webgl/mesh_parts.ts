@@ -74,6 +74,8 @@ export class MeshParts {
       scaleRange: [0, 1],
       logarithmic: false,
       linear: 0,
+      below: [0, 0, 0, 0],
+      above: [0, 0, 0, 0],
       edgeFade: 1,
       onDark: false,
       pixelRatio: 1,
@@ -102,7 +104,7 @@ export class MeshParts {
     this.restEdges.show(new Float32Array(0));
   }
 
-  setLook({map, reversed, edges, creases, opacity, onDark = false}: Look): void {
+  setLook({map, reversed, edges, creases, opacity, beyond, onDark = false}: Look): void {
     const table = `${map} ${reversed}`;
     if (table !== this.tableName) {
       this.table.set(colorTable(map, reversed));
@@ -112,6 +114,10 @@ export class MeshParts {
     this.edgeStrength = edges ? kEdgeStrength : 0;
     this.creaseStrength = creases ? kCreaseStrength : 0;
     this.look.onDark = onDark;
+    for (const [i, name] of (['below', 'above'] as const).entries()) {
+      const color = beyond?.[i]?.map((channel) => channel / 255);
+      this.look[name] = color ? [...color, 1] : [0, 0, 0, 0];
+    }
     this.surface.look.opacity = opacity;
   }
 

@@ -94,8 +94,8 @@ export class MeshView implements View {
   }
 
   setLook(next: Look): void {
-    const {map, reversed, edges, creases, opacity, volume, onDark} = next;
-    const look = JSON.stringify([map, reversed, edges, creases, opacity, volume, onDark]);
+    const {map, reversed, edges, creases, opacity, beyond, volume, onDark} = next;
+    const look = JSON.stringify([map, reversed, edges, creases, opacity, beyond, volume, onDark]);
     // it is called with every attribute change, and a picture costs more than a comparison
     if (look === this.last.look) return;
     this.parts.setLook(next);

@@ -46,6 +46,8 @@ export interface Look {
   creases: boolean;
   /** Opacity of the surface. Cuts and isosurfaces stay solid. */
   opacity: number;
+  /** The colours of values below and above the range, from 0 to 255; null: those of its ends. */
+  beyond?: readonly [readonly number[] | null, readonly number[] | null];
   /** Opacities of the volume at even shares of the range; null hides it. */
   volume?: number[] | null;
   /** The canvas lies on a dark ground: creases are light, and the volume's colours stand off. */

@@ -155,8 +155,10 @@ class WorkerView implements View {
   clear(): void {
     this.command('clear');
   }
-  setLook({map, reversed, edges, creases, opacity, volume = null, onDark = false}: Look): void {
-    this.command('setLook', {map, reversed, edges, creases, opacity, volume, onDark});
+  setLook(look: Look): void {
+    const {map, reversed, edges, creases, opacity, volume = null, onDark = false} = look;
+    const {beyond = [null, null]} = look;
+    this.command('setLook', {map, reversed, edges, creases, opacity, beyond, volume, onDark});
   }
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     this.command('setRange', low, high, scaleRange, logarithmic);

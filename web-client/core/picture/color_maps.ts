@@ -4,10 +4,14 @@
 // Color Maps for Scientific Visualization": Msh interpolation from (59, 76, 192) to (180, 4, 38)
 // over white). turbo: the published polynomials (Mikhailov and Du 2019).
 
-export type ColorMapName = 'viridis' | 'cividis' | 'cool-warm' | 'turbo' | 'grey' | 'labels';
+import {colorAt, isSteps, parseStops, splitColorMap} from './color_map_text';
+
+type Named = 'viridis' | 'cividis' | 'cool-warm' | 'turbo' | 'grey' | 'labels';
+/** A name, or colours of one's own; either may have steps (color_map_text.ts). */
+export type ColorMapName = Named | `custom:${string}` | `${string}/${number}`;
 
 /** Those that are continuous. `labels` has kLabelColors colours for as many whole numbers. */
-export const kColorMapNames: readonly ColorMapName[] = [
+export const kColorMapNames: readonly Named[] = [
   'viridis',
   'cividis',
   'cool-warm',
@@ -61,8 +65,12 @@ const kTables: Record<'viridis' | 'cividis' | 'cool-warm', {first: number[]; ste
       'gffgfgfgffgfgfgffgfgfgfgfgfgfgfgfgfgfgfgfgfggfgfggfggfggfggfgggfgggfgggfggggggfgggggg',
   },
 };
-export function isColorMapName(name: string | null): name is ColorMapName {
-  return name === 'labels' || (kColorMapNames as readonly string[]).includes(name ?? '');
+
+export function isColorMapName(text: string | null): text is ColorMapName {
+  if (text === null || text === 'labels') return text !== null;
+  const [name = '', ...steps] = text.split('/');
+  const isMap = (kColorMapNames as readonly string[]).includes(name) || parseStops(name) !== null;
+  return isMap && steps.length <= 1 && steps.every(isSteps);
 }
 
 /** Polynomials in x from 0 to 1, lowest power first: red, green, blue. */
@@ -99,10 +107,14 @@ export function labelColors(reversed = false): readonly (readonly number[])[] {
 /** The table as 256 opaque RGBA entries in sRGB; `reversed` turns it round. */
 export function colorTable(name: ColorMapName, reversed = false): Uint8Array {
   const table = new Uint8Array(4 * kColorMapEntries).fill(255);
-  const entry = name === 'labels' ? labelEntries(reversed) : entriesOf(name);
-  const turns = reversed && name !== 'labels';
+  const [map, steps] = splitColorMap(name);
+  const entry = map === 'labels' ? labelEntries(reversed) : entriesOf(map);
+  const turns = reversed && map !== 'labels';
+  const last = kColorMapEntries - 1;
   for (let i = 0; i < kColorMapEntries; ++i) {
-    table.set(entry(turns ? kColorMapEntries - 1 - i : i), 4 * i);
+    const step = Math.floor((i * steps) / kColorMapEntries);
+    const at = steps > 0 ? Math.round((step * last) / (steps - 1)) : i;
+    table.set(entry(turns ? last - at : at), 4 * i);
   }
   return table;
 }
@@ -112,7 +124,10 @@ function labelEntries(reversed: boolean): (i: number) => readonly number[] {
   return (i) => colors[Math.floor((i * kLabelColors) / kColorMapEntries)]!;
 }
 
-function entriesOf(name: Exclude<ColorMapName, 'labels'>): (i: number) => number[] {
+/** REQUIRES: it is a map's name without steps. */
+function entriesOf(name: string): (i: number) => number[] {
+  const stops = parseStops(name);
+  if (stops) return (i) => colorAt(stops, i / (kColorMapEntries - 1));
   if (name === 'grey') {
     return (i) =>
       Array<number>(3).fill(
@@ -129,7 +144,7 @@ function entriesOf(name: Exclude<ColorMapName, 'labels'>): (i: number) => number
         return Math.round(255 * Math.min(1, Math.max(0, value)));
       });
   }
-  const {first, steps} = kTables[name];
+  const {first, steps} = kTables[name as keyof typeof kTables];
   const channels = first.map((start, c) => {
     const channel = [start];
     for (let i = 0; i < kColorMapEntries - 1; ++i)
@@ -148,12 +163,30 @@ export function labelGradient(count: number, reversed = false): string {
   return `linear-gradient(90deg, ${stops.join(', ')})`;
 }
 
-/** A CSS gradient from left to right through `stops` evenly spaced entries. */
+/** A CSS gradient from left to right through `stops` evenly spaced entries, or the map's steps. */
 export function colorGradient(name: ColorMapName, reversed = false, stops = 17): string {
+  const colors = gradientStops(name, reversed, stops);
+  const [, steps] = splitColorMap(name);
+  const texts = colors.map(([at, color]) => (steps > 0 ? `${color} ${100 * at}%` : color));
+  return `linear-gradient(90deg, ${texts.join(', ')})`;
+}
+
+/** Shares from 0 to 1 with their colours. A step has two. */
+export function gradientStops(
+  name: ColorMapName,
+  reversed: boolean,
+  stops: number,
+): [share: number, color: string][] {
   const table = colorTable(name, reversed);
-  const colors = Array.from({length: stops}, (_, i) => {
-    const at = 4 * Math.round((i * (kColorMapEntries - 1)) / (stops - 1));
+  const [, steps] = splitColorMap(name);
+  const colorOf = (share: number): string => {
+    const at = 4 * Math.round(share * (kColorMapEntries - 1));
     return `rgb(${table[at]} ${table[at + 1]} ${table[at + 2]})`;
+  };
+  if (steps === 0)
+    return Array.from({length: stops}, (_, i) => [i / (stops - 1), colorOf(i / (stops - 1))]);
+  return Array.from({length: 2 * steps}, (_, i) => {
+    const step = Math.floor(i / 2);
+    return [(step + (i % 2)) / steps, colorOf((step + 0.5) / steps)];
   });
-  return `linear-gradient(90deg, ${colors.join(', ')})`;
 }

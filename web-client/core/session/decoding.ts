@@ -2,7 +2,7 @@
 // pace.
 
 import type {Assembler} from '../decode/assembler';
-import type {RequestedPart} from './requested_part';
+import {Progress, type RequestedPart} from './requested_part';
 import {Slices} from './slices';
 
 /** How long a slice takes. The page's commands come between two slices. */
@@ -64,9 +64,20 @@ export class Decoding {
     while (this.step()) continue;
   }
 
-  /** How long `bytes` will take at the pace so far; Infinity if unknown. */
-  msFor(bytes: number): number {
-    return this.pace.bytes > 0 ? (bytes * this.pace.ms) / this.pace.bytes : Infinity;
+  /** The same in a fresh codec, which holds nothing else. */
+  restart(): void {
+    this.stop();
+    this.assembler.codec.restart();
+    this.goBack();
+  }
+
+  /** How long the rest will take at the pace so far, in ms. Infinity until it is received. */
+  get msLeft(): number {
+    const {limit, progress, statistics} = this.requested;
+    if (progress >= Progress.decoded) return 0;
+    const {bytes, ms} = this.pace;
+    if (limit.kind !== 'full' || progress < Progress.received || bytes === 0) return Infinity;
+    return ((statistics.bytesNeeded - statistics.bytes) * ms) / bytes;
   }
 
   stop(): void {

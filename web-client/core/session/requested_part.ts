@@ -8,6 +8,20 @@ import type {OpenRequest, Target} from '../protocol/messages';
 import {fieldOfSeries, showTime, shownInstant} from '../protocol/series';
 import type {Source} from './worker_messages';
 
+/** How far the shown part has come. Each state includes the ones before. */
+export enum Progress {
+  /** Blocks up to the limit are missing, of the mesh or of a field. */
+  missing,
+  /** They are here. */
+  received,
+  /** The mesh has reached the limit, or the end of a cut log. */
+  settled,
+  /** The fields have, too: no other picture follows by itself. */
+  decoded,
+  /** The whole mesh is decoded with the fields. */
+  complete,
+}
+
 export class RequestedPart {
   /**
    * Names of the fields, for use before the head says which there are; null means the opening's.
@@ -127,9 +141,22 @@ export class RequestedPart {
     return !this.assembler.manifest && (this.names === null || this.hasSeries || mayEnd);
   }
 
-  /** The leading chunks, by default all, are here with the fields. */
-  isReceived(chunks = this.assembler.codec.chunkCount): boolean {
+  get progress(): Progress {
+    const {codec, manifest} = this.assembler;
+    const {chunksApplied, chunkCount} = codec;
+    const areDecoded = this.fields.every(
+      (field) => codec.fieldChunksApplied(field) === chunksApplied,
+    );
+    if (manifest && chunksApplied >= chunkCount && areDecoded) return Progress.complete;
+    if (!this.isReceived) return Progress.missing;
+    if (!this.isReached) return Progress.received;
+    return areDecoded ? Progress.decoded : Progress.settled;
+  }
+
+  /** All blocks up to the limit are here with the fields. */
+  private get isReceived(): boolean {
     const {assembler} = this;
+    const chunks = this.target?.chunks ?? assembler.codec.chunkCount;
     return (
       assembler.manifest !== null &&
       assembler.receivedChunks >= chunks &&
@@ -139,35 +166,11 @@ export class RequestedPart {
     );
   }
 
-  /** All blocks up to the limit are here with the fields. */
-  get isHere(): boolean {
-    return this.isReceived(this.target?.chunks);
-  }
-
-  /** The mesh is complete, or the limit is reached with the fields. */
-  get isSettled(): boolean {
-    return this.isComplete || (this.isReached && this.isHere);
-  }
-
-  /** All that is wanted is decoded: no other picture follows by itself. */
-  get isDecoded(): boolean {
-    const {codec} = this.assembler;
-    if (this.isComplete || !this.isReached || !this.isHere) return this.isComplete;
-    return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunksApplied);
-  }
-
   /** The fields ahead are here for the decoded mesh. */
   get isAheadReceived(): boolean {
     const {assembler} = this;
     const chunks = assembler.codec.chunksApplied;
     return this.needed.every((field) => assembler.receivedOfField(field) >= chunks);
-  }
-
-  /** The whole mesh is decoded with the fields. */
-  get isComplete(): boolean {
-    const {codec, manifest} = this.assembler;
-    if (!manifest || codec.chunksApplied < codec.chunkCount) return false;
-    return this.fields.every((field) => codec.fieldChunksApplied(field) === codec.chunkCount);
   }
 
   /** The decoded mesh has reached the limit, or the end of a cut log. */

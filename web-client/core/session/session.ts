@@ -2,8 +2,6 @@
 // as far as is asked for, and reports its state.
 
 import type {Assembler} from '../decode/assembler';
-import {baseFigures} from '../picture/base_figures';
-import {meshArrays} from '../picture/mesh_arrays';
 import {errorCode, errorText, QtetError} from '../protocol/errors';
 import {kFull, type Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
@@ -15,39 +13,19 @@ import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
 import type {CoarseVolume} from './coarse_volume';
 import {Decoding} from './decoding';
+import {Gate} from './gate';
 import {LogStream} from './log_stream';
-import {ProgressReporter} from './progress_reporter';
 import type {Publisher} from './publisher';
-import {RequestedPart} from './requested_part';
+import {Recovery} from './recovery';
+import {Reports} from './reports';
+import {Progress, RequestedPart} from './requested_part';
 import {canPause, isAtRest, stateMessage, type SessionState} from './session_state';
 import {Throttle} from './throttle';
 import type {FromWorker, Source} from './worker_messages';
 
 /** Between two openings for other wishes. A server refuses more than 50 a second (STREAM.md). */
 const kReopenMs = 100;
-/** The share of the cells at which memory ended that is kept: pictures need memory, too. */
-const kFittingShare = 0.7;
-
-/** Appended to the codec's message: what the user sees now, and what to do. */
-const kWaysOut: Record<string, string> = {
-  'bad-checksum':
-    '. What came before is sound and stays on the screen. Try again to fetch the rest anew; if ' +
-    'it fails at the same chunk, the file itself is damaged: "qtet verify" says where.',
-  'out-of-memory': ' It stays at a level that fits. Close other tabs and try again for more.',
-};
-/** The same while there is no mesh. */
-const kWaysOutOfNothing: Record<string, string> = {
-  'bad-checksum':
-    '. Nothing can be shown yet. Try again to fetch it anew; if it fails again, the file itself ' +
-    'is damaged: "qtet verify" says where.',
-  'out-of-memory': ' Close other tabs and try again.',
-};
-
 const kWithoutLater = ' The first instant of the series stays. Load the page again for the others.';
-
-const kNoRoomAhead =
-  'The instants of the series need more memory than the browser gives to a page.';
-const kWithoutAhead = ' What is shown stays. The others come when they are shown.';
 
 export type TransportFactory = (
   source: Source,
@@ -70,24 +48,22 @@ export class Session implements TransportHandlers {
   /** Called once a log's base mesh is decoded. */
   onBase: () => void = () => undefined;
   private state: SessionState = {name: 'connecting'};
-  /** The messages and frames that came before the codec; null once that is here. */
-  private early: (() => void)[] | null = null;
+  /** Closed before the codec is here. */
+  private readonly gate = new Gate();
   private source = kNoSource;
-  /** The page has received this log's base mesh. */
-  private baseReported = false;
   /** The part of later instants is under way, here, or has failed. */
   private laterAsked = false;
-  private manifestSent = false;
-  private readonly stream = new LogStream();
-  private readonly requested: RequestedPart;
-  private readonly decoding: Decoding;
-  private readonly progress: ProgressReporter;
+  readonly stream = new LogStream();
+  readonly requested: RequestedPart;
+  readonly decoding: Decoding;
+  readonly reports: Reports;
+  private readonly recovery = new Recovery(this);
   private readonly reopening = new Throttle(() => this.bring(), kReopenMs);
 
   constructor(
-    private readonly assembler: Assembler,
-    private readonly publisher: Publisher,
-    private readonly send: (message: FromWorker) => void,
+    readonly assembler: Assembler,
+    readonly publisher: Publisher,
+    send: (message: FromWorker) => void,
     private readonly newTransport: TransportFactory = makeTransport,
     private readonly fetchLater: typeof fetchLaterPart = fetchLaterPart,
   ) {
@@ -96,23 +72,16 @@ export class Session implements TransportHandlers {
       assembler,
       this.requested,
       () => this.advance(),
-      (thrown) => this.aheadFailed(thrown),
+      (thrown) => this.recovery.aheadFailed(thrown),
     );
-    this.progress = new ProgressReporter(() => this.sendProgress());
+    this.reports = new Reports(assembler, this.requested, this.stream, send);
     publisher.onFirst = () => this.advance();
-    publisher.pace.untilLast = () => this.untilDecoded();
+    publisher.pace.untilLast = () => this.decoding.msLeft;
   }
 
   /** Messages and frames wait until the assembler is ready. */
   waitForCodec(): void {
-    this.early = [];
-    const go = (): void => {
-      const early = this.early ?? [];
-      this.early = null;
-      for (const action of early) action();
-    };
-    // Whoever loads the codec tells of a failure.
-    this.assembler.codecReady.then(go, () => undefined);
+    this.gate.closeUntil(this.assembler.codecReady); // whoever loads it reports a failure
   }
 
   start(source: Source): void {
@@ -132,8 +101,8 @@ export class Session implements TransportHandlers {
     if (!this.assembler.manifest) return;
     this.requested.changeAhead(ahead);
     if (this.requested.changeFields(fields)) {
-      this.sendPlan();
-      this.progress.changed();
+      this.reports.plan();
+      this.reports.progress.changed();
     }
     if (this.state.name === 'failed') return;
     this.advanceSoon();
@@ -145,17 +114,17 @@ export class Session implements TransportHandlers {
     this.requested.limit = limit;
     if (!this.assembler.manifest || this.state.name === 'failed') return;
     this.endPause();
-    this.guarded(() => {
+    this.recovery.guarded(() => {
       if (this.requested.isReached) this.goBack();
       this.goOn();
-      this.progress.changed();
+      this.reports.progress.changed();
     });
   }
 
   /** The codec has become a whole one: decoding goes on from the base mesh. */
   renewed(): void {
     if (!this.assembler.manifest) return;
-    this.guarded(() => this.assembler.renew(this.requested.fields));
+    this.recovery.guarded(() => this.assembler.renew(this.requested.fields));
     this.advance();
   }
 
@@ -178,16 +147,11 @@ export class Session implements TransportHandlers {
   }
 
   message(message: ServerMessage): void {
-    this.whenReady(() => this.heed(message));
+    this.gate.pass(() => this.heed(message));
   }
 
   frame(frame: Frame): void {
-    this.whenReady(() => this.take(frame));
-  }
-
-  private whenReady(action: () => void): void {
-    if (this.early) this.early.push(action);
-    else action();
+    this.gate.pass(() => this.take(frame));
   }
 
   private heed(message: ServerMessage): void {
@@ -212,15 +176,15 @@ export class Session implements TransportHandlers {
     } catch (thrown) {
       const fields = fieldsIn(frame);
       const isAhead = fields.length > 0 && !fields.some((field) => this.requested.shows(field));
-      if (isAhead) return this.aheadFailed(thrown, fields);
-      return this.endBy(thrown); // blocks before it are sound, and decoding goes on
+      if (isAhead) return this.recovery.aheadFailed(thrown, fields);
+      return this.recovery.endBy(thrown); // blocks before it are sound, and decoding goes on
     }
-    this.guarded(() => {
+    this.recovery.guarded(() => {
       this.coarse?.note(frame);
       this.stream.received(frame.payload.length);
       if (isFirst && this.takeManifest()) return;
       const {name} = this.state;
-      if (name !== 'streaming' && name !== 'paused' && !this.requested.isSettled)
+      if (name !== 'streaming' && name !== 'paused' && this.requested.progress < Progress.settled)
         this.enter({name: 'streaming'});
       this.advanceSoon();
     });
@@ -235,12 +199,12 @@ export class Session implements TransportHandlers {
 
   failed(error: QtetError): void {
     this.stream.disconnect();
-    this.send({type: 'error', code: error.code, message: error.message});
+    this.reports.error(error.code, error.message);
     this.enter({name: 'failed'});
   }
 
   private done(): void {
-    if (this.requested.isHere) {
+    if (this.requested.progress >= Progress.received) {
       this.advanceSoon();
     } else if (!this.stream.brings(this.requested.keys)) {
       return; // another stream is opened soon, or once a pause ends
@@ -265,7 +229,7 @@ export class Session implements TransportHandlers {
     }
     if (code === 'unknown-field' && !this.assembler.manifest) {
       const message = `${detail.replace(/\.?$/, '.')} The first field is shown instead.`;
-      this.send({type: 'error', code, message});
+      this.reports.error(code, message);
       this.requested.names = null;
       this.open();
       return;
@@ -286,9 +250,10 @@ export class Session implements TransportHandlers {
   private bring(): void {
     const {requested, state, stream} = this;
     if (state.name === 'paused' || state.name === 'failed') return;
-    if (requested.isHere && requested.isAheadReceived) return;
+    const isReceived = requested.progress >= Progress.received;
+    if (isReceived && requested.isAheadReceived) return;
     const {isConnected} = stream;
-    if (isAtRest(state) && !requested.isHere)
+    if (isAtRest(state) && !isReceived)
       this.enter({name: isConnected ? 'streaming' : 'connecting'});
     if (isConnected && stream.brings(requested.keys)) {
       stream.aim(requested);
@@ -308,13 +273,11 @@ export class Session implements TransportHandlers {
       void this.bringLater();
       return true;
     }
-    this.manifestSent = true;
     if (unknown !== undefined) {
       const message = `The mesh has no field "${unknown}". The first one is shown instead.`;
-      this.send({type: 'error', code: 'unknown-field', message});
+      this.reports.error('unknown-field', message);
     }
-    this.sendManifest();
-    this.sendPlan();
+    this.reports.manifest();
     if (!this.stream.endsAtHead && this.stream.brings(this.requested.keys)) return false;
     this.open();
     return true;
@@ -340,15 +303,15 @@ export class Session implements TransportHandlers {
     } catch (thrown) {
       if (isOver()) return;
       const message = `${errorText(thrown).replace(/\.?$/, '.')}${kWithoutLater}`;
-      this.send({type: 'error', code: errorCode(thrown), message});
-      if (this.manifestSent) return;
+      this.reports.error(errorCode(thrown), message);
+      if (this.reports.hasManifest) return;
     }
-    this.guarded(() => this.tellOfLater());
+    this.recovery.guarded(() => this.tellOfLater());
   }
 
   /** The page receives the manifest once the part of later instants is here. */
   private get awaitsLater(): boolean {
-    return this.laterAsked && !this.manifestSent;
+    return this.laterAsked && !this.reports.hasManifest;
   }
 
   private tellOfLater(): void {
@@ -356,35 +319,26 @@ export class Session implements TransportHandlers {
       if (!this.takeManifest()) this.open();
       return;
     }
-    this.sendManifest({isMore: true});
-  }
-
-  private sendManifest(more: {isMore?: boolean} = {}): void {
-    const {assembler, requested, stream} = this;
-    this.send({
-      type: 'manifest',
-      manifest: assembler.manifest!,
-      digest: stream.digest,
-      fields: [...requested.fields],
-      ...more,
-    });
+    this.reports.manifest(true);
   }
 
   // ---- decoding
 
-  private advance(): void {
-    this.guarded(() => {
+  advance(): void {
+    this.recovery.guarded(() => {
       const pictureFirst = this.source.pictureFirst === true && !this.publisher.hasPublished;
       const hasChanged = this.decoding.advance(pictureFirst);
-      this.tellOfBase();
-      if (hasChanged) this.publisher.changed(this.requested.isDecoded);
-      if (this.publisher.hasPublished || this.requested.isSettled) void this.bringLater();
-      this.progress.changed();
+      if (this.reports.base()) this.onBase();
+      const {progress} = this.requested;
+      const isSettled = progress >= Progress.settled;
+      if (hasChanged) this.publisher.changed(progress >= Progress.decoded);
+      if (this.publisher.hasPublished || isSettled) void this.bringLater();
+      this.reports.progress.changed();
       if (this.state.name === 'failed') return;
-      if (this.requested.isComplete) this.complete();
-      else if (this.requested.isSettled) this.hold();
+      if (progress === Progress.complete) this.complete();
+      else if (isSettled) this.hold();
       if (this.state.name === 'paused') return;
-      if (!this.requested.isSettled || !this.requested.isAheadReceived) this.stream.giveCredit();
+      if (!isSettled || !this.requested.isAheadReceived) this.stream.giveCredit();
     });
   }
 
@@ -402,23 +356,15 @@ export class Session implements TransportHandlers {
     this.publisher.changed(true);
   }
 
-  /** In ms. Infinity until everything is received. */
-  private untilDecoded(): number {
-    if (this.requested.isDecoded) return 0;
-    if (this.requested.limit.kind !== 'full' || !this.requested.isReceived()) return Infinity;
-    const {bytes, bytesNeeded} = this.requested.statistics;
-    return this.decoding.msFor(bytesNeeded - bytes);
-  }
-
   // ---- states
 
   private enter(state: SessionState): void {
     this.state = state;
-    this.progress.flush();
-    this.send(stateMessage(state));
+    this.reports.progress.flush();
+    this.reports.send(stateMessage(state));
   }
 
-  private hold(): void {
+  hold(): void {
     if (this.state.name === 'held' || this.state.name === 'paused') return;
     this.publisher.changed(true);
     this.enter({name: 'held'});
@@ -440,83 +386,18 @@ export class Session implements TransportHandlers {
     this.state = {name: 'streaming'}; // reported below, unless decoding ends it at once
     this.advance();
     if (this.state.name === 'streaming') {
-      const isUnderWay = this.requested.isHere || this.stream.isConnected;
+      const isReceived = this.requested.progress >= Progress.received;
+      const isUnderWay = isReceived || this.stream.isConnected;
       this.enter({name: isUnderWay ? 'streaming' : 'connecting'});
     }
     this.bring();
   }
 
-  private guarded(action: () => void): void {
-    try {
-      action();
-    } catch (thrown) {
-      if (errorCode(thrown) === 'out-of-memory' && (this.release() || this.stayAtWhatFits()))
-        return;
-      this.decoding.stop();
-      this.endBy(thrown);
-    }
-  }
-
-  private endBy(thrown: unknown): void {
-    const code = errorCode(thrown);
-    const waysOut = this.requested.statistics.tetrahedra > 0 ? kWaysOut : kWaysOutOfNothing;
-    this.failed(new QtetError(code, `${errorText(thrown)}${waysOut[code] ?? ''}`));
-  }
-
-  /** Nothing more comes ahead. The shown mesh stays and goes on. `fields` have lost a block. */
-  private aheadFailed(thrown: unknown, fields: readonly number[] = []): void {
-    for (const field of fields) this.stream.giveUp(this.assembler.fieldKeys[field]!);
-    const code = errorCode(thrown);
-    const isMemory = code === 'out-of-memory';
-    const cause = isMemory ? kNoRoomAhead : errorText(thrown).replace(/\.?$/, '.');
-    if (this.requested.endAhead())
-      this.send({type: 'error', code, message: `${cause}${kWithoutAhead}`});
-    this.progress.changed();
-    if (isMemory) this.restart(() => undefined);
-  }
-
-  /** Leaves only what is shown in the codec. Returns false if nothing else is there. */
-  private release(): boolean {
-    if (!this.requested.hasOthers) return false;
-    this.restart(() => this.advance());
-    return true;
-  }
-
-  /** Decodes what is shown in a fresh codec. `then` is called if it fits. */
-  private restart(then: () => void): void {
-    this.decoding.stop();
-    this.guarded(() => {
-      this.assembler.codec.restart();
-      this.goBack();
-      this.progress.changed();
-      then();
-    });
-  }
-
-  /**
-   * Starts again in a fresh codec, at a limit that leaves room. Returns false if not even the base
-   * mesh fits.
-   */
-  private stayAtWhatFits(): boolean {
-    const {tetrahedra} = this.requested.statistics;
-    if (tetrahedra === 0) return false;
-    this.stream.disconnect();
-    const value = Math.max(1, Math.floor(kFittingShare * tetrahedra));
-    this.requested.limit = {kind: 'cells', value};
-    this.restart(() => {
-      const message =
-        'The whole mesh needs more memory than the browser gives to a page.' +
-        kWaysOut['out-of-memory']!;
-      this.send({type: 'error', code: 'out-of-memory', message});
-      this.hold();
-    });
-    return true;
-  }
-
   /** Must be called before another log. */
   private forget(): void {
-    this.baseReported = this.laterAsked = this.manifestSent = false;
-    if (this.early) this.early = [];
+    this.laterAsked = false;
+    this.gate.forget();
+    this.reports.forget();
     this.reopening.drop();
     this.decoding.forget();
     this.stream.forget();
@@ -524,34 +405,6 @@ export class Session implements TransportHandlers {
     this.assembler.forget();
     this.coarse?.forget();
     this.publisher.reset();
-  }
-
-  // ---- to the page
-
-  private tellOfBase(): void {
-    if (this.baseReported) return;
-    const {codec} = this.assembler;
-    const mesh = meshArrays(this.assembler);
-    if (!mesh) return; // also between two logs, while the codec has the last one's
-    if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
-    this.baseReported = true;
-    this.send({type: 'base', figures: baseFigures(mesh)});
-    this.onBase();
-  }
-
-  private sendPlan(): void {
-    this.send({type: 'plan', plan: this.assembler.plan(this.requested.fields)});
-  }
-
-  private sendProgress(): void {
-    const statistics = this.requested.statistics;
-    this.send({
-      type: 'progress',
-      statistics,
-      received: this.stream.receivedBytes,
-      here: this.assembler.wholeFields,
-      aheadEnded: this.requested.isAheadEnded,
-    });
   }
 }
 

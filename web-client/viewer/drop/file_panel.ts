@@ -5,16 +5,23 @@ import {fetchWith} from '../../core/transport/token';
 import {find, onClick} from '../page/find';
 import type {Page} from '../page/page';
 import {save} from '../page/save';
+import type {PanelKind, PanelsHost} from '../panels/panel';
 
-export interface FilePanelHost {
-  readonly stream: {readonly logAddress: string};
-  failed(code: string, message: string): void;
-}
+const kMarkup = `
+<input type="file" class="visually-hidden" name="file" multiple tabindex="-1"
+  aria-label="A log, or a mesh with the files that it names">
+<div class="buttons">
+  <button type="button" class="open-file">Open</button>
+  <button type="button" class="save-log">Save log</button>
+  <button type="button" class="save-page">Save page</button>
+</div>
+<p class="hint">Open a log or a mesh of this machine, or drop it on the page. It stays
+  here.</p>`;
 
-export class FilePanel {
+class FilePanel {
   constructor(
     private readonly page: Page,
-    private readonly host: FilePanelHost,
+    private readonly host: PanelsHost,
     take: (files: File[]) => void,
   ) {
     const {root} = page;
@@ -53,3 +60,11 @@ export class FilePanel {
     return [await singlePage(log, name, view.toString()), `${name}.html`];
   }
 }
+
+export const filePanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page, host, take}) => {
+    new FilePanel(page, host, take);
+    return {};
+  },
+};

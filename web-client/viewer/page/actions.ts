@@ -1,6 +1,7 @@
 // The actions of buttons and keys.
 
-import {clipText} from '../../core/layers/clip';
+import {clipText, movedPlane} from '../../core/layers/clip';
+import type {Vector} from '../../core/protocol/geometry';
 import {kDirections, type Direction} from '../../webgl/directions';
 import type {View} from '../../webgl/view';
 import type {Settings} from '../settings/settings';
@@ -18,20 +19,21 @@ export interface ActionsHost {
     readonly time: {
       toggle(): void;
       step(by: number): void;
+      goTo(at: number): void;
       readonly isShown: boolean;
       isPlaying: boolean;
+    };
+    readonly panels: {
+      readonly inspect: {
+        readonly pointed: Vector | null;
+        pickMiddle(): void;
+        use(tool: 'none'): void;
+      };
     };
   } | null;
   /** Shows a standard view, or (null) the first one, beside the cards that are open now. */
   look(direction: Direction | null): void;
   togglePause(): void;
-  /** Moves the first clip plane by a share of the extent. */
-  moveClip(step: number): void;
-  /** Brings what was pointed at into the middle, or all of the mesh. */
-  centre(): void;
-  /** Picks what lies in the middle. */
-  inspect(): void;
-  endTool(): void;
   failed(code: string, message: string): void;
 }
 
@@ -84,17 +86,30 @@ export class Actions {
     return {
       turn: (horizontal, vertical) => view.turn(horizontal, vertical),
       pan: (right, up) => view.pan(right, up),
-      centre: () => this.host.centre(),
+      centre: () => {
+        const point = this.host.later?.panels.inspect.pointed;
+        if (point) view.centre(point);
+        else this.look(null);
+      },
       zoom: (factor) => view.zoom(factor),
       look: (direction) => this.look(direction === null ? null : kDirections[direction]!),
       toggle: (what) => this.toggle(what),
-      moveClip: (step) => this.host.moveClip(step),
+      moveClip: (step) => this.moveClip(step),
       stepTime: (by) => this.host.later?.time.step(by),
-      inspect: () => this.host.inspect(),
+      goToTime: (at) => this.host.later?.time.goTo(at),
+      inspect: () => this.host.later?.panels.inspect.pickMiddle(),
       picture: () => this.picture(),
       help: () => this.help(),
-      escape: () => this.host.endTool(),
+      escape: () => this.host.later?.panels.inspect.use('none'),
     };
+  }
+
+  /** Moves the first clip plane by a share of the extent. */
+  private moveClip(step: number): void {
+    const {planes, hasFirstCut} = this.host.settings;
+    const [plane] = planes;
+    if (!plane) return;
+    this.page.write('clip', clipText(movedPlane(planes, 0, plane.share + step), hasFirstCut));
   }
 
   private toggle(what: Parameters<KeyActions['toggle']>[0]): void {

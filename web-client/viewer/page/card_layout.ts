@@ -68,7 +68,8 @@ export class CardLayout {
   }
 
   private measured(): Insets {
-    const cards = {panel: this.panel, legend: find(this.root, '.legend')};
+    const [legend, time] = ['.legend', '.time'].map((name) => find(this.root, name));
+    const cards = {panel: this.panel, legend: legend!, time: time!};
     return insetsOf(this.element, cards, this.isNarrow);
   }
 

@@ -13,6 +13,7 @@ export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['[ ]', 'move the clip plane'],
   ['Space', 'pause, continue; play a series'],
   [', .', 'instant before, next instant'],
+  ['< >', 'first, last instant'],
   ['I', 'what lies in the middle'],
   ['P', 'save a picture'],
   ['W', 'whole screen'],
@@ -37,6 +38,8 @@ export interface KeyActions {
   toggle(what: 'parallel' | 'edges' | 'clip' | 'pause' | 'fullscreen'): void;
   moveClip(share: number): void;
   stepTime(by: number): void;
+  /** The first instant is 0, and the last one -1. */
+  goToTime(at: 0 | -1): void;
   inspect(): void;
   picture(): void;
   help(): void;
@@ -66,6 +69,8 @@ export function bindKeys(canvas: HTMLElement, actions: KeyActions): void {
     ' ': () => actions.toggle('pause'),
     ',': () => actions.stepTime(-1),
     '.': () => actions.stepTime(1),
+    '<': () => actions.goToTime(0),
+    '>': () => actions.goToTime(-1),
     i: () => actions.inspect(),
     p: () => actions.picture(),
     f: () => actions.centre(),

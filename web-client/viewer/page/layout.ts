@@ -12,7 +12,7 @@ const kSheetFoot = 16;
 /** With `sheet` the panel is a sheet at the foot. */
 export function insetsOf(
   host: HTMLElement,
-  {panel, legend}: {panel: HTMLElement; legend: HTMLElement},
+  {panel, legend, time}: Record<'panel' | 'legend' | 'time', HTMLElement>,
   sheet: boolean,
 ): Insets {
   const whole = host.getBoundingClientRect();
@@ -22,17 +22,23 @@ export function insetsOf(
   const height = Math.max(whole.height, 1);
   const hidden = card.width === 0; // a page may hide the panel, and the legend
   const bare = bar.width === 0;
+  const {top: timeTop, bottom: timeBottom, width: timeWidth} = time.getBoundingClientRect();
   if (sheet)
     return {
       left: 0,
       right: 0,
       top: bare ? 0 : Math.min(kMaxCovered, (bar.bottom - whole.top) / height),
-      bottom: hidden ? 0 : Math.min(kMaxCovered, sheetHeight(panel) / height),
+      bottom: Math.min(
+        kMaxCovered,
+        ((hidden ? 0 : sheetHeight(panel)) + (timeBottom - timeTop)) / height,
+      ),
     };
   const free = (hidden ? whole.right : card.left) - whole.left;
   // The legend only takes a corner, so that half of its height is enough room, unless it leaves
   // hardly any width.
-  const bottom = bare ? 0 : (whole.bottom - bar.top) / height / (bar.width > kWide * free ? 1 : 2);
+  const foot = timeWidth === 0 ? 0 : whole.bottom - timeTop; // the legend stands on the time
+  const high = bare ? 0 : whole.bottom - bar.top - foot;
+  const bottom = (foot + high / (bar.width > kWide * free ? 1 : 2)) / height;
   return {
     left: 0,
     right: hidden ? 0 : Math.min(kMaxCovered, (whole.right - card.left) / width),

@@ -2,21 +2,20 @@
 // the normal.
 
 import {axisOf, type ClipSetting} from '../../core/layers/clip';
-import type {View} from '../../webgl/view';
 import {extentAlong, planeOf} from '../settings/clip_plane';
+import type {PanelsHost} from './panel';
 
 const kArrowPixels = 34;
 
 export class ClipHandles {
   private planes: ClipSetting[] = [];
-  private bounds: number[] = [];
-  private view: View | null = null;
   private readonly handles: HTMLElement[];
 
   /** `move` gets the plane's number and its new share. */
   constructor(
     private readonly layer: HTMLElement,
     count: number,
+    private readonly host: Pick<PanelsHost, 'mesh' | 'view'>,
     private readonly move: (i: number, share: number) => void,
   ) {
     this.handles = Array.from({length: count}, (_, i) => {
@@ -30,13 +29,8 @@ export class ClipHandles {
     });
   }
 
-  attach(view: View): void {
-    this.view = view;
-  }
-
-  update(planes: ClipSetting[], bounds: number[]): void {
+  update(planes: ClipSetting[]): void {
     this.planes = planes;
-    this.bounds = bounds;
     this.place();
   }
 
@@ -60,19 +54,21 @@ export class ClipHandles {
     i: number,
   ): {x: number; y: number; dx: number; dy: number; perUnit: number} | null {
     const plane = this.planes[i];
-    if (!plane || !this.view || this.bounds.length === 0) return null;
-    const {normal, offset} = planeOf(plane, this.bounds);
-    const middle = [0, 1, 2].map((axis) => (this.bounds[axis]! + this.bounds[axis + 3]!) / 2);
+    const {mesh, view} = this.host;
+    const {bounds} = mesh;
+    if (!plane || !view || !mesh.snapshot || bounds.length === 0) return null;
+    const {normal, offset} = planeOf(plane, bounds);
+    const middle = [0, 1, 2].map((axis) => (bounds[axis]! + bounds[axis + 3]!) / 2);
     const away = offset - middle.reduce((sum, x, axis) => sum + x * normal[axis]!, 0);
     const centre = middle.map((x, axis) => x + away * normal[axis]!) as [number, number, number];
-    const [low, high] = extentAlong(this.bounds, normal);
+    const [low, high] = extentAlong(bounds, normal);
     const ahead = centre.map((x, axis) => x + ((high - low) / 100) * normal[axis]!) as [
       number,
       number,
       number,
     ];
-    const from = this.view.project(centre),
-      to = this.view.project(ahead);
+    const from = view.project(centre),
+      to = view.project(ahead);
     const length = Math.max(Math.hypot(to.x - from.x, to.y - from.y), 0.01);
     return {
       ...from,
@@ -89,7 +85,7 @@ export class ClipHandles {
     event.preventDefault();
     const handle = event.currentTarget as HTMLElement;
     handle.setPointerCapture(event.pointerId);
-    const [low, high] = extentAlong(this.bounds, plane.normal);
+    const [low, high] = extentAlong(this.host.mesh.bounds, plane.normal);
     const {axis} = axisOf(plane);
     const sign = axis < 0 || plane.normal[axis]! > 0 ? 1 : -1;
     const onMove = (now: PointerEvent): void => {

@@ -1,59 +1,83 @@
 // Up to three clip planes, across an axis or facing the camera. Sliders here and handles in the
 // picture move them.
 
-import {axisNormal, axisOf, clipText, type ClipSetting} from '../../core/layers/clip';
+import {axisNormal, axisOf, clipText, movedPlane, type ClipSetting} from '../../core/layers/clip';
 import {kMaxPlanes} from '../../core/picture/display';
+import type {Vector} from '../../core/protocol/geometry';
+import {find} from '../page/find';
 import {formatCoordinate} from '../page/format';
 import type {Attributes} from '../page/page';
 import {setMarkup} from '../page/trusted';
 import type {Settings} from '../settings/settings';
-import type {Panel, Scene} from './panel';
+import {ClipHandles} from './clip_handles';
+import {segments, toggle} from './markup';
+import type {Panel, PanelKind, PanelsHost, Scene} from './panel';
 
-export class ClipPanel implements Panel {
+const kModeTitles = {cut: 'Flat', cells: 'Cells', slice: 'Slice'};
+const kMarkup = `
+${toggle('clip', 'Clip')}
+<div class="clip" hidden>
+  <fieldset class="segments clip-modes">
+    <legend class="visually-hidden">What a clip leaves</legend>
+    ${segments('clip-mode', kModeTitles)}
+  </fieldset>
+  <div class="planes"></div>
+  <button type="button" class="add-plane">Add a plane</button>
+</div>`;
+
+class ClipPanel implements Panel {
   private planes: ClipSetting[] = [];
   private hasFirstCut = false;
 
-  /** `viewNormal` points from the mesh to the camera, in lattice coordinates. */
+  private readonly handles: ClipHandles;
+
   constructor(
     private readonly root: ParentNode,
     private readonly attributes: Attributes,
-    private readonly viewNormal: () => [number, number, number],
+    private readonly host: PanelsHost,
   ) {
-    this.find<HTMLInputElement>('input[name=clip]').addEventListener('change', (event) => {
+    const layer = find(root, '.layer');
+    this.handles = new ClipHandles(layer, kMaxPlanes, host, (i, share) => this.move(i, share));
+    find<HTMLInputElement>(this.root, 'input[name=clip]').addEventListener('change', (event) => {
       this.write(
         (event.target as HTMLInputElement).checked
           ? [{normal: axisNormal(0, false), share: 0.5}]
           : [],
       );
     });
-    this.find('.clip-modes').addEventListener('change', (event) => {
+    find(this.root, '.clip-modes').addEventListener('change', (event) => {
       const mode = (event.target as HTMLInputElement).value;
       attributes.write('clip-mode', mode === 'cut' ? null : mode);
     });
-    this.find('.add-plane').addEventListener('click', () => this.add());
-    const rows = this.find('.planes');
+    find(this.root, '.add-plane').addEventListener('click', () => this.add());
+    const rows = find(this.root, '.planes');
     rows.replaceChildren(...Array.from({length: kMaxPlanes}, (_, i) => this.row(i)));
   }
 
   update({planes, mode, hasFirstCut}: Settings, scene: Scene | null): void {
     this.planes = planes;
     this.hasFirstCut = hasFirstCut;
-    this.find<HTMLInputElement>('input[name=clip]').checked = planes.length > 0;
-    this.find('.clip').hidden = planes.length === 0;
-    this.find<HTMLInputElement>(`.clip-modes input[value=${mode}]`).checked = true;
-    this.find('.add-plane').hidden = planes.length >= kMaxPlanes;
-    [...this.find('.planes').children].forEach((row, i) =>
+    find<HTMLInputElement>(this.root, 'input[name=clip]').checked = planes.length > 0;
+    find(this.root, '.clip').hidden = planes.length === 0;
+    find<HTMLInputElement>(this.root, `.clip-modes input[value=${mode}]`).checked = true;
+    find(this.root, '.add-plane').hidden = planes.length >= kMaxPlanes;
+    [...find(this.root, '.planes').children].forEach((row, i) =>
       this.updateRow(row as HTMLElement, planes[i], scene),
     );
+    this.handles.update(planes);
   }
 
-  /** Moves plane `i` to a share of the extent. */
-  move(i: number, share: number): void {
-    this.write(
-      this.planes.map((plane, k) =>
-        k === i ? {...plane, share: Math.min(1, Math.max(0, share))} : plane,
-      ),
-    );
+  /** The handles follow the picture. */
+  follow(): void {
+    this.handles.place();
+  }
+
+  clear(): void {
+    this.handles.update([]);
+  }
+
+  private move(i: number, share: number): void {
+    this.write(movedPlane(this.planes, i, share));
   }
 
   private row(i: number): HTMLElement {
@@ -117,7 +141,8 @@ export class ClipPanel implements Panel {
 
   private turn(i: number, direction: string): void {
     const axis = 'xyz'.indexOf(direction);
-    const normal = axis >= 0 ? axisNormal(axis, false) : this.viewNormal();
+    const toCamera = (this.host.view?.pose.direction ?? [0, -1, 0]).map((x) => -x) as Vector;
+    const normal = axis >= 0 ? axisNormal(axis, false) : toCamera;
     this.write(this.planes.map((plane, k) => (k === i ? {normal, share: 0.5} : plane)));
   }
 
@@ -134,9 +159,6 @@ export class ClipPanel implements Panel {
   private write(planes: ClipSetting[]): void {
     this.attributes.write('clip', clipText(planes, this.hasFirstCut));
   }
-  private find<T extends HTMLElement = HTMLElement>(selector: string): T {
-    return this.root.querySelector<T>(selector)!;
-  }
 }
 
 /** The plane's coordinate on its axis; for a free plane, its share of the extent. */
@@ -151,3 +173,8 @@ function positionText(plane: ClipSetting, {bounds, manifest}: Scene): string {
     step * (high - low),
   );
 }
+
+export const clipPanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page, host}) => new ClipPanel(page.root, page, host),
+};

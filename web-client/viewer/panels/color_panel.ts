@@ -1,26 +1,96 @@
-// Field, colour map, scale, range, edges, creases, surface and opacity.
+// Field, colour map, scale and range.
 
 import {parseNumbers} from '../../core/layers/field_values';
-import {colorGradient, labelGradient, type ColorMapName} from '../../core/picture/color_maps';
+import {
+  colorGradient,
+  kColorMapNames,
+  labelGradient,
+  type ColorMapName,
+} from '../../core/picture/color_maps';
+import {isSteps, splitColorMap} from '../../core/picture/color_map_text';
 import {labelsOf} from '../../core/picture/labels';
-import {setText} from '../page/find';
+import {find} from '../page/find';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
-import {shownScalar, type Settings} from '../settings/settings';
-import {fillScalars, type Panel, type Scene} from './panel';
+import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
+import {fillScalars, type Panel, type PanelKind, type Scene} from './panel';
 
 /** The labels in their map's swatch. */
 const kShownLabels = 5;
-/** Everything that is drawn unless it is switched off. */
-const kSwitches = ['edges', 'creases', 'surface'] as const;
+const kMapTitles = {
+  viridis: 'Viridis',
+  cividis: 'Cividis',
+  'cool-warm': 'Cool-warm',
+  turbo: 'Turbo',
+  grey: 'Grey',
+  labels: 'One colour a label',
+  custom: 'Own colours',
+};
 /** The ends of the range are shown to this share of it. */
 const kRangeShare = 1e-4;
 
-function gradientOf(map: string): string {
-  return map === 'labels' ? labelGradient(kShownLabels) : colorGradient(map as ColorMapName);
+const kRare = ['labels', 'custom'] as const;
+/** Of a panel's first choice. */
+const kBeyond = '8c8c8c,ff00ff';
+
+const swatches = [...kColorMapNames, ...kRare]
+  .map((name) => {
+    const title = kMapTitles[name];
+    const hidden = (kRare as readonly string[]).includes(name) ? ' hidden' : '';
+    return `
+  <label class="swatch ${name}" title="${title}"${hidden}>
+    <input type="radio" name="colormap" value="${name}" aria-label="${title}">
+    <span></span>
+  </label>`;
+  })
+  .join('');
+
+const kMarkup = `
+<label class="field">
+  <span class="name">Field</span><select name="field" disabled></select>
+</label>
+<fieldset class="swatches"><legend class="name">Colours</legend>${swatches}</fieldset>
+<div class="row wrap">
+  <label class="toggle"><input type="checkbox" name="reversed"><span>Reversed</span></label>
+  <label class="toggle"><input type="checkbox" name="log"><span>Log scale</span></label>
+</div>
+<div class="row">
+  <span class="name">Range</span>
+  <select name="range" class="small" aria-label="Range of the colours">
+    <option value="auto">Automatic</option>
+    <option value="full">All values</option>
+    <option value="symmetric">Symmetric</option>
+    <option value="instant">This instant</option>
+    <option value="fixed">Fixed</option>
+  </select>
+</div>
+<div class="row range-fixed" hidden>
+  <input type="text" inputmode="decimal" name="range-low" aria-label="Start of the range">
+  <span class="name">to</span>
+  <input type="text" inputmode="decimal" name="range-high" aria-label="End of the range">
+</div>`;
+
+/** It stands below the histogram, which a low sheet shows as well. */
+const kStepsMarkup = `
+<div class="row">
+  <label class="row"><span class="name">Steps</span><input type="text" name="steps"
+    class="steps" inputmode="numeric" placeholder="none" autocomplete="off"></label>
+  <label class="toggle" title="Colours of values beyond the range"><input type="checkbox"
+    name="beyond"><span>Beyond</span></label>
+  <input type="color" name="below" aria-label="Colour below the range" hidden>
+  <input type="color" name="above" aria-label="Colour above the range" hidden>
+</div>`;
+
+/** Gives a swatch the colours of its map. */
+function paint(swatch: HTMLInputElement): void {
+  const {value} = swatch;
+  const isLabels = value === 'labels';
+  (swatch.nextElementSibling as HTMLElement).style.background = isLabels
+    ? labelGradient(kShownLabels)
+    : colorGradient(value as ColorMapName);
 }
 
-export class ColorPanel implements Panel {
+class ColorPanel implements Panel {
   /** The fixed ranges of fields that were left. */
   private readonly ranges = new Map<string, string>();
   /** The field in the menu. */
@@ -33,7 +103,18 @@ export class ColorPanel implements Panel {
     private readonly attributes: Attributes,
   ) {
     for (const swatch of root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
-      (swatch.nextElementSibling as HTMLElement).style.background = gradientOf(swatch.value);
+      if (swatch.value !== 'custom') paint(swatch);
+    this.on('input[name=steps]', () => this.writeMap());
+    this.on('input[name=beyond]', (box) =>
+      attributes.write('beyond', (box as HTMLInputElement).checked ? kBeyond : null),
+    );
+    for (const end of ['below', 'above'])
+      this.on(`input[name=${end}]`, () =>
+        attributes.write(
+          'beyond',
+          ['below', 'above'].map((name) => this.input(name).value.slice(1)).join(),
+        ),
+      );
     this.on('select[name=field]', (select) => this.chooseField(select.value));
     this.on('.swatches', () => this.writeMap());
     this.on('input[name=reversed]', () => this.writeMap());
@@ -43,24 +124,18 @@ export class ColorPanel implements Panel {
     this.on('select[name=range]', (select) => this.writeRange(select.value));
     for (const end of ['low', 'high'])
       this.on(`input[name=range-${end}]`, () => this.writeRange('fixed'));
-    for (const name of kSwitches)
-      this.on(`input[name=${name}]`, (input) =>
-        attributes.write(name, (input as HTMLInputElement).checked ? null : 'off'),
-      );
-    this.input('opacity').addEventListener('input', () =>
-      attributes.write('opacity', String(Number(this.input('opacity').value) / 100)),
-    );
   }
 
   update(settings: Settings, scene: Scene | null): void {
+    const [map, steps] = splitColorMap(settings.map);
+    if (map.startsWith('custom:')) this.offerOwn(map);
     for (const swatch of this.root.querySelectorAll<HTMLInputElement>('input[name=colormap]'))
-      swatch.checked = swatch.value === settings.map;
+      swatch.checked = swatch.value === map;
+    this.input('steps').value = steps > 0 ? String(steps) : '';
+    this.input('steps').disabled = map === 'labels';
+    this.showBeyond(settings);
     this.input('reversed').checked = settings.reversed;
     this.input('log').checked = settings.logarithmic;
-    for (const name of kSwitches) this.input(name).checked = settings[name];
-    this.input('opacity').value = String(Math.round(100 * settings.opacity));
-    setText(this.find('.opacity-text'), `${Math.round(100 * settings.opacity)}\u202f%`);
-    this.disableHidden(settings);
     const fields = scene?.manifest.fields ?? [];
     const chosen = shownScalar(this.attributes.read('field'), fields, scene?.firstField ?? 0);
     const labels = chosen && labelsOf(fields[chosen.field]!);
@@ -69,6 +144,27 @@ export class ColorPanel implements Panel {
     const menu = this.find<HTMLSelectElement>('select[name=field]');
     fillScalars(menu, fields, chosen);
     this.field = menu.value;
+  }
+
+  /** Own colours stay among the choices. */
+  private offerOwn(map: string): void {
+    const label = this.find('.swatch.custom');
+    const swatch = find<HTMLInputElement>(label, 'input');
+    label.hidden = false;
+    if (swatch.value === map) return;
+    swatch.value = map;
+    paint(swatch);
+  }
+
+  private showBeyond({beyond}: Settings): void {
+    const isOn = beyond.some((color) => color !== null);
+    this.input('beyond').checked = isOn;
+    for (const [i, name] of ['below', 'above'].entries()) {
+      const input = this.input(name);
+      input.hidden = !isOn;
+      const hex = beyond[i]?.map((channel) => channel.toString(16).padStart(2, '0')).join('');
+      input.value = `#${hex ?? kBeyond.split(',')[i]!}`;
+    }
   }
 
   /** Only a series can have the range of an instant. */
@@ -82,7 +178,7 @@ export class ColorPanel implements Panel {
   }
 
   /** Shows the current range, which a fixed one starts from. */
-  showRange(low: number, high: number): void {
+  showRange({low, high}: ShownRange): void {
     const active = (this.root as ShadowRoot).activeElement;
     for (const [name, value] of [
       ['range-low', low],
@@ -97,20 +193,6 @@ export class ColorPanel implements Panel {
     this.writeRange('fixed');
   }
 
-  /** A volume hides the surface. A slice inside it has edges. */
-  private disableHidden({volume, mode, planes}: Settings): void {
-    const hint = this.find('.hides-surface');
-    hint.hidden = volume === null;
-    const hasEdges = mode === 'slice' && planes.length > 0;
-    for (const name of [...kSwitches, 'opacity']) {
-      const input = this.input(name);
-      input.disabled = volume !== null && !(name === 'edges' && hasEdges);
-      input.title = input.disabled ? hint.textContent.replace(/\s+/g, ' ') : '';
-      if (input.disabled) input.setAttribute('aria-describedby', hint.id);
-      else input.removeAttribute('aria-describedby');
-    }
-  }
-
   /** Numbers mean nothing for another field: a fixed range stays behind, and comes back. */
   private chooseField(field: string): void {
     const range = this.attributes.read('range');
@@ -118,13 +200,19 @@ export class ColorPanel implements Panel {
       this.ranges.set(this.field, range);
       this.attributes.write('range', null);
     }
+    this.attributes.write('field-title', null);
     this.attributes.write('field', field);
     const kept = this.ranges.get(field);
     if (kept !== undefined) this.attributes.write('range', kept);
   }
 
   private writeMap(): void {
-    const map = this.root.querySelector<HTMLInputElement>('input[name=colormap]:checked')!.value;
+    const {value} = this.find<HTMLInputElement>('input[name=colormap]:checked');
+    const steps = this.input('steps').value.trim();
+    const isRight = steps === '' || isSteps(steps);
+    this.input('steps').setCustomValidity(isRight ? '' : 'Steps are a number from 2 to 64.');
+    if (!isRight) return void this.input('steps').reportValidity();
+    const map = steps === '' || value === 'labels' ? value : `${value}/${steps}`;
     this.attributes.write('colormap', this.input('reversed').checked ? `${map} reversed` : map);
   }
 
@@ -161,3 +249,10 @@ export class ColorPanel implements Panel {
     return this.find<HTMLInputElement>(`input[name=${name}]`);
   }
 }
+
+export const colorPanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page}) => new ColorPanel(page.root, page),
+};
+/** Its controls are served by colorPanel. */
+export const stepsPanel: PanelKind = {markup: kStepsMarkup};

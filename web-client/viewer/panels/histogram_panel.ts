@@ -1,16 +1,13 @@
 // The histogram of the coloured field with the colours below it. Two handles set the range.
 
-import type {Client} from '../../core/session/client';
 import {scalarText} from '../../core/layers/field_values';
-import {colorGradient} from '../../core/picture/color_maps';
+import {gradientStops} from '../../core/picture/color_maps';
 import type {Axis, Histogram} from '../../core/picture/histogram';
-import type {StreamState} from '../../core/session/worker_messages';
 import {find, onClick} from '../page/find';
 import {formatValue, roundTo} from '../page/format';
 import type {Page} from '../page/page';
-import type {ShownMesh} from '../page/shown_mesh';
 import {adopt, setMarkup} from '../page/trusted';
-import type {Settings, ShownRange} from '../settings/settings';
+import type {Settings} from '../settings/settings';
 import styles from './histogram.css?inline';
 import {
   axisOf,
@@ -21,7 +18,7 @@ import {
   shareOf,
   type End,
 } from './histogram_axis';
-import {scalarTitle} from './panel';
+import {scalarTitle, type PanelKind, type PanelsHost} from './panel';
 
 /** Pictures may come twenty times a second while the mesh refines; counting takes a while. */
 const kRestMs = 500;
@@ -40,17 +37,7 @@ const kMarkup = `
 <div class="row"><span class="what"></span>
   <button type="button" class="to-middle" title="Sets the range to it">${kTitle}</button></div>`;
 
-export interface HistogramHost {
-  readonly client: Client;
-  readonly mesh: ShownMesh;
-  readonly settings: Settings;
-  readonly range: ShownRange | null;
-  readonly isPlaying: boolean;
-  /** As TimeHost.opening. */
-  readonly opening: StreamState | null;
-}
-
-export class HistogramPanel {
+class HistogramPanel {
   private readonly root: HTMLElement;
   private readonly plot: HTMLElement;
   private readonly ends: HTMLElement[];
@@ -64,7 +51,7 @@ export class HistogramPanel {
 
   constructor(
     private readonly page: Page,
-    private readonly host: HistogramHost,
+    private readonly host: PanelsHost,
     signal: AbortSignal,
   ) {
     adopt(page.root, styles);
@@ -251,6 +238,14 @@ export class HistogramPanel {
   }
 }
 
+export const histogramPanel: PanelKind = {
+  markup: '<div class="histogram"></div>',
+  make: ({page, host, signal}) => {
+    new HistogramPanel(page, host, signal);
+    return {};
+  },
+};
+
 /** Five digits, without zeros behind a point. */
 function shortText(value: number): string {
   return formatValue(value)
@@ -266,12 +261,16 @@ function endTexts(extent: Histogram['extent']): [string, string] {
   return [`Lowest ${shortText(low)}`, `Highest ${shortText(high)}`];
 }
 
-/** The colours on the axis: beyond the range, those of its ends. */
-function stripOf({map, reversed}: Settings, first: number, last: number): string {
+/** The colours on the axis, also beyond the range. */
+function stripOf({map, reversed, beyond}: Settings, first: number, last: number): string {
   const kStops = 17;
-  const colors = colorGradient(map, reversed, kStops).match(/rgb\([^)]*\)/g)!;
-  const stops = colors.map(
-    (color, i) => `${color} ${(100 * (first + (i * (last - first)) / (kStops - 1))).toFixed(2)}%`,
+  const stops = gradientStops(map, reversed, kStops).map(
+    ([at, color]) => `${color} ${(100 * (first + at * (last - first))).toFixed(2)}%`,
   );
-  return `linear-gradient(90deg, ${stops.join()})`;
+  const [below, above] = [first, last].map((share, i): string[] => {
+    const color = beyond[i] && `rgb(${beyond[i].join(' ')})`;
+    return color ? [`${color} ${100 * i}%`, `${color} ${(100 * share).toFixed(2)}%`] : [];
+  });
+  const all = [...below!, ...stops, ...above!.reverse()];
+  return `linear-gradient(90deg, ${all.join()})`;
 }

@@ -2,7 +2,6 @@
 // field between them.
 
 import type {Vector} from '../../core/protocol/geometry';
-import type {Manifest} from '../../core/protocol/manifest';
 import type {Client} from '../../core/session/client';
 import type {Pick} from '../../core/session/inspector';
 import {cornersOf} from '../../webgl/outline';
@@ -11,9 +10,18 @@ import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
+import {segments} from './markup';
+import {withUnit} from './panel';
 import {ResultCard} from './result_card';
 
 export type Tool = 'none' | 'point' | 'line';
+
+const kToolTitles = {none: 'Turn', point: 'Point', line: 'Line'};
+export const kToolMarkup = `
+<fieldset class="segments tools">
+  <legend class="visually-hidden">Pointer</legend>
+  ${segments('tool', kToolTitles)}
+</fieldset>`;
 
 /** The text before the first click. */
 const kFirstHints: Record<Tool, string> = {
@@ -32,13 +40,8 @@ export interface InspectHost extends OverTimeHost {
   /** Null while it has another mesh than the one in the picture. */
   readonly client: Client | null;
   readonly view: View | null;
-  readonly manifest: Manifest | null;
-  /** The mesh's, in lattice coordinates. */
-  readonly bounds: number[];
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
-  /** The place that is pointed at, in lattice coordinates; null for none. */
-  pointAt(point: Vector | null): void;
 }
 
 export class Inspect {
@@ -110,6 +113,11 @@ export class Inspect {
     void this.click(x * view.canvas.clientWidth, y * view.canvas.clientHeight);
   }
 
+  /** The place that is pointed at, in lattice coordinates; null for none. */
+  get pointed(): Vector | null {
+    return this.points.at(-1)?.lattice ?? null;
+  }
+
   clear(): void {
     this.points = [];
     if (this.overTime.isOpen) {
@@ -119,7 +127,6 @@ export class Inspect {
     this.card.hide();
     this.hint(kFirstHints[this.tool]);
     this.place();
-    this.host.pointAt(null);
   }
 
   /** Ends the plots: uPlot keeps those that are not destroyed. */
@@ -180,7 +187,6 @@ export class Inspect {
     this.points =
       this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
     this.place();
-    this.host.pointAt(pick.lattice);
     const [from, to] = this.points;
     this.hint(this.tool === 'line' && !to ? 'Now point at the other end.' : '');
     if (this.tool === 'point') this.showPick(pick);
@@ -189,15 +195,16 @@ export class Inspect {
   }
 
   private showPick(pick: Pick): void {
-    const fields = this.host.manifest!.fields;
+    const fields = this.host.mesh.manifest!.fields;
     const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
     if (pick.rest) rows.push(['Position at rest', this.placeText(pick.rest.position)]);
     for (const {field, values} of pick.fields) {
       const info = fields[field]!;
       if (info.instant && !info.instant.isShown) continue; // there may be a thousand
       const format = (value: number): string => formatIn(info, value);
-      rows.push([info.name, values.map(format).join(', ')]);
-      if (values.length > 1) rows.push([`${info.name}, magnitude`, format(Math.hypot(...values))]);
+      rows.push([withUnit(info.name, info), values.map(format).join(', ')]);
+      if (values.length > 1)
+        rows.push([withUnit(`${info.name}, magnitude`, info), format(Math.hypot(...values))]);
     }
     rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
     const {isOpen} = this.overTime;
@@ -226,7 +233,7 @@ export class Inspect {
   private async showLine(from: Pick, to: Pick): Promise<void> {
     const probe = await this.host.client?.probe(from.lattice, to.lattice);
     if (!probe) return;
-    const {color, fieldTitle, manifest} = this.host;
+    const {color, fieldTitle, mesh} = this.host;
     const delta = to.position.map((x, axis) => x - from.position[axis]!) as Vector;
     const hasPlot = probe.values.length > 1;
     const rows: [string, string][] = [
@@ -236,17 +243,17 @@ export class Inspect {
     const opens = !this.card.isOpen;
     this.card.show('Line', rows, hasPlot);
     if (opens) this.placeCard();
-    const info = color && manifest?.fields[color.field];
+    const info = color && mesh.manifest?.fields[color.field];
     const format = info?.labels && ((value: number): string => formatIn(info, value));
     if (hasPlot) await this.card.drawPlot(probe, fieldTitle, format);
   }
 
   /** The file's name, and its last columns, say where the values come from. */
   private async saveTable(): Promise<void> {
-    const {client, manifest, mesh} = this.host;
+    const {client, mesh} = this.host;
     const tables = await import('./probe_plot'); // the plot has loaded it
     const {fileNameOf, originOf, tableOf, timeTableOf, timeTitle} = tables;
-    const {fields, units} = manifest!;
+    const {fields, units} = mesh.manifest!;
     const unit = units?.get('');
     const places = this.points.map(({position, rest}) => rest?.position ?? position);
     const place = places.map((its) =>
@@ -278,17 +285,17 @@ export class Inspect {
 
   /** Rounds to a ten-thousandth of the lattice's span. */
   private placeText(place: Vector): string {
-    const {bits, step} = this.host.manifest!.lattice;
+    const {bits, step} = this.host.mesh.manifest!.lattice;
     return place.map((x) => formatTo(x, kPlaceShare * step * 2 ** bits)).join(', ');
   }
 
   /** Puts the card beside the last point, where the mesh and the other cards are not. */
   private placeCard(): void {
-    const {view, bounds} = this.host;
+    const {view, mesh} = this.host;
     if (!view) return;
     const at = ({lattice}: Pick): Point => view.project(lattice);
     const whole = this.root.host.getBoundingClientRect();
-    const cards = ['.panel', '.legend', '.tool-hint'].map((name) =>
+    const cards = ['.panel', '.legend', '.time', '.tool-hint'].map((name) =>
       this.root.querySelector(name)!.getBoundingClientRect(),
     );
     this.card.place({
@@ -303,7 +310,7 @@ export class Inspect {
           bottom: bottom - whole.top,
         })),
       picked: this.points.map(at),
-      mesh: cornersOf(bounds).map((corner) => view.project(corner)),
+      mesh: cornersOf(mesh.bounds).map((corner) => view.project(corner)),
     });
   }
 

@@ -44,12 +44,12 @@ export class Legend {
     marked: readonly number[],
   ): void {
     this.figure.hidden = false;
-    const title = scalarTitle(scalar, fields);
+    const title = settings.title ?? scalarTitle(scalar, fields);
     const name = this.part('.legend-name');
     setText(name, title);
     setAttribute(name, 'title', title);
-    const {map, reversed} = settings;
-    const requested = JSON.stringify([title, range, map, reversed, marked, labels]);
+    const {map, reversed, beyond} = settings;
+    const requested = JSON.stringify([title, range, map, reversed, beyond, marked, labels]);
     if (requested === this.shown) return; // every picture asks, but few change it
     this.shown = requested;
     const {ticks, factor} = ticksOf(range);
@@ -78,12 +78,14 @@ export class Legend {
     );
   }
 
-  /** An arrow beyond each end that is open, in the colour of the values there. */
+  /** An arrow beyond each end that is open or has a colour, in that of the values there. */
   private openEnds(range: ShownRange, settings: Settings): void {
     const bar = this.part('.legend-bar');
     const colorOf = colorsOf(range, settings);
     [range.low, range.high].forEach((end, i) => {
-      const color = range.openEnds?.[i] ? colorOf(end) : '';
+      const own = settings.beyond[i];
+      const open = range.openEnds?.[i] ? colorOf(end) : '';
+      const color = own && !range.labels ? `rgb(${own.join(' ')})` : open;
       bar.style.setProperty(i === 0 ? '--below' : '--above', color);
       bar.classList.toggle(i === 0 ? 'open-below' : 'open-above', color !== '');
     });

@@ -6,7 +6,7 @@ import type {Manifest} from '../../core/protocol/manifest';
 import {instantsOf} from '../../core/protocol/series';
 import type {SeriesServer} from '../../core/transport/series_server';
 import {formatIn} from '../page/format';
-import type {TimeTable} from './line_table';
+import {timeTitle, type TimeTable} from './line_table';
 import type {TimeCurve, TimePlot} from './probe_plot';
 import {BlockValues, ServerValues, type BlocksHost, type TimeValues} from './time_values';
 
@@ -167,6 +167,7 @@ export class OverTime {
       at: times,
       values: values.map(valueOf),
       title: fieldTitle,
+      atTitle: timeTitle(mesh.manifest!.units?.get('')),
       format: info.labels && ((value) => formatIn(info, value)),
       time: info.instant!.time,
       status: `${status}${mesh.isOneOfSegments ? kOfSegment : ''}`,

@@ -1,102 +1,39 @@
-// The controls, and what one points with. Each panel is a component of its own; this updates them
-// together.
+// The panels of sections.ts, and what one points with; this updates them together.
 
-import {fieldLayers} from '../../core/layers/layers';
 import type {Scalar} from '../../core/picture/field_scale';
-import {kMaxPlanes} from '../../core/picture/display';
-import type {Vector} from '../../core/protocol/geometry';
-import type {Client} from '../../core/session/client';
-import type {StreamState} from '../../core/session/worker_messages';
+import {isEqual} from '../../core/protocol/equal';
+import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import {seriesServer} from '../../core/transport/series_server';
-import type {View} from '../../webgl/view';
-import type {Actions} from '../page/actions';
-import type {CardLayout} from '../page/card_layout';
-import {find} from '../page/find';
 import {bindFolds} from '../page/folds';
-import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
-import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
-import {ClipHandles} from './clip_handles';
-import {ClipPanel} from './clip_panel';
-import {ColorPanel} from './color_panel';
+import {kViewAttributes, shownScalar, type Settings, type ShownRange} from '../settings/settings';
 import {Inspect} from './inspect';
-import {LevelPanel} from './level_panel';
-import {scalarTitle, type Panel, type Scene} from './panel';
-import {StatisticsPanel} from './statistics_panel';
-import {ValuePanel} from './value_panel';
-import {ViewPanel} from './view_panel';
-import {VolumePanel} from './volume_panel';
-import {WarpPanel} from './warp_panel';
-
-export interface PanelsHost {
-  readonly client: Client;
-  readonly view: View | null;
-  readonly mesh: ShownMesh;
-  /** As TimeHost.opening. */
-  readonly opening: StreamState | null;
-  readonly stream: {
-    /** The address of the log that is open, as a file; empty: there is none. */
-    readonly logAddress: string;
-  };
-  /** Brings everything in line with the attributes and the mesh. */
-  apply(): void;
-  /** The place that is pointed at, in lattice coordinates; null for none. */
-  pointAt(point: Vector | null): void;
-}
+import {scalarTitle, type Panel, type PanelKind, type PanelTools, type Scene} from './panel';
 
 export class Panels {
-  readonly clip: ClipPanel;
   readonly inspect: Inspect;
-  private readonly color: ColorPanel;
-  /** Panels that need only the attributes and the mesh. */
-  private readonly simple: readonly Panel[];
-  private readonly handles: ClipHandles;
-  private readonly statistics: StatisticsPanel;
-  private readonly view: ViewPanel;
+  private readonly panels: readonly Panel[];
   /** The field and the level that a line's plot shows. */
-  private plotted = '';
+  private plotted: unknown = null;
+  /** Everything that panels other than those of the time depend on, as it was last. */
+  private shown: unknown = null;
 
-  constructor(page: Page, host: PanelsHost, actions: Actions, cards: CardLayout) {
+  /** REQUIRES: the markup of `kinds` is in the page. */
+  constructor(
+    private readonly tools: PanelTools,
+    kinds: readonly PanelKind[],
+    cards: {readonly middle: [number, number]},
+  ) {
+    const {host, page} = tools;
     const {root} = page;
-    const announce = (text: string): void => page.announce(text);
     bindFolds(root);
-    this.statistics = new StatisticsPanel(root);
-    this.view = new ViewPanel(page, actions);
-    this.color = new ColorPanel(root, page);
-    this.clip = new ClipPanel(
-      root,
-      page,
-      () => (host.view?.pose.direction ?? [0, -1, 0]).map((x) => -x) as Vector,
-    );
-    this.handles = new ClipHandles(find(root, '.layer'), kMaxPlanes, (i, share) =>
-      this.clip.move(i, share),
-    );
-    const level = new LevelPanel(
-      root,
-      (quality) => page.write('quality', quality),
-      () => standing(page, host.mesh),
-    );
-    this.simple = [
-      this.color,
-      this.clip,
-      ...fieldLayers().map((layer) => new ValuePanel(root, page, layer)),
-      new VolumePanel(root, page),
-      new WarpPanel(root, page),
-      level,
-      this.view,
-    ];
+    this.panels = kinds.flatMap((kind) => kind.make?.(tools) ?? []);
     this.inspect = new Inspect(root, {
       get client() {
         return host.opening === null ? host.client : null;
       },
       get view() {
         return host.view;
-      },
-      get manifest() {
-        return host.mesh.manifest;
-      },
-      get bounds() {
-        return host.mesh.bounds;
       },
       get middle() {
         return cards.middle;
@@ -108,80 +45,62 @@ export class Panels {
         return seriesServer(host.stream.logAddress, host.mesh.digest, page.token);
       },
       get color() {
-        return colorOf(page, host.mesh);
+        const {manifest, firstField} = host.mesh;
+        return manifest && shownScalar(page.read('field'), manifest.fields, firstField);
       },
       apply: () => host.apply(),
       showTime: (text) => page.write('time', text),
       get fieldTitle() {
-        return fieldTitle(page, host.mesh);
+        const color: Scalar | null = this.color;
+        return host.settings.title ?? (color ? scalarTitle(color, host.mesh.manifest!.fields) : '');
       },
-      announce,
-      pointAt: (point) => host.pointAt(point),
+      announce: (text) => page.announce(text),
     });
   }
 
-  attach(view: View): void {
-    this.handles.attach(view);
-  }
-
-  /** Brings all panels in line with the attributes and the mesh. */
-  update(settings: Settings, mesh: ShownMesh): void {
-    const {manifest, bounds, firstField, snapshot} = mesh;
+  /**
+   * Brings all panels in line with the attributes and the mesh. While a series plays, those that do
+   * not show the time would be written again for nothing.
+   */
+  update(settings: Settings, {manifest, bounds, firstField, snapshot}: ShownMesh): void {
+    const {host, page} = this.tools;
+    const texts = kViewAttributes.filter((name) => name !== 'time').map((name) => page.read(name));
+    const shown = [texts, {...settings, time: null}, bounds, snapshot === null];
     const known: Scene | null = manifest && {manifest, bounds, firstField};
-    for (const panel of this.simple) panel.update(settings, known);
+    if (!host.isPlaying || !isEqual(shown, this.shown))
+      for (const panel of this.panels) panel.update?.(settings, known);
+    this.shown = shown;
     this.inspect.update();
-    this.handles.update(settings.planes, snapshot ? bounds : []);
   }
 
-  /** Must be called after every frame: handles and marks follow the picture. */
+  /** Must be called after every frame. */
   follow(): void {
-    this.handles.place();
+    for (const panel of this.panels) panel.follow?.();
     this.inspect.place();
   }
 
   showState(state: StreamState): void {
-    this.view.showState(state);
+    for (const panel of this.panels) panel.showState?.(state);
   }
 
-  /** Shows the picture's figures. `frameMs` is the time of drawing. */
-  showFigures(
-    {color, statistics, costMs}: NonNullable<ShownMesh['snapshot']>,
-    frameMs: number,
-  ): void {
-    this.statistics.show(statistics, costMs, frameMs);
+  /** `frameMs` is the time of drawing the picture. */
+  showPicture(snapshot: Snapshot, frameMs: number): void {
+    for (const panel of this.panels) panel.showPicture?.(snapshot, frameMs);
+    const {color, statistics} = snapshot;
     const isWhole = statistics.bytes >= statistics.bytesNeeded;
-    const plotted = JSON.stringify([color, isWhole]);
-    if (plotted !== this.plotted) this.inspect.refresh();
+    const plotted = {color, isWhole};
+    if (!isEqual(plotted, this.plotted)) this.inspect.refresh();
     this.plotted = plotted;
   }
 
   /** Shows the range of the colours. */
-  showRange({low, high}: ShownRange): void {
-    this.color.showRange(low, high);
+  showRange(range: ShownRange): void {
+    for (const panel of this.panels) panel.showRange?.(range);
   }
 
   /** Must be called before another mesh. */
   clear(): void {
-    this.statistics.clear();
+    for (const panel of this.panels) panel.clear?.();
     this.inspect.clear();
-    this.handles.update([], []);
   }
-}
-
-function fieldTitle(page: Pick<Page, 'read'>, mesh: ShownMesh): string {
-  const color = colorOf(page, mesh);
-  return color ? scalarTitle(color, mesh.manifest!.fields) : '';
-}
-
-function colorOf({read}: Pick<Page, 'read'>, {manifest, firstField}: ShownMesh): Scalar | null {
-  return manifest && shownScalar(read('field'), manifest.fields, firstField);
-}
-
-/** The mesh as it is now: coarser and finer start from it. */
-function standing(
-  {read}: Pick<Page, 'read'>,
-  {statistics, manifest, firstField}: ShownMesh,
-): ReturnType<ConstructorParameters<typeof LevelPanel>[2]> {
-  const color = shownScalar(read('field'), manifest?.fields ?? [], firstField);
-  return {statistics, manifest, fields: color ? [color.field] : []};
 }

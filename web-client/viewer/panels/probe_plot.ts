@@ -10,7 +10,10 @@ import {adopt} from '../page/trusted';
 export {tableOf, timeTableOf, timeTitle} from './line_table';
 export {fileNameOf, originOf} from './origin';
 
-const kHeight = 170;
+const kHeight = 190;
+const kTextSize = 12;
+/** A title that stands beside the plot has room for so many letters. */
+const kMaxLetters = 24;
 /** The readout shows this share of the ranges. */
 const kShare = 1e-4;
 
@@ -18,6 +21,8 @@ interface Curve {
   at: readonly number[];
   values: readonly number[];
   title: string;
+  /** The title of `at`. */
+  atTitle: string;
   /** A value's text; absent: its number. */
   format?: ((value: number) => string) | undefined;
 }
@@ -45,8 +50,9 @@ export function drawProbe(
   title: string,
   format?: (value: number) => string,
 ): {destroy(): void} {
-  const curve = {...probe, title, format};
+  const curve = {...probe, title, atTitle: 'distance', format};
   const plot = draw(root, place, curve, {
+    titles: () => ['distance', title],
     points: {show: false},
     say: (i) => (i == null ? title : readout(curve, i)),
   });
@@ -60,10 +66,11 @@ export function drawOverTime(
   place: HTMLElement,
   choose: (i: number) => void,
 ): TimePlot {
-  let curve: TimeCurve = {at: [], values: [], title: '', time: NaN, status: ''};
+  let curve: TimeCurve = {at: [], values: [], title: '', atTitle: '', time: NaN, status: ''};
   const say = (i: number | null | undefined): string =>
     i == null ? curve.title : readout(curve, i);
   const plot = draw(root, place, curve, {
+    titles: () => [curve.atTitle, curve.title],
     points: {show: true, size: 4},
     say,
     mark: () => curve.time,
@@ -84,6 +91,8 @@ export function drawOverTime(
 }
 
 interface Looks {
+  /** The titles of the axes. */
+  titles(): readonly [at: string, value: string];
   points: uPlot.Series.Points;
   /** The text for the value that is pointed at. */
   say(i: number | null | undefined): string;
@@ -99,7 +108,9 @@ function draw(root: ShadowRoot, place: HTMLElement, curve: Curve, looks: Looks):
     stroke: ink,
     grid: {stroke: style.getPropertyValue('--line').trim(), width: 1},
     ticks: {show: false},
-    font: '12px system-ui',
+    font: `${kTextSize}px system-ui`,
+    labelFont: `${kTextSize}px system-ui`,
+    labelSize: kTextSize + 4,
     values: (_self, ticks, _axis, _space, step) => ticks.map((tick) => formatTo(tick, step)),
   };
   place.setAttribute('role', 'img');
@@ -111,8 +122,8 @@ function draw(root: ShadowRoot, place: HTMLElement, curve: Curve, looks: Looks):
       cursor: {points: {size: 7}, drag: {x: false, y: false}},
       scales: {x: {time: false}},
       axes: [
-        {...axis, size: 28},
-        {...axis, size: 62},
+        {...axis, size: 24, label: () => looks.titles()[0]},
+        {...axis, size: 56, label: () => shortened(looks.titles()[1])},
       ],
       series: [
         {},
@@ -133,6 +144,9 @@ function draw(root: ShadowRoot, place: HTMLElement, curve: Curve, looks: Looks):
   );
 }
 
+const shortened = (title: string): string =>
+  title.length <= kMaxLetters ? title : `${title.slice(0, kMaxLetters - 1)}…`;
+
 const dataOf = ({at, values}: Curve): uPlot.AlignedData => [
   [...at],
   values.map((value) => (Number.isNaN(value) ? null : value)),
@@ -141,10 +155,10 @@ const dataOf = ({at, values}: Curve): uPlot.AlignedData => [
 const readoutOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.readout')!;
 const statusOf = (place: HTMLElement): Element => place.parentElement!.querySelector('.status')!;
 
-function readout({at, values, title, format}: Curve, i: number): string {
+function readout({at, values, title, atTitle, format}: Curve, i: number): string {
   const known = values.filter((value) => !Number.isNaN(value));
   const value = format?.(values[i]!) ?? formatTo(values[i]!, resolutionIn(known));
-  return `${title} ${value} at ${formatTo(at[i]!, resolutionIn(at))}`;
+  return `${title} ${value} at ${atTitle} ${formatTo(at[i]!, resolutionIn(at))}`;
 }
 
 const resolutionIn = (values: readonly number[]): number =>

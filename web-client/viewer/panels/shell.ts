@@ -4,6 +4,7 @@
 import {markedValues} from '../../core/layers/shown';
 import type {Insets, View} from '../../webgl/view';
 import {CardLayout} from '../page/card_layout';
+import {find} from '../page/find';
 import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import type {Settings, ShownRange} from '../settings/settings';
@@ -34,7 +35,8 @@ export class Shell {
   }
 
   /** Shows the legend; null if nothing is coloured. */
-  showRange(range: ShownRange | null, {snapshot, manifest}: ShownMesh, settings: Settings): void {
+  showRange(range: ShownRange | null, mesh: ShownMesh, settings: Settings): void {
+    const {snapshot, manifest} = mesh;
     if (range && snapshot?.color && manifest) {
       const marked = markedValues(snapshot.color, (name) => this.page.read(name), manifest.fields);
       const {color, labels} = snapshot;
@@ -46,6 +48,7 @@ export class Shell {
     }
     if (this.hasFit || !snapshot) return;
     this.hasFit = true;
+    find(this.page.root, '.time').hidden = mesh.times.length < 2;
     this.cards.refit();
   }
 
@@ -54,6 +57,7 @@ export class Shell {
     this.hasFit = false;
     this.progress.begin(null);
     this.legend.hide();
+    find(this.page.root, '.time').hidden = true;
   }
 
   dispose(): void {

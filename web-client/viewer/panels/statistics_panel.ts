@@ -1,11 +1,22 @@
 // The figures about the pictures: their cost, and the rate of new cells.
 
-import type {Statistics} from '../../core/decode/statistics';
+import type {Snapshot} from '../../core/session/worker_messages';
 import {untilBeat} from '../page/beat';
 import {find, setText} from '../page/find';
 import {formatCount} from '../page/format';
+import type {Panel, PanelKind} from './panel';
 
-export class StatisticsPanel {
+const kMarkup = `
+<dl class="sub">
+  <div><dt>Frame</dt><dd class="frame-ms">&ndash;</dd></div>
+  <div><dt>Picture in the worker</dt><dd class="cost-ms">&ndash;</dd></div>
+  <div><dt>Refining</dt><dd class="cell-rate">&ndash;</dd></div>
+  <div><dt>Level</dt><dd class="level">&ndash;</dd></div>
+  <div><dt>Vertices</dt><dd class="vertices">&ndash;</dd></div>
+  <div><dt>Boundary triangles</dt><dd class="triangles">&ndash;</dd></div>
+</dl>`;
+
+class StatisticsPanel implements Panel {
   /** The previous picture; there was none if `at` is 0. */
   private last = {at: 0, cells: 0};
 
@@ -18,8 +29,7 @@ export class StatisticsPanel {
     this.last = {at: 0, cells: 0};
   }
 
-  /** `costMs` is the time of making the picture, `frameMs` of drawing it. */
-  show(statistics: Statistics, costMs: number, frameMs: number): void {
+  showPicture({statistics, costMs}: Snapshot, frameMs: number): void {
     const now = performance.now();
     const {at, cells} = this.last;
     if (at > 0 && statistics.tetrahedra > cells) {
@@ -44,3 +54,8 @@ export class StatisticsPanel {
     setText(find(this.root, selector), text);
   }
 }
+
+export const statisticsPanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page}) => new StatisticsPanel(page.root),
+};

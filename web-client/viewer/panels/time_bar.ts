@@ -1,27 +1,17 @@
-// The time of a series: play, step, loop, and which instants are here.
+// The time of a series: play all of it or a part, step, and which instants are here.
 
-import type {FieldInfo} from '../../core/protocol/fields';
-import {instantsOf, isSameTime, nearestTo, shownInstant} from '../../core/protocol/series';
-import type {StreamState} from '../../core/session/worker_messages';
+import {parseNumbers} from '../../core/layers/field_values';
+import {nearestTo} from '../../core/protocol/series';
 import {untilBeat} from '../page/beat';
-import {find, onClick, setText} from '../page/find';
+import {find, onClick, setAttribute, setText} from '../page/find';
 import type {Attributes} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import {setMarkup} from '../page/trusted';
 import {shownScalar, type Settings} from '../settings/settings';
 import {warpField} from '../settings/warp';
+import {TimeClock} from './time_clock';
+import {TimeLine, type TimeLineHost} from './time_line';
 
-/** Between two instants at speed 1. */
-const kStepMs = 100;
-/** The clock is read so often, and with each picture. */
-const kTickMs = 25;
-/**
- * An instant that is not here after this time is passed over for one that is, or for the next
- * segment.
- */
-const kPatienceMs = 1000;
-/** Instants that are fetched ahead of the one that is shown; the list changes at every half. */
-const kAhead = 32;
 const kSpeeds = [0.5, 1, 2, 4];
 
 const kHere = 'currentcolor';
@@ -29,23 +19,44 @@ const kNone = 'transparent';
 const kPlay = 'M6.5 4.5v11l9-5.5z';
 const kPause = 'M7.5 5v10M12.5 5v10';
 
+/** Class: [title, path of the icon]. Those of kSwitches are pressed or not. */
+const kButtons: Record<string, [string, string]> = {
+  first: ['First instant', 'M14.5 4.5v11L7 10zM5 4.5v11'],
+  play: ['Play', kPlay],
+  last: ['Last instant', 'M5.5 4.5v11L13 10zM15 4.5v11'],
+  from: ['Play from here', 'M12 4H8v12h4'],
+  to: ['Play to here', 'M8 4h4v12H8'],
+  loop: [
+    'Begin again at the end',
+    'M5 8.5a5.5 5.5 0 0 1 10 0M15 11.5a5.5 5.5 0 0 1-10 0M15 4.5v4h-4M5 15.5v-4h4',
+  ],
+};
+const kSwitches = ['play', 'from', 'to', 'loop'];
+
+const buttons = Object.entries(kButtons)
+  .map(([name, [title, path]]) => {
+    const pressed = kSwitches.includes(name) ? ' aria-pressed="false"' : '';
+    return `
+  <button type="button" class="icon ${name}" aria-label="${title}" title="${title}"${pressed}>
+    <svg viewBox="0 0 20 20" aria-hidden="true"><path d="${path}"/></svg>
+  </button>`;
+  })
+  .join('');
+
 const kMarkup = `
-<button type="button" class="icon play" aria-pressed="false">
-  <svg viewBox="0 0 20 20" aria-hidden="true"><path/></svg>
-</button>
 <div class="track">
-  <i class="here"></i>
+  <i class="part"></i><i class="here"></i>
   <input type="range" name="time" min="0" step="1" aria-label="Time">
 </div>
-<output></output>
-<select class="small" name="speed" aria-label="Speed">${kSpeeds
-  .map((speed) => `<option value="${speed}">${speed}\u00d7</option>`)
-  .join('')}</select>`;
+<div class="row">${buttons}
+  <label>t = <input type="text" name="instant" inputmode="decimal" autocomplete="off"
+    aria-label="Go to the time"><span class="unit"></span></label>
+  <select class="small" name="speed" aria-label="Speed">${kSpeeds
+    .map((speed) => `<option value="${speed}">${speed}\u00d7</option>`)
+    .join('')}</select>
+</div>`;
 
-export interface TimeHost {
-  readonly mesh: ShownMesh;
-  /** The state of another segment that is opened, before it has a picture; null: none is. */
-  readonly opening: StreamState | null;
+export interface TimeHost extends TimeLineHost {
   /** The graphics are too slow for what plays. */
   readonly isHurried: boolean;
   /** Brings the picture in line with the bar. */
@@ -56,30 +67,16 @@ export interface TimeHost {
 
 export class TimeBar {
   private readonly bar: HTMLElement;
-  private times: readonly {time: number; text: string}[] = [];
-  /** The keys of the series that colour and move the mesh, as text; null: another mesh's. */
-  private series: string | null = null;
-  /** For each of them, by time: its field, -1 for none. */
-  private tracks: number[][] = [];
-  private at = 0;
+  private readonly line: TimeLine;
+  private readonly clock: TimeClock;
   /** The instant that is shown where no time is asked for. */
   private first = 0;
   /** The instant whose time the bar shows: while it plays, that of the picture. */
   private seen = 0;
-  private timer: ReturnType<typeof setInterval> | undefined;
-  private waitingSince = 0;
-  /** When the next instant is due. */
-  private dueAt = 0;
   /** The bar shows the time at the next beat. */
   private beat: ReturnType<typeof setTimeout> | undefined;
   /** The instants that are here, as shown; null: none are shown yet. */
   private here: string | null = null;
-  /** The shown instant was not here when it was asked for. */
-  private isLate = false;
-  /** The list of segments, or else the manifest, that `times` are of. */
-  private known: unknown = null;
-  /** The manifest that `tracks` are of. */
-  private tracked: unknown = null;
   /** The host knows this time, and whether it plays; null: nothing was shown yet. */
   private told: {time: number; playing: boolean} | null = null;
 
@@ -89,16 +86,34 @@ export class TimeBar {
     private readonly host: TimeHost,
     signal: AbortSignal,
   ) {
+    this.line = new TimeLine(host);
+    this.clock = new TimeClock(
+      this.line,
+      () => this.ask(),
+      () => this.toggle(),
+    );
     this.bar = find(root, '.time');
     setMarkup(this.bar, kMarkup);
-    this.speed.value = '1';
+    const speed = find<HTMLSelectElement>(this.bar, 'select');
+    speed.value = '1';
     this.showPlaying();
     onClick(this.bar, '.play', () => this.toggle());
+    onClick(this.bar, '.first', () => this.goTo(0));
+    onClick(this.bar, '.last', () => this.goTo(-1));
+    onClick(this.bar, '.from', () => this.mark(0));
+    onClick(this.bar, '.to', () => this.mark(1));
+    onClick(this.bar, '.loop', () =>
+      attributes.write('time-loop', this.clock.loops ? 'off' : null),
+    );
+    this.typed.addEventListener('change', () => this.take(this.typed.value));
     this.slider.addEventListener('input', () => {
       this.seen = Number(this.slider.value); // the handle stays where it is held
-      this.show(this.seen);
+      this.clock.show(this.seen);
     });
-    this.speed.addEventListener('change', () => this.isPlaying && this.play());
+    speed.addEventListener('change', () => {
+      this.clock.speed = Number(speed.value);
+      if (this.isPlaying) this.play();
+    });
     signal.addEventListener('abort', () => this.end());
   }
 
@@ -108,100 +123,162 @@ export class TimeBar {
   }
 
   get isPlaying(): boolean {
-    return this.timer !== undefined;
+    return this.clock.isPlaying;
   }
   set isPlaying(isPlaying: boolean) {
     if (isPlaying !== this.isPlaying) this.toggle();
   }
 
+  /** Between two instants that play. */
+  get stepMs(): number {
+    return this.clock.stepMs;
+  }
+
   /** Brings the bar in line with the attributes and the mesh. */
-  update(settings: Settings, mesh: ShownMesh): void {
+  update({time, timePart, timeLoops, warp}: Settings, mesh: ShownMesh): void {
+    const {clock, line} = this;
     const {manifest, firstField} = mesh;
-    const known = mesh.place?.list ?? manifest;
-    if (this.known !== known) {
-      this.known = known;
-      this.end();
-      this.times = mesh.times;
-    }
-    if (this.tracked !== manifest) {
-      this.tracked = manifest;
-      this.series = null;
-      this.tracks = [];
-    }
-    const isSeries = manifest !== null && this.times.length > 1;
+    if (line.take(mesh)) this.end();
+    const isSeries = manifest !== null && line.times.length > 1;
     this.bar.hidden = !isSeries;
     if (!isSeries) return;
     const {fields} = manifest;
     const color = shownScalar(this.attributes.read('field'), fields, firstField);
-    this.choose([color?.field ?? -1, warpField(settings.warp, fields)], fields);
-    this.first = nearestTo(this.times, mesh.firstTime!.time);
-    this.at = settings.time === null ? this.first : nearestTo(this.times, settings.time);
-    const ahead = (track: number[]): number[] => fieldsAhead(track, this.at);
-    mesh.playing = this.isPlaying ? this.tracks.flatMap(ahead) : [];
-    this.slider.max = String(this.times.length - 1);
+    line.choose([color?.field ?? -1, warpField(warp, fields)], fields);
+    this.first = nearestTo(line.times, mesh.firstTime!.time);
+    clock.at = time === null ? this.first : nearestTo(line.times, time);
+    const last = line.times.length - 1;
+    clock.loops = timeLoops;
+    clock.part = timePart ? partOf(line.times, timePart) : [0, last];
+    mesh.playing = this.isPlaying ? line.ahead(clock.at, clock.part) : [];
+    this.slider.max = String(last);
+    this.showPart();
     this.follow();
     this.tell();
   }
 
-  /** Over slow graphics the time changes at the beat. */
-  private followTime(): void {
-    if (!this.isPlaying || this.isOnScreen || this.isLate) this.seen = this.at;
+  /** Must be called when more is here, or on the screen. */
+  follow(): void {
+    if (this.bar.hidden) return;
+    const {clock, line} = this;
+    const isOnScreen = line.isOnScreen(clock.at);
+    if (!this.isPlaying || isOnScreen || clock.isLate) this.seen = clock.at;
+    // Over slow graphics the time changes at the beat.
     if (!this.isPlaying || !this.host.isHurried) this.showTime();
     else this.beat ??= setTimeout(() => this.showTime(), untilBeat());
+    this.showHere();
+    this.bar.classList.toggle('waits', !isOnScreen && !line.isHere(clock.at));
+    if (this.isPlaying) clock.tick();
   }
 
-  private showTime(): void {
+  toggle(): void {
+    if (!this.isPlaying) return this.play();
+    this.end();
+    this.host.apply();
+  }
+
+  /** To the next instant or the one before, round the ends. */
+  step(by: number): void {
+    this.goTo(this.clock.at + by);
+  }
+
+  /** To an instant; the first one is 0, and the last one -1. */
+  goTo(at: number): void {
+    this.end();
+    this.clock.show(at);
+  }
+
+  /** The instant that is nearest to a typed time. */
+  private take(text: string): void {
+    const [time, ...more] = parseNumbers(text.replace(',', '.'));
+    if (time !== undefined && more.length === 0) this.goTo(nearestTo(this.line.times, time));
+    this.showTyped();
+  }
+
+  /** Playing begins (end 0) or ends (end 1) at this instant, or no longer does. */
+  private mark(end: 0 | 1): void {
+    const {at, part} = this.clock;
+    const whole = [0, this.line.times.length - 1] as const;
+    const next: [number, number] = [...part];
+    next[end] = part[end] === at ? whole[end] : at;
+    if (next[0] >= next[1]) next[1 - end] = whole[1 - end]!;
+    const isWhole = next.every((its, i) => its === whole[i]);
+    const texts = next.map((its) => this.line.times[its]!.text);
+    this.attributes.write('time-range', isWhole ? null : texts.join());
+  }
+
+  private play(): void {
+    this.clock.play();
+    this.host.apply();
+    this.showPlaying();
+  }
+
+  private end(): void {
+    this.clock.stop();
     clearTimeout(this.beat);
     this.beat = undefined;
-    const {slider} = this;
-    const {text} = this.times[this.seen]!;
-    slider.value = String(this.seen);
-    slider.setAttribute('aria-valuetext', text);
-    const unit = this.host.mesh.manifest?.units?.get('');
-    setText(find(this.bar, 'output'), `t = ${text}${unit === undefined ? '' : `\u00a0${unit}`}`);
+    this.showPlaying();
+  }
+
+  private ask(): void {
+    const {at} = this.clock;
+    this.attributes.write('time', at === this.first ? null : this.line.times[at]!.text);
   }
 
   /** The host may change the time at once. */
   private tell(): void {
     if (this.host.mesh.filmed) return; // a movie leaves the time as it is
     const {isPlaying: playing, told} = this;
-    const {time} = this.times[this.at]!;
+    const {time} = this.line.times[this.clock.at]!;
     if (told?.time === time && told.playing === playing) return;
     this.told = {time, playing};
     if (told) this.host.timeChanged(time, playing);
   }
 
-  /** A mesh may have thousands of instants: they are looked up once. */
-  private choose(shown: readonly number[], fields: readonly FieldInfo[]): void {
-    const keys = shown.map((field) => fields[field]?.instant?.series);
-    const series = [...new Set(keys.filter((key) => key !== undefined))];
-    const text = JSON.stringify(series);
-    if (text === this.series) return;
-    this.series = text;
-    this.tracks = series.map((key) => {
-      const instants = instantsOf(fields, key);
-      const byTime = new Map(instants.map((field) => [fields[field]!.instant!.time, field]));
-      const near = (time: number): number | undefined =>
-        instants.find((field) => isSameTime(fields[field]!.instant!.time, time));
-      return this.times.map(({time}) => byTime.get(time) ?? near(time) ?? -1);
-    });
+  private showTime(): void {
+    clearTimeout(this.beat);
+    this.beat = undefined;
+    const {slider} = this;
+    const {text} = this.line.times[this.seen]!;
+    const unit = this.host.mesh.manifest?.units?.get('') ?? '';
+    slider.value = String(this.seen);
+    setAttribute(slider, 'aria-valuetext', `t = ${text}${unit && `\u00a0${unit}`}`);
+    setText(find(this.bar, '.unit'), unit);
+    if (!this.typed.matches(':focus')) this.showTyped();
+    this.showMarks();
   }
 
-  /** Must be called when more is here, or on the screen. */
-  follow(): void {
-    if (this.bar.hidden) return;
-    this.followTime();
-    this.showHere();
-    this.bar.classList.toggle('waits', !this.isOnScreen && !this.isHere(this.at));
-    if (this.isPlaying) this.tick();
+  private showTyped(): void {
+    this.typed.value = this.line.times[this.seen]!.text;
+  }
+
+  /** Which ends of the part are at the shown instant. */
+  private showMarks(): void {
+    const {part} = this.clock;
+    const isPart = part[0] > 0 || part[1] < this.line.times.length - 1;
+    for (const [i, name] of ['from', 'to'].entries())
+      press(find(this.bar, `.${name}`), isPart && part[i] === this.seen);
+  }
+
+  private showPart(): void {
+    const {clock, line} = this;
+    press(find(this.bar, '.loop'), clock.loops);
+    const last = line.times.length - 1;
+    const [from, to] = clock.part.map((at) => `${(100 * at) / last}%`);
+    const band = `${kNone} ${from}, ${kHere} ${from}, ${kHere} ${to}, ${kNone} ${to}`;
+    const isWhole = clock.part[0] === 0 && clock.part[1] === last;
+    find(this.bar, '.part').style.backgroundImage = isWhole
+      ? 'none'
+      : `linear-gradient(to right, ${band})`;
   }
 
   /** Draws the runs of instants that are here. */
   private showHere(): void {
-    const last = this.times.length - 1;
+    const {line} = this;
+    const last = line.times.length - 1;
     const place = (at: number): string =>
       `${(100 * Math.min(Math.max(at - 0.5, 0), last)) / last}%`;
-    const isHere = [...this.times.map((_, i) => this.isHere(i)), false];
+    const isHere = [...line.times.map((_, i) => line.isHere(i)), false];
     const edges = isHere.flatMap((here, i) =>
       here === (isHere[i - 1] ?? false) ? [] : [place(i)],
     );
@@ -215,140 +292,29 @@ export class TimeBar {
     find(this.bar, '.here').style.backgroundImage = here;
   }
 
-  toggle(): void {
-    if (this.isPlaying) this.stop();
-    else this.play();
-  }
-
-  /** To the next instant or the one before, round the ends. */
-  step(by: number): void {
-    this.end();
-    this.show(this.at + by);
-  }
-
-  private play(): void {
-    clearInterval(this.timer);
-    this.waitingSince = 0;
-    this.dueAt = performance.now() + this.stepMs;
-    this.timer = setInterval(() => this.tick(), kTickMs);
-    this.host.apply();
-    this.showPlaying();
-  }
-
-  private stop(): void {
-    this.end();
-    this.host.apply();
-  }
-
-  private end(): void {
-    clearInterval(this.timer);
-    clearTimeout(this.beat);
-    this.timer = this.beat = undefined;
-    this.showPlaying();
-  }
-
-  /**
-   * The next instant, once this one is in the picture. Instants whose time passes while a picture
-   * is drawn are left out. The clock stands while an instant is not here, and until a segment is on
-   * the screen.
-   */
-  private tick(): void {
-    const now = performance.now();
-    if (this.awaitsFrame) return void (this.waitingSince = 0);
-    if (this.isOnScreen) {
-      this.waitingSince = 0;
-      if (this.isLate) this.dueAt = Math.max(this.dueAt, now);
-      this.isLate = false;
-      if (now < this.dueAt) return;
-      const due = 1 + Math.floor((now - this.dueAt) / this.stepMs);
-      const by = this.stepsTo(due);
-      this.dueAt = by === due ? this.dueAt + by * this.stepMs : now + this.stepMs;
-      return this.show(this.at + by);
-    }
-    if (this.waitingSince === 0) this.waitingSince = now;
-    if (now - this.waitingSince < kPatienceMs) return;
-    // A segment that is slow would only begin again.
-    if (this.host.opening !== null && this.host.opening !== 'failed') return;
-    for (let by = 1; by < this.times.length; ++by) {
-      if (!this.isHere(this.at + by) && !this.isElsewhere(this.at + by)) continue;
-      this.waitingSince = 0;
-      return this.show(this.at + by);
-    }
-  }
-
-  /** The instant is of another segment than that of `at`. */
-  private isElsewhere(at: number): boolean {
-    const {instants} = this.host.mesh.place?.list ?? {};
-    const segmentOf = (i: number): number | undefined => instants?.[i % this.times.length]?.segment;
-    return segmentOf(at) !== segmentOf(this.at);
-  }
-
-  /**
-   * The most steps up to `due` to an instant that is here; 1 if none is. The first instant of
-   * another segment ends them, or slow graphics would play round in one segment.
-   */
-  private stepsTo(due: number): number {
-    let by = Math.min(due, this.times.length - 1);
-    for (let i = 1; i < by; ++i) if (this.isElsewhere(this.at + i)) return i;
-    while (by > 1 && !this.isHere(this.at + by)) --by;
-    return Math.max(1, by);
-  }
-
-  /** False without a series. */
-  private isHere(at: number): boolean {
-    if (this.host.opening !== null) return false;
-    const {here} = this.host.mesh;
-    const fields = this.tracks.map((track) => track[at % this.times.length]!);
-    return fields.length > 0 && fields.every((field) => here.includes(field));
-  }
-
-  /** Between two instants that play. */
-  get stepMs(): number {
-    return kStepMs / Number(this.speed.value);
-  }
-
-  private get awaitsFrame(): boolean {
-    return this.host.opening === null && this.host.mesh.awaitsFrame;
-  }
-
-  private get isOnScreen(): boolean {
-    if (this.host.opening !== null || this.awaitsFrame) return false;
-    const {manifest, snapshot} = this.host.mesh;
-    const seen = [snapshot?.color?.field, snapshot?.warp?.field];
-    return this.tracks.every((track) => {
-      const field = track[this.at] ?? -1;
-      return !manifest || field < 0 || seen.includes(shownInstant(manifest.fields, field));
-    });
-  }
-
-  private show(at: number): void {
-    const count = this.times.length;
-    if (count === 0) return;
-    this.at = (at + count) % count;
-    this.isLate = !this.isHere(this.at);
-    this.attributes.write('time', this.at === this.first ? null : this.times[this.at]!.text);
-  }
-
   private showPlaying(): void {
     const button = find<HTMLButtonElement>(this.bar, '.play');
     const [title, path] = this.isPlaying ? ['Stop', kPause] : ['Play', kPlay];
     button.ariaLabel = button.title = title;
-    button.ariaPressed = String(this.isPlaying);
+    press(button, this.isPlaying);
     find(button, 'path').setAttribute('d', path);
   }
 
   private get slider(): HTMLInputElement {
-    return find<HTMLInputElement>(this.bar, 'input');
+    return find<HTMLInputElement>(this.bar, '.track input');
   }
-  private get speed(): HTMLSelectElement {
-    return find<HTMLSelectElement>(this.bar, 'select');
+
+  private get typed(): HTMLInputElement {
+    return find<HTMLInputElement>(this.bar, 'label input');
   }
 }
 
-/** By time the fields of a series (-1: none): those to fetch while the one at `at` is shown. */
-export function fieldsAhead(fields: readonly number[], at: number): number[] {
-  const half = kAhead / 2;
-  const from = at - (at % half);
-  const round = [...fields.slice(from), ...fields.slice(0, from)];
-  return round.slice(0, kAhead).filter((field) => field >= 0);
+function press(button: HTMLElement, isPressed: boolean): void {
+  setAttribute(button, 'aria-pressed', String(isPressed));
+}
+
+/** The instants that are nearest to two times. */
+function partOf(times: TimeLine['times'], part: readonly [number, number]): [number, number] {
+  const [from, to] = part.map((time) => nearestTo(times, time));
+  return [from!, to!];
 }

@@ -7,13 +7,14 @@ import {
   sharesOf,
   type FieldValues,
 } from '../../core/layers/field_values';
-import type {ListedFieldLayer} from '../../core/layers/layers';
+import {fieldLayers, type ListedFieldLayer} from '../../core/layers/layers';
 import {scalarRange, kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
 import type {Settings} from '../settings/settings';
-import {fillScalars, type Panel, type Scene} from './panel';
+import {toggle} from './markup';
+import {fillScalars, type Panel, type PanelKind, type Scene} from './panel';
 
 const kSteps = 1000;
 /** Values are shown to this share of the field's range. */
@@ -21,7 +22,26 @@ const kShownShare = 1e-4;
 /** The surface's opacity through which isosurfaces are seen well. */
 const kSeeThrough = '0.25';
 
-export class ValuePanel implements Panel {
+function markupOf({name, control}: ListedFieldLayer): string {
+  const {title, fieldLabel, sliders, valuesLabel, hiddenHint} = control;
+  const ranges = sliders
+    .map((label) => `<input type="range" min="0" max="1000" aria-label="${label}">`)
+    .join('\n        ');
+  const hint = `
+        <p class="hint ${name}-hidden" hidden>${hiddenHint}
+          <button type="button" class="see-through">See through it</button></p>`;
+  return `${toggle(name, title)}
+      <div class="${name} sub" hidden>
+        <select name="${name}-field" aria-label="${fieldLabel}"></select>
+        ${ranges}
+        <label class="row">
+          <span class="name">${valuesLabel}</span>
+          <input type="text" name="${name}-values" autocomplete="off">
+        </label>${hiddenHint === undefined ? '' : hint}
+      </div>`;
+}
+
+class ValuePanel implements Panel {
   private fields: readonly FieldInfo[] = [];
   private readonly on: HTMLInputElement;
   private readonly body: HTMLElement;
@@ -139,3 +159,12 @@ export class ValuePanel implements Panel {
 function hidesInside({surface, opacity, planes, volume}: Settings): boolean {
   return surface && opacity === 1 && planes.length === 0 && volume === null;
 }
+
+/** Those of layers that draw, or of those that only hide. */
+export const valuePanels = (draws: boolean): PanelKind[] =>
+  fieldLayers()
+    .filter(({draw}) => (draw !== undefined) === draws)
+    .map((layer) => ({
+      markup: markupOf(layer),
+      make: ({page}) => new ValuePanel(page.root, page, layer),
+    }));

@@ -1,16 +1,30 @@
 // Standard views, projection, and the row of actions at the panel's top.
 
 import type {StreamState} from '../../core/session/worker_messages';
-import type {Direction} from '../../webgl/directions';
+import {kDirections, type Direction} from '../../webgl/directions';
 import type {Actions} from '../page/actions';
 import {find, onClick} from '../page/find';
 import type {Page} from '../page/page';
 import type {Settings} from '../settings/settings';
+import {toggle} from './markup';
+import type {Panel, PanelKind} from './panel';
 
 const kPauseIcon = 'M7.5 5v10M12.5 5v10';
 const kContinueIcon = 'M6.5 4.5v11l9-5.5z';
 
-export class ViewPanel {
+const directions = kDirections
+  .map((direction) => {
+    const text = direction.replace('-', '\u2212');
+    const label = `aria-label="Look from ${direction}"`;
+    return `<button type="button" class="look" value="${direction}" ${label}>${text}</button>`;
+  })
+  .join('');
+
+const kMarkup = `
+<div class="looks" role="group" aria-label="Standard views">${directions}</div>
+${toggle('parallel', 'Parallel projection')}`;
+
+class ViewPanel implements Panel {
   private readonly parallel: HTMLInputElement;
   private readonly pause: HTMLButtonElement;
 
@@ -45,3 +59,8 @@ export class ViewPanel {
     find(this.pause, 'path').setAttribute('d', goesOn ? kPauseIcon : kContinueIcon);
   }
 }
+
+export const viewPanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page, actions}) => new ViewPanel(page, actions),
+};

@@ -5,11 +5,23 @@ import {kAutoVolume} from '../../core/layers/volume';
 import {colorGradient} from '../../core/picture/color_maps';
 import type {Attributes} from '../page/page';
 import type {Settings} from '../settings/settings';
-import type {Panel, Scene} from './panel';
+import {toggle} from './markup';
+import type {Panel, PanelKind, Scene} from './panel';
 
 const kSteps = 100;
 
-export class VolumePanel implements Panel {
+const kMarkup = `
+${toggle('volume', 'Volume')}
+<div class="volume sub" hidden>
+  <div class="bars" role="group" aria-label="Transfer function"></div>
+  <p class="hint working" hidden>Drawing all cells and pixels</p>
+  <div class="row buttons">
+    <button type="button" class="fainter">Fainter</button>
+    <button type="button" class="denser">Denser</button>
+  </div>
+</div>`;
+
+class VolumePanel implements Panel {
   private readonly on: HTMLInputElement;
   private readonly body: HTMLElement;
   private readonly bars: HTMLElement;
@@ -74,3 +86,8 @@ export class VolumePanel implements Panel {
     this.attributes.write('volume', opacities.map((opacity) => Number(opacity.toFixed(3))).join());
   }
 }
+
+export const volumePanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page}) => new VolumePanel(page.root, page),
+};

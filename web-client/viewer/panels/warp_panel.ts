@@ -9,11 +9,28 @@ import type {Attributes} from '../page/page';
 import {fillSelect} from '../page/select';
 import type {Settings} from '../settings/settings';
 import {firstWarp, kNoWarp, largestScale, warpFields, warpOf} from '../settings/warp';
-import {scalarName, type Panel, type Scene} from './panel';
+import {toggle} from './markup';
+import {scalarName, type Panel, type PanelKind, type Scene} from './panel';
 
 const kSteps = 400;
 
-export class WarpPanel implements Panel {
+const kMarkup = `
+${toggle('warp', 'Deformed shape')}
+<div class="warp sub" hidden>
+  <select name="warp-field" aria-label="Vectors that move the mesh"></select>
+  <label class="row">
+    <span class="name">Scale \u00d7</span>
+    <input type="text" inputmode="decimal" name="warp-scale" autocomplete="off">
+  </label>
+  <input type="range" name="warp-slider" min="0" aria-label="Scale of the deformed shape">
+  <div class="buttons">
+    <button type="button" class="true-size">True size</button>
+    <button type="button" class="automatic">Automatic</button>
+  </div>
+  ${toggle('rest-edges', 'Edges at rest')}
+</div>`;
+
+class WarpPanel implements Panel {
   private readonly section: HTMLElement;
   private readonly on: HTMLInputElement;
   private readonly body: HTMLElement;
@@ -105,3 +122,8 @@ export class WarpPanel implements Panel {
     this.attributes.write('warp-scale', String(Number(scale.toPrecision(3))));
   }
 }
+
+export const warpPanel: PanelKind = {
+  markup: kMarkup,
+  make: ({page}) => new WarpPanel(page.root, page),
+};

@@ -53,8 +53,8 @@ export interface LegendTexts {
   /** A CSS gradient. */
   gradient: string;
   ticks: {at: number; label: string}[];
-  /** Values lie beyond the first, and the last end. */
-  openEnds: [boolean, boolean];
+  /** The colours of values beyond the first, and the last end; empty: there are none. */
+  endColors: [string, string];
   marks: number[];
   /** They are listed instead of a bar; none: the bar is drawn. */
   labels: LabelText[];
@@ -80,12 +80,12 @@ export function legendOf(root: ParentNode): LegendTexts | null {
   if (legend.hidden) return null;
   const part = (name: string): HTMLElement => legend.querySelector<HTMLElement>(`.legend-${name}`)!;
   const text = (name: string): string => (part(name).hidden ? '' : part(name).textContent);
-  const isOpen = (end: string): boolean => part('bar').classList.contains(`open-${end}`);
+  const endColor = (end: string): string => part('bar').style.getPropertyValue(`--${end}`);
   const at = (its: HTMLElement): number => parseFloat(its.style.left) / 100;
-  const time = legend.querySelector<HTMLElement>('.time')!;
+  const time = root.querySelector<HTMLElement>('.time')!;
   const notes = [
     part('labels').hidden ? '' : (part('labels').querySelector('.more')?.textContent ?? ''),
-    time.hidden ? '' : (time.querySelector('output')?.textContent ?? ''),
+    time.hidden ? '' : (time.querySelector('input')?.getAttribute('aria-valuetext') ?? ''),
     text('note'),
     text('warp'),
     text('missing').trim(),
@@ -98,7 +98,7 @@ export function legendOf(root: ParentNode): LegendTexts | null {
       at: at(its as HTMLElement),
       label: its.textContent,
     })),
-    openEnds: [isOpen('below'), isOpen('above')],
+    endColors: [endColor('below'), endColor('above')],
     marks: [...part('bar').children].map((its) => at(its as HTMLElement)),
     labels: part('labels').hidden ? [] : [...part('labels').children].flatMap(labelOf),
     notes: notes.filter(Boolean),
@@ -245,7 +245,8 @@ function drawLegend(pen: Pen, legend: LegendTexts, figure: Figure, height: numbe
   const factor = {align: 'right', soft: true} as const;
   pen.write(legend.factor, kText, left + bar, y, factor);
   const free = bar - (legend.factor ? context.measureText(legend.factor).width + kText : 0);
-  const name = unit ? `${legend.name} (${unit})` : legend.name;
+  // The log may know another unit, "T [K]".
+  const name = unit ? `${legend.name.replace(/ \[[^\]]*\]$/, '')} [${unit}]` : legend.name;
   pen.write(name, kText, left, y, {bold: true, maxWidth: free});
   y += kText * (kLine - 1) + 8;
   const place = {left, top: y, width: bar};
@@ -285,11 +286,12 @@ function drawBar(pen: Pen, legend: LegendTexts, {left, top, width}: Place): numb
   for (const stop of stopsOf(legend.gradient)) gradient.addColorStop(...stop);
   context.fillStyle = gradient;
   context.beginPath();
-  const [below, above] = legend.openEnds.map((isOpen) => (isOpen ? 0 : kBarHeight / 2));
+  const [below, above] = legend.endColors.map((color) => (color ? 0 : kBarHeight / 2));
   context.roundRect(left, top, width, kBarHeight, [below!, above!, above!, below!]);
   context.fill();
-  if (legend.openEnds[0]) drawArrow(context, left - kArrowGap, top, -kBarHeight);
-  if (legend.openEnds[1]) drawArrow(context, left + width + kArrowGap, top, kBarHeight);
+  const [belowColor, aboveColor] = legend.endColors;
+  if (belowColor) drawArrow(context, belowColor, [left - kArrowGap, top], -kBarHeight);
+  if (aboveColor) drawArrow(context, aboveColor, [left + width + kArrowGap, top], kBarHeight);
   for (const at of legend.marks) drawMark(context, left + at * width, top);
   const y = top + kBarHeight;
   for (const {at, label} of legend.ticks) {
@@ -301,13 +303,14 @@ function drawBar(pen: Pen, legend: LegendTexts, {left, top, width}: Place): numb
   return y + 6 + kSmallText;
 }
 
-/** Values lie beyond this end. It has the gradient's colour there. */
+/** Values lie beyond this end. */
 function drawArrow(
   context: OffscreenCanvasRenderingContext2D,
-  x: number,
-  top: number,
+  color: string,
+  [x, top]: readonly [number, number],
   long: number,
 ): void {
+  context.fillStyle = color;
   context.beginPath();
   context.moveTo(x, top);
   context.lineTo(x + long, top + kBarHeight / 2);

@@ -6,7 +6,7 @@ import {instantsOf} from '../../core/protocol/series';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import type {View} from '../../webgl/view';
 import type {ShownMesh} from '../page/shown_mesh';
-import {fieldsAhead} from '../panels/time_bar';
+import {fieldsAhead} from '../panels/time_line';
 import type {Stage} from './film';
 
 export interface StageHost {

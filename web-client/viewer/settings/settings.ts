@@ -5,6 +5,7 @@ import {parseClip, type ClipSetting} from '../../core/layers/clip';
 import {parseNumbers, parseScalar} from '../../core/layers/field_values';
 import {kLayers, type LayerAttribute} from '../../core/layers/layers';
 import {readVolume} from '../../core/layers/volume';
+import {parseBeyond} from '../../core/picture/color_map_text';
 import {isColorMapName, kLabelColors, type ColorMapName} from '../../core/picture/color_maps';
 import {kClipModes, type ClipMode} from '../../core/picture/display';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
@@ -17,8 +18,12 @@ import type {CameraState} from '../../webgl/camera';
 const kBeforeLayers = [
   'mesh',
   'field',
+  'field-title',
   'time',
+  'time-range',
+  'time-loop',
   'colormap',
+  'beyond',
   'range',
   'scale',
   'edges',
@@ -47,9 +52,16 @@ export const kViewAttributes: readonly ViewAttribute[] = [
   ...kAfterLayers,
 ];
 
+/** A legend has two lines. */
+const kMaxTitle = 120;
+
 export interface Settings {
+  /** The title of the shown field; null: its name and its unit. */
+  title: string | null;
   map: ColorMapName;
   reversed: boolean;
+  /** The colours below and above the range; null: those of its ends. */
+  beyond: [number[] | null, number[] | null];
   range: 'auto' | 'full' | 'symmetric' | 'instant' | [number, number];
   logarithmic: boolean;
   edges: boolean;
@@ -75,6 +87,10 @@ export interface Settings {
   restEdges: boolean;
   /** The time that is shown of series; null: that which opens. */
   time: number | null;
+  /** The times that playing begins and ends at; null: all instants of a series play. */
+  timePart: [number, number] | null;
+  /** Playing begins again at the end. */
+  timeLoops: boolean;
 }
 
 export function readSettings(get: (name: ViewAttribute) => string | null): Settings {
@@ -82,8 +98,10 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
   const mode = get('clip-mode') as ClipMode;
   const opacity = Number(get('opacity') ?? 1);
   return {
+    title: parseTitle(get('field-title')),
     map: isColorMapName(map) ? map : 'viridis',
     reversed: reversed === 'reversed',
+    beyond: parseBeyond(get('beyond') ?? '') ?? [null, null],
     range: parseRange(get('range')),
     logarithmic: get('scale') === 'log',
     edges: get('edges') !== 'off',
@@ -101,13 +119,26 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     warpScale: parseNumber(get('warp-scale')),
     restEdges: get('rest-edges') === 'on',
     time: parseNumber(get('time')),
+    timePart: parsePair(get('time-range')),
+    timeLoops: get('time-loop') !== 'off',
   };
 }
 
 function parseRange(text: string | null): Settings['range'] {
   if (text === 'symmetric' || text === 'full' || text === 'instant') return text;
-  const numbers = parseNumbers(text ?? '');
-  return numbers.length === 2 && numbers[0]! < numbers[1]! ? [numbers[0]!, numbers[1]!] : 'auto';
+  return parsePair(text) ?? 'auto';
+}
+
+/** Two numbers, the smaller first. */
+function parsePair(text: string | null): [number, number] | null {
+  const [low, high, more] = parseNumbers(text ?? '');
+  const isPair = low !== undefined && high !== undefined && more === undefined && low < high;
+  return isPair ? [low, high] : null;
+}
+
+function parseTitle(text: string | null): string | null {
+  const title = text?.trim().slice(0, kMaxTitle) ?? '';
+  return title === '' ? null : title;
 }
 
 function parseCamera(text: string | null): CameraState | null {

@@ -71,7 +71,11 @@ function isSameCamera(before: string | undefined, after: string | undefined): bo
 }
 
 const kTitles: Record<string, string> = {
+  'field-title': 'title',
   colormap: 'colour map',
+  'time-range': 'part that plays',
+  'time-loop': 'play once',
+  beyond: 'colours beyond the range',
   edges: 'cell edges',
   'clip-mode': 'clip',
   warp: 'deformed shape',

@@ -8,6 +8,7 @@ import {
   scalarKey,
 } from '../../core/layers/field_values';
 import {fieldLayers, kLayers} from '../../core/layers/layers';
+import {parseBeyond} from '../../core/picture/color_map_text';
 import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
 import {parseLimit} from '../../core/protocol/limit';
 import {fieldKeys} from '../../core/protocol/fields';
@@ -45,8 +46,13 @@ const kRules: Partial<Record<Name, Rule>> = {
       const [map = '', reversed = 'reversed', ...more] = text.split(/[\s+]+/);
       return isColorMapName(map) && reversed === 'reversed' && more.length === 0;
     },
-    `${kColorMapNames.join(', ')}, and " reversed" behind it`,
+    `${kColorMapNames.join(', ')}, or custom:0=0000ff,1=ff0000; "/8" for eight steps, and ` +
+      '" reversed" behind it',
     kColorMapNames.flatMap((name) => [name, `${name} reversed`]),
+  ],
+  beyond: [
+    (text) => parseBeyond(text) !== null,
+    'two colours, below and above: 1f3fbf,ff00ff; one of them may be missing',
   ],
   range: [
     (text) => kRanges.includes(text) || isRange(text),
@@ -54,6 +60,8 @@ const kRules: Partial<Record<Name, Rule>> = {
     kRanges,
   ],
   time: [(text) => parseNumbers(text).length === 1, 'a number, a time of the series'],
+  'time-range': [isRange, 'two times, the smaller first: 0.5,2'],
+  'time-loop': oneOf('on', 'off'),
   scale: oneOf('log', 'linear'),
   edges: oneOf('on', 'off'),
   creases: oneOf('on', 'off'),

@@ -1,0 +1,61 @@
+// An instant of a series leaves the last one on the screen until it has values.
+
+import type {Assembler} from '../decode/assembler';
+import type {Display} from '../picture/display';
+import type {Scalar} from '../picture/field_scale';
+import type {Warp} from '../picture/warp';
+
+/** The content of the last picture. */
+export interface Drawn {
+  color: Scalar | null;
+  /** Null: the mesh is at rest. */
+  warp: Warp | null;
+  /** The chunks of its mesh. */
+  chunks: number;
+}
+
+/** A wanted instant has no values yet, while another one of its series is shown. */
+export function isWaiting(assembler: Assembler, wanted: Display, drawn: Drawn | null): boolean {
+  if (!drawn) return false;
+  const {color, warp} = wanted;
+  const isComponent = color?.component === drawn.color?.component;
+  return (
+    (isComponent && waitsFor(assembler, color, drawn.color)) ||
+    waitsFor(assembler, warp, drawn.warp)
+  );
+}
+
+/**
+ * The display as it can be drawn now. If both the colour and the warp are series, they change
+ * together.
+ */
+export function drawable(assembler: Assembler, wanted: Display, drawn: Drawn | null): Display {
+  if (!drawn || !isWaiting(assembler, wanted, drawn)) return wanted;
+  const held = <T extends {field: number}>(
+    its: T | null,
+    before: Warp | Scalar | null,
+  ): T | null =>
+    its && before && areOfSeries(assembler, its, before) ? {...its, field: before.field} : its;
+  const {color, warp} = wanted;
+  return {...wanted, color: held(color, drawn.color), warp: held(warp, drawn.warp)};
+}
+
+/** The wanted instant has no values, or more of them are decoded soon. */
+function waitsFor(
+  assembler: Assembler,
+  wanted: {field: number} | null,
+  before: {field: number} | null,
+): boolean {
+  const {codec} = assembler;
+  if (!wanted || !before || !areOfSeries(assembler, wanted, before)) return false;
+  if (wanted.field === before.field || codec.fieldChunksApplied(before.field) === 0) return false;
+  const applied = codec.fieldChunksApplied(wanted.field);
+  const mayGrow = applied < codec.chunksApplied;
+  return applied === 0 || (mayGrow && assembler.receivedOfField(wanted.field) > applied);
+}
+
+/** Both are instants of one series. */
+function areOfSeries({manifest}: Assembler, a: {field: number}, b: {field: number}): boolean {
+  const series = manifest?.fields[a.field]?.instant?.series;
+  return series !== undefined && series === manifest?.fields[b.field]?.instant?.series;
+}
