@@ -30,7 +30,7 @@ const kMapTitles = {
 const kRangeShare = 1e-4;
 
 const kRare = ['labels', 'custom'] as const;
-/** Of a panel's first choice. */
+/** The first choice of a panel. */
 const kBeyond = '8c8c8c,ff00ff';
 
 const swatches = [...kColorMapNames, ...kRare]
