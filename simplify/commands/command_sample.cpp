@@ -2,12 +2,14 @@
 #include <set>
 
 #include "proto/field_key.h"
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/instant_collection.h"
-#include "simplify/commands/output.h"
+#include "simplify/commands/commands.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/mesh/moved_place.h"
+#include "simplify/produce/instant_collection.h"
 #include "simplify/samples/samples.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/output.h"
+#include "simplify/words/parsed_words.h"
 
 namespace qtet {
 namespace {

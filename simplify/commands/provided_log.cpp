@@ -1,8 +1,10 @@
 #include "simplify/commands/provided_log.h"
 
 #include "codec/files/unreachable.h"
-#include "simplify/commands/command_read.h"
+#include "simplify/commands/commands.h"
 #include "simplify/read/listed_files.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 
