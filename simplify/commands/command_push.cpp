@@ -17,7 +17,7 @@ The server checks the log before anybody sees it, as qtet verify does,
 which takes a while for a large one.
 A connection that breaks is taken up again where it broke,
 also by a later push of the same log.
-Blocks of the log that the server has under this name are not sent again.
+Blocks of the log that the server has under this name are not sent again (experimental).
 A log that somebody else put under the name meanwhile is not replaced.)",
           R"(  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/
   qtet push fin.qtet https://meshes.example.org/v1/meshes/wing --token-file ~/.qtet-token

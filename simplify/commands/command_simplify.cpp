@@ -111,7 +111,7 @@ simplifies them level by level and writes the log,
 from which every level and the whole mesh come back.
 Numbered files (several names, a pattern in quotes,
 a folder) are the steps of one series.
-A series whose cells change becomes a list of logs,
+A series whose cells change becomes a list of logs (experimental),
 NAME.json with NAME.0.DIGEST.qtet and so on.)",
           R"(  qtet simplify fin.vtu -o fin.qtet
   qtet simplify fin.vtu -o fin.qtet --fields Density,Velocity --error all=0.1% --json
@@ -148,13 +148,13 @@ int runSimplify(const Words& words, Console& console) {
       "field-bits", po::value<int>()->default_value(12),
       "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "time-statistics",
-      "of each series: its average, least, largest and standard deviation over all instants, as "
+      "experimental, of each series: its average, least, largest and standard deviation over all "
+      "instants, as "
       "the fields NAME_average, NAME_minimum, NAME_maximum and NAME_stddev")(
       "unit", po::value<std::vector<std::string>>(),
       "NAME=UNIT: the unit of a field or of a series, for the legend, plots and tables; may be "
-      "given "
-      "several times. Names such as \"T [K]\" have theirs")("time-unit", po::value<std::string>(),
-                                                            "the unit of times")(
+      "given several times. Names such as \"T [K]\" have theirs")(
+      "time-unit", po::value<std::string>(), "the unit of times")(
       "value-codec", po::value<std::string>()->default_value("lifted"),
       "how values are coded: lifted is smallest (positions by Draco), draco is quickest to decode, "
       "adaptive is a coder of our own for positions too")(

@@ -16,8 +16,8 @@ struct ComparedInput {
   ReadOptions options;
 };
 
-/// Returns the JSON that `qtet verify` prints. Errors: openLog's, decodeVerified's, readMesh's, sameMesh's,
-/// compareKept's.
+/// Returns the JSON that `qtet verify` prints. Errors: openLog's, decodeVerified's, readMesh's,
+/// sameMesh's, compareKept's.
 [[nodiscard]] Result<OrderedJson> verifyLog(const std::string& path,
                                             std::optional<ComparedInput> input, Progress& progress);
 

@@ -10,8 +10,8 @@
 
 namespace qtet {
 
-/// Returns the JSON that `qtet simplify` prints. The counts are those of the bytes written, not of what was
-/// meant to be written. `seconds`: of each stage, by name.
+/// Returns the JSON that `qtet simplify` prints. The counts are those of the bytes written, not of
+/// what was meant to be written. `seconds`: of each stage, by name.
 [[nodiscard]] OrderedJson madeLogReport(const SimplifyRequest& request, const ReadReport& read,
                                         const PipelineReport& from, const WrittenLog& written,
                                         const OrderedJson& seconds);
