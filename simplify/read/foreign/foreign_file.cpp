@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the program ends with (steps.py); a shell's number where there is no such program.
+/// The program's exit codes (steps.py), and a shell's where there is no such program.
 constexpr int kNoProgram = 127, kNoModule = 77, kNoSuchKind = 78, kNoMemory = 3;
 constexpr int kKilled = -1, kStuck = -2;  ///< not by itself
 /// Between two looks at the program.
