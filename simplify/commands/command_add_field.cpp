@@ -127,13 +127,12 @@ Status removeField(const ParsedWords& parsed, Console& console) {
 CommandHelp addFieldHelp() {
   return {"add-field",
           "add-field LOG.qtet --from MESH.vtu [--fields NAMES] [-o OUT.qtet] [--replace]",
-          R"(Adds fields of a mesh file to a log without simplifying again:
-the geometry stays as it is, byte for byte.
-The file must hold the mesh that the log was made from, in any numbering.
+          R"(Adds fields of a mesh file to a log without simplifying again: the geometry stays as it
+is, byte for byte. The file must hold the mesh that the log was made from, in any numbering.
 Where the log knows the errors of its levels, those of the new fields are measured.
---json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels,
-fields (keys), from, added [{name, association, components, type, bits, step, minimum,
-range, missingValues, bytes, error {rms, max} or {wrong} of the base mesh}], notes.)",
+--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields (keys),
+from, added [{name, association, components, type, bits, step, minimum, range, missingValues, bytes,
+error {rms, max} or {wrong} of the base mesh}], notes.)",
           R"(  qtet add-field fin.qtet --from later.vtu --fields Pressure
   qtet add-field fin.qtet --from fin.vtu --replace --field-bits 16 -o fine.qtet
 )"};
@@ -141,10 +140,8 @@ range, missingValues, bytes, error {rms, max} or {wrong} of the base mesh}], not
 
 CommandHelp removeFieldHelp() {
   return {"remove-field", "remove-field LOG.qtet --fields NAMES [-o OUT.qtet]",
-          R"(Leaves fields of a log out.
-Everything else stays as it is, byte for byte.
---json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels,
-fields (keys).)",
+          R"(Leaves fields of a log out. Everything else stays as it is, byte for byte.
+--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields (keys).)",
           R"(  qtet remove-field fin.qtet --fields Velocity -o small.qtet
 )"};
 }
@@ -152,7 +149,6 @@ fields (keys).)",
 }  // namespace
 
 int runAddField(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()(
       "from", po::value<std::string>(),
@@ -179,7 +175,6 @@ int runAddField(const Words& words, Console& console) {
 }
 
 int runRemoveField(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()(
       "fields", po::value<std::string>(),

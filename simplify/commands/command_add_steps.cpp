@@ -200,14 +200,12 @@ CommandHelp addStepsHelp() {
   return {"add-steps", "add-steps LOG.qtet FILE... [--times T,T] [-o OUT.qtet]",
           R"(Adds time steps of a simulation that goes on.
 Each file holds one step or several, of the log's own mesh.
-Steps of a time that the log has are left out, so the same command may be given again and
-again.
-Steps are read in windows of eight, and coded as differences to each other and to the
-log's last one.
-Where they make a window of eight full, that is coded once more as one.
+Steps of a time that the log has are left out, so the same command may be given again and again.
+Steps are read in windows of eight, and coded as differences to each other and to the log's last
+one. Where they make a window of eight full, that is coded once more as one.
 All other blocks of the log stay as they are, byte for byte.
---json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels,
-fields (keys), files, skipped, added [as of add-field], notes, warnings.)",
+--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields (keys),
+files, skipped, added [as of add-field], notes, warnings.)",
           R"(  qtet add-steps run.qtet run.pvd
   qtet add-steps run.qtet 'step_*.vtu'
   qtet add-steps run.qtet step-17.vtu step-18.vtu --times 1.7,1.8
@@ -218,7 +216,6 @@ fields (keys), files, skipped, added [as of add-field], notes, warnings.)",
 }  // namespace
 
 int runAddSteps(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("times", po::value<std::string>(),
                         "one time a file, between commas, where the files know none: 0.1,0.2")(

@@ -66,9 +66,8 @@ void printReport(const CheckReport& report, const std::string& input, const Cons
 
 CommandHelp checkHelp() {
   return {"check", "check IN... [options]",
-          R"(Says everything that is wrong or unusual about a mesh:
-what it is, how often it is there and where first, and whether simplify would refuse it,
-repair it or keep it.
+          R"(Says everything that is wrong or unusual about a mesh: what it is, how often it is
+there and where first, and whether simplify would refuse it, repair it or keep it.
 Ends with 1 if anything would be refused.
 Tetrahedra are counted after splitting; points and other cells as in the file.)",
           R"(  qtet check part.vtu
@@ -79,7 +78,6 @@ Tetrahedra are counted after splitting; points and other cells as in the file.)"
 }  // namespace
 
 int runCheck(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("json", "print one JSON object");
   addReadOptions(options);

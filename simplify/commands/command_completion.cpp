@@ -111,8 +111,7 @@ The Debian package brings it along.)",
 }  // namespace
 
 int runCompletion(const Words& words, Console& console) {
-  const ParsedWords parsed(words, completionHelp(),
-                           boost::program_options::options_description("options"), {"SHELL"});
+  const ParsedWords parsed(words, completionHelp(), po::options_description("options"), {"SHELL"});
   if (parsed.helped(console)) return kExitOk;
   const auto shell = parsed.get<std::string>("SHELL");
   if (shell != "bash" && shell != "zsh" && shell != "fish")

@@ -24,13 +24,12 @@ MeshOutputReport reportOf(const std::string& input, const ReadMesh& read,
 
 CommandHelp convertHelp() {
   return {"convert", "convert IN -o OUT [options]",
-          R"(Reads a mesh of any format that simplify reads, or the last level of a log,
-and writes its tetrahedra and fields otherwise as they are:
-neither cleaned nor put on a lattice (but for .glb and .drc,
-whose coordinates and fields have 16 bits).
+          R"(Reads a mesh of any format that simplify reads, or the last level of a log, and writes
+its tetrahedra and fields otherwise as they are: neither cleaned nor put on a lattice (but for .glb
+and .drc, whose coordinates and fields have 16 bits).
 The kind of file follows from its name, as for extract; .qtet files are made by simplify.
---json: output, kind, bytes, tetrahedra, vertices, fields [{name, association,
-components, type}] that the file holds, input, notes; of a log what extract says.)",
+--json: output, kind, bytes, tetrahedra, vertices, fields [{name, association, components, type}]
+that the file holds, input, notes; of a log what extract says.)",
           R"(  qtet convert part.msh -o part.vtu
   qtet convert part.vtu -o skin.obj
   qtet convert part.qtet -o part.usda
@@ -42,7 +41,6 @@ components, type}] that the file holds, input, notes; of a log what extract says
 }  // namespace
 
 int runConvert(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   addMeshOutputOptions(options);
   options.add_options()("fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(

@@ -171,24 +171,21 @@ CommandHelp extractHelp() {
   return {"extract",
           R"(extract LOG.qtet|LIST.json (--level K | --tets N | --ratio R | --error NAME=E
 | --boundary-error E) [--time T] -o OUT)",
-          R"(Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk,
-.msh (Gmsh 2.2) or .usda (OpenUSD), its boundary as .obj, .glb (glTF with Draco) or .drc.
+          R"(Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk, .msh (Gmsh
+2.2) or .usda (OpenUSD), its boundary as .obj, .glb (glTF with Draco) or .drc.
 .obj holds no fields, .glb and .drc hold those of points.
-NAME.pvd (ParaView) names a .vtu for each instant of the log's series,
-in a new folder NAME.
+NAME.pvd (ParaView) names a .vtu for each instant of the log's series, in a new folder NAME.
 Where no level is small enough it is level 0.
 A list of logs, NAME.json, gives the mesh of the log that has the time T.
-Each log chooses a level of its own.
-A list needs --time unless the output is a .pvd.
+Each log chooses a level of its own. A list needs --time unless the output is a .pvd.
 Its --error takes the name without a time, and holds at each of the chosen times.
-The last level is the input's mesh, with its own numbering and numbers where the log was
-made with --keep-order and --lossless.
+The last level is the input's mesh, with its own numbering and numbers where the log was made
+with --keep-order and --lossless.
 Errors are those that the log tells, measured when it was made (qtet info shows them).
---json: output, kind, bytes, level, levels, tetrahedra,
-vertices and boundaryTriangles of the level, fields [{name, association, components,
-type}] that the file holds, error as in qtet info with the same fields, input;
-of a .pvd also files [{time, file}]; of a list also log and times,
-or for a .pvd of several logs segments, an array of these.)",
+--json: output, kind, bytes, level, levels, tetrahedra, vertices and boundaryTriangles of the level,
+fields [{name, association, components, type}] that the file holds, error as in qtet info with the
+same fields, input; of a .pvd also files [{time, file}]; of a list also log and times, or for a .pvd
+of several logs segments, an array of these.)",
           R"(  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu
   qtet extract fin.qtet --error Density=0.01 -o near.vtu
   qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb
@@ -201,7 +198,6 @@ or for a .pvd of several logs segments, an array of these.)",
 }  // namespace
 
 int runExtract(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   addMeshOutputOptions(options);
   options.add_options()("level", po::value<int>(), "this level; 0 is the base mesh")(

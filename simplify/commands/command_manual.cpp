@@ -90,7 +90,7 @@ They say what --help says.)",
 }  // namespace
 
 int runManual(const Words& words, Console& console) {
-  boost::program_options::options_description options("options");
+  po::options_description options("options");
   addNoClobber(options);
   const ParsedWords parsed(words, manualHelp(), options, {"FOLDER"});
   if (parsed.helped(console)) return kExitOk;

@@ -139,7 +139,6 @@ A mesh becomes a log first, by the usual settings of qtet simplify.)",
 }  // namespace
 
 int runPage(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(),
                         "required: the page to write, NAME.html; or - for the standard output")(

@@ -40,13 +40,12 @@ OrderedJson toJson(const std::string& folder, const PublishedSite& site) {
 
 CommandHelp publishHelp() {
   return {"publish", "publish FOLDER LOG... [--viewer DIR] [--plain] [--json]",
-          R"(Writes a folder that any web server can serve as it is, without a program of ours:
-the viewer, compressed too, the logs NAME.qtet and those of lists NAME.json,
-index.json with their list, and README.txt with the settings for nginx, Caddy,
-S3 with CloudFront, and GitHub Pages.
+          R"(Writes a folder that any web server can serve as it is, without a program of ours: the
+viewer, compressed too, the logs NAME.qtet and those of lists NAME.json, index.json with their list,
+and README.txt with the settings for nginx, Caddy, S3 with CloudFront, and GitHub Pages.
 The folder appears whole or not at all.
-One that an earlier publish made is replaced as a whole, logs included;
-a folder that holds anything else is refused.
+One that an earlier publish made is replaced as a whole, logs included; a folder that holds anything
+else is refused.
 --json: output, files, bytes, meshes [{name, bytes, tetrahedra}].)",
           R"(  qtet publish site fin.qtet
   qtet publish /var/www/meshes logs/*.qtet
@@ -56,7 +55,6 @@ a folder that holds anything else is refused.
 }  // namespace
 
 int runPublish(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("viewer", po::value<std::string>(),
                         "the viewer's files; without it those installed with qtet-server")(

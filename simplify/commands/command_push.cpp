@@ -10,13 +10,11 @@ namespace {
 CommandHelp pushHelp() {
   return {"push", "push LOG.qtet URL [--token-file FILE] [--cacert FILE] [--json]",
           R"(Sends a log to a qtet-server that takes uploads (qtet-server --tokens).
-URL is https://HOST:PORT/, for a mesh of the file's name,
-or https://HOST:PORT/v1/meshes/NAME.
+URL is https://HOST:PORT/, for a mesh of the file's name, or https://HOST:PORT/v1/meshes/NAME.
 With http the token travels unencrypted.
-The server checks the log before anybody sees it, as qtet verify does,
-which takes a while for a large one.
-A connection that breaks is taken up again where it broke,
-also by a later push of the same log.
+The server checks the log before anybody sees it, as qtet verify does, which takes a while for a
+large one.
+A connection that breaks is taken up again where it broke, also by a later push of the same log.
 Blocks of the log that the server has under this name are not sent again (experimental).
 A log that somebody else put under the name meanwhile is not replaced.)",
           R"(  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/
@@ -27,7 +25,6 @@ A log that somebody else put under the name meanwhile is not replaced.)",
 }  // namespace
 
 int runPush(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   addPushOptions(options);
   options.add_options()("json", "print one JSON object");

@@ -67,7 +67,6 @@ Result<std::uint64_t> writeSample(const TetMesh& mesh, const Output& output) {
 }  // namespace
 
 int runSample(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(),
                         "required: the .vtu file to write; with --steps also NAME.pvd, a series "

@@ -106,13 +106,11 @@ CommandHelp simplifyHelp() {
   return {"simplify",
           "simplify IN... -o OUT.qtet|OUT.json [options]",
           R"(Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...:
-simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them,
-simplifies them level by level and writes the log,
-from which every level and the whole mesh come back.
-Numbered files (several names, a pattern in quotes,
-a folder) are the steps of one series.
-A series whose cells change becomes a list of logs (experimental),
-NAME.json with NAME.0.DIGEST.qtet and so on.)",
+simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them, simplifies them
+level by level and writes the log, from which every level and the whole mesh come back.
+Numbered files (several names, a pattern in quotes, a folder) are the steps of one series.
+A series whose cells change becomes a list of logs (experimental), NAME.json with NAME.0.DIGEST.qtet
+and so on.)",
           R"(  qtet simplify fin.vtu -o fin.qtet
   qtet simplify fin.vtu -o fin.qtet --fields Density,Velocity --error all=0.1% --json
   qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet
@@ -134,7 +132,6 @@ NAME.json with NAME.0.DIGEST.qtet and so on.)",
 }  // namespace
 
 int runSimplify(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()(
       "output,o", po::value<std::string>(),

@@ -84,19 +84,15 @@ CommandHelp verifyHelp() {
   return {"verify", "verify LOG.qtet|LIST.json... [--against IN] [--json]",
           R"(Checks every checksum, decodes every chunk and compares every level and field with what
 the manifest says.
-With --against the finest level must be the input's mesh cell for cell,
-positions within half a lattice step, fields within half a field step,
-and each value within the error that info states.
-A mesh that was read with options (--weld, --curved,
-...) has to be read with the same ones.
+With --against the finest level must be the input's mesh cell for cell, positions within half a
+lattice step, fields within half a field step, and each value within the error that info states.
+A mesh that was read with options (--weld, --curved, ...) has to be read with the same ones.
 Where the log was made with --keep-order or
---lossless, the numbering and the numbers themselves must be those of the file too,
-and what was proved is said.
-Each log of a list is checked, against the steps of its own times.
+--lossless, the numbering and the numbers themselves must be those of the file too, and what was
+proved is said. Each log of a list is checked, against the steps of its own times.
 A log with instants is compared with its own ones, unless --time chooses.
-Several logs stand under their names, and --json is an array of these objects,
-with input before the other members: {input, error} for one that failed.
-The exit code is the worst of all.)",
+Several logs stand under their names, and --json is an array of these objects, with input before the
+other members: {input, error} for one that failed. The exit code is the worst of all.)",
           R"(  qtet verify fin.qtet
   qtet verify run.qtet --against run.pvd
   qtet verify fin.qtet --against fin.vtu --json
@@ -106,7 +102,6 @@ The exit code is the worst of all.)",
 }  // namespace
 
 int runVerify(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("against", po::value<std::string>(), "the mesh that the log was made from")(
       "json", "print one JSON object; of several logs an array");

@@ -126,8 +126,7 @@ CommandHelp viewHelp() {
       "view", "view FILE [options]",
       R"(Shows a log in the browser, or a mesh after simplifying it with the usual settings into a
 temporary log.
-Serves it on this machine alone until Ctrl-C, prints the URL,
-and opens it where there is a desktop.
+Serves it on this machine alone until Ctrl-C, prints the URL, and opens it where there is a desktop.
 To keep the log: qtet simplify, then qtet-server.)",
       R"(  qtet view part.vtu
   qtet view part.qtet --port 8080 --no-open
@@ -138,7 +137,6 @@ To keep the log: qtet simplify, then qtet-server.)",
 }  // namespace
 
 int runView(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("port", po::value<int>()->default_value(0),
                         "TCP port on 127.0.0.1; 0 = any free one")(

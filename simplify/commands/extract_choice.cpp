@@ -1,6 +1,7 @@
 #include "simplify/commands/extract_choice.h"
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 #include <limits>
 #include <string>
@@ -24,6 +25,7 @@ Target targetOf(const ParsedWords& parsed, const Manifest& manifest) {
   if (parsed.has("boundary-error"))
     return BoundaryErrorTarget{parsed.number("boundary-error", 0, 1)};
   if (parsed.has("tets")) return cells(parsed.number("tets", 0, 1e18));
+  assert(parsed.has("ratio"));
   return cells(parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
 }
 

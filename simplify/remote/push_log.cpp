@@ -1,6 +1,7 @@
 #include "simplify/remote/push_log.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -71,6 +72,13 @@ bool worthAnother(const HttpAnswer& answer) {
          answer.status == 503;
 }
 
+HttpRequest getOf(const Push& push, const std::string& target) {
+  return {.method = "GET",
+          .target = target,
+          .headers = {push.authorization},
+          .authorities = push.authorities};
+}
+
 /// The mesh that the server has under the name.
 struct Served {
   std::string digest;     ///< of its log; empty: there is no such mesh, or the answer is unknown
@@ -79,10 +87,7 @@ struct Served {
 
 /// Errors: exchange's, io (the server cannot say it now).
 Result<Served> askServed(const Push& push) {
-  const Result<HttpAnswer> answer = exchange(push.server, {.method = "GET",
-                                                           .target = push.target,
-                                                           .headers = {push.authorization},
-                                                           .authorities = push.authorities});
+  const Result<HttpAnswer> answer = exchange(push.server, getOf(push, push.target));
   if (!answer) return std::unexpected(answer.error());
   if (worthAnother(*answer)) return fail(ErrorCode::kIo, reasonOf(*answer));
   Served out;
@@ -99,10 +104,7 @@ Result<Served> askServed(const Push& push) {
 /// Bytes that the server has of an upload that broke off, perhaps all of them. Errors: exchange's.
 Result<std::uint64_t> bytesThere(const Push& push) {
   const std::string query = push.target + "/upload?digest=" + push.log.digest();
-  const Result<HttpAnswer> answer = exchange(push.server, {.method = "GET",
-                                                           .target = query,
-                                                           .headers = {push.authorization},
-                                                           .authorities = push.authorities});
+  const Result<HttpAnswer> answer = exchange(push.server, getOf(push, query));
   if (!answer) return std::unexpected(answer.error());
   const auto json = OrderedJson::parse(answer->body, nullptr, false);
   const bool told = answer->status == 200 && json.is_object() && json.contains("bytes") &&
@@ -126,11 +128,9 @@ struct Sending {
 Sending sendingFrom(const Push& push, std::uint64_t first, bool mayUseDelta) {
   Sending out{.first = first};
   const ByteView log = push.log.bytes();
+  assert(first <= log.size());
   if (!mayUseDelta || first == log.size()) return out;
-  const Result<OldLog> old = fetchOldLog(push.server, {.method = "GET",
-                                                       .target = push.target,
-                                                       .headers = {push.authorization},
-                                                       .authorities = push.authorities});
+  const Result<OldLog> old = fetchOldLog(push.server, getOf(push, push.target));
   if (!old) return out;
   const std::uint64_t most = std::min<std::uint64_t>(kMaxDeltaBytes, log.size() - first - 1);
   if (auto delta = makeDelta(old->index, push.log.index(), log, first, most)) {
@@ -224,8 +224,7 @@ Result<Sent> sendLog(const Push& push, Console& console) {
 
 }  // namespace
 
-void addPushOptions(boost::program_options::options_description& options) {
-  namespace po = boost::program_options;
+void addPushOptions(po::options_description& options) {
   options.add_options()("token-file", po::value<std::string>(),
                         "file with the token (default: the environment's QTET_TOKEN)")(
       "cacert", po::value<std::string>()->default_value("", "the system's"),

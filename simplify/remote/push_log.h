@@ -21,7 +21,7 @@ struct PushTarget {
 };
 
 /// Adds --token-file and --cacert.
-void addPushOptions(boost::program_options::options_description& options);
+void addPushOptions(po::options_description& options);
 
 /// The mesh that the URL names, else that of the log's name. Errors: bad-value (no token), io.
 /// Throws UsageError for a URL that is none.

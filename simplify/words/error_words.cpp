@@ -25,8 +25,7 @@ std::pair<std::string, ValueBound> parseBound(const std::string& text) {
 
 }  // namespace
 
-void addErrorOption(boost::program_options::options_description& options) {
-  namespace po = boost::program_options;
+void addErrorOption(po::options_description& options) {
   options.add_options()(
       "error", po::value<std::vector<std::string>>(),
       "NAME=BOUND: each value of the last level is within BOUND of the input's, which sets the "

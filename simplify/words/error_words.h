@@ -6,7 +6,7 @@
 
 namespace qtet {
 
-void addErrorOption(boost::program_options::options_description& options);
+void addErrorOption(po::options_description& options);
 /// A BOUND is "0.5", "0.5 K" or "0.1%", behind the last '='. Throws UsageError.
 [[nodiscard]] ValueBounds valueBoundsOf(const ParsedWords& parsed);
 

@@ -38,8 +38,7 @@ std::vector<std::pair<std::string, double>> namedWeights(const ParsedWords& pars
 
 }  // namespace
 
-void addFusionOptions(boost::program_options::options_description& options) {
-  namespace po = boost::program_options;
+void addFusionOptions(po::options_description& options) {
   options.add_options()("target-ratio", po::value<double>(),
                         "stop when the base mesh has this fraction of the tetrahedra; without, "
                         "--base-error chooses, from 0.01 and 500 tetrahedra upwards")(

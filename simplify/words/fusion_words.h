@@ -7,7 +7,7 @@
 
 namespace qtet {
 
-void addFusionOptions(boost::program_options::options_description& options);
+void addFusionOptions(po::options_description& options);
 /// Sets `fusion`, `fieldWeights`, `labelWeights` and `regions`. Throws UsageError.
 void takeFusionOptions(const ParsedWords& parsed, PipelineOptions& out);
 

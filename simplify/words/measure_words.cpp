@@ -29,8 +29,7 @@ std::pair<std::string, double> parseNamedError(const std::string& option, const 
       option, text, "NAME=E, a field's name and a fraction of its range such as Density=0.01");
 }
 
-void addMeasureOptions(boost::program_options::options_description& options) {
-  namespace po = boost::program_options;
+void addMeasureOptions(po::options_description& options) {
   options.add_options()(
       "measure", po::value<std::string>()->default_value("levels"),
       "the known errors in the log's manifest: none, levels (about a dozen of "

@@ -22,7 +22,7 @@ namespace qtet {
 [[nodiscard]] std::pair<std::string, double> parseNamedError(const std::string& option,
                                                              const std::string& text);
 
-void addMeasureOptions(boost::program_options::options_description& options);
+void addMeasureOptions(po::options_description& options);
 /// nullopt for `--measure none`. Throws UsageError, also where a bound is to be kept without
 /// measuring.
 [[nodiscard]] std::optional<MeasureOptions> measureOptionsOf(const ParsedWords& parsed);

@@ -4,8 +4,7 @@
 
 namespace qtet {
 
-void addMeshOutputOptions(boost::program_options::options_description& options) {
-  namespace po = boost::program_options;
+void addMeshOutputOptions(po::options_description& options) {
   options.add_options()("output,o", po::value<std::string>(),
                         ("required: the file to write, " + std::string(kWrittenEndings) +
                          "; or - for the standard output")

@@ -24,7 +24,7 @@ struct MeshOutput {
 };
 
 /// -o, --to, --no-draco, --no-clobber and --json for meshOutputOf.
-void addMeshOutputOptions(boost::program_options::options_description& options);
+void addMeshOutputOptions(po::options_description& options);
 
 /// The report about a mesh that was written.
 struct MeshOutputReport {

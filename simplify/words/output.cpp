@@ -1,6 +1,7 @@
 #include "simplify/words/output.h"
 
 #include <unistd.h>
+#include <cassert>
 
 #include <algorithm>
 #include <iterator>
@@ -10,7 +11,6 @@
 
 namespace qtet {
 
-namespace po = boost::program_options;
 namespace fs = std::filesystem;
 
 std::string Output::name() const {
@@ -22,6 +22,7 @@ void addNoClobber(po::options_description& options) {
 }
 
 Output outputOf(const ParsedWords& parsed, const Console& console) {
+  assert(parsed.has("output"));
   const bool isStandardOutput = parsed.get<std::string>("output") == "-";
   if (isStandardOutput && parsed.has("json"))
     throw UsageError(

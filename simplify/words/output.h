@@ -21,7 +21,7 @@ struct Output {
 };
 
 /// Adds --no-clobber.
-void addNoClobber(boost::program_options::options_description& options);
+void addNoClobber(po::options_description& options);
 
 /// The file that -o names, and --no-clobber. REQUIRES: -o is given. Throws UsageError where --json
 /// and the file both want the standard output.

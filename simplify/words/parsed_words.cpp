@@ -12,8 +12,6 @@
 
 namespace qtet {
 
-namespace po = boost::program_options;
-
 namespace {
 
 /// Words without a dash that no place is left for. Boost's own error does not say which they are.

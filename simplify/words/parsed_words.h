@@ -2,6 +2,7 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "simplify/words/usage_error.h"
 
 namespace qtet {
+
+namespace po = boost::program_options;
 
 /// Options under one heading.
 struct OptionGroup {
@@ -31,8 +34,7 @@ class ParsedWords {
  public:
   /// `positional` are the names of the words without a dash, all required; the last may end in
   /// "...", which is a vector of one word and more.
-  ParsedWords(const Words& words, CommandHelp help,
-              boost::program_options::options_description options,
+  ParsedWords(const Words& words, CommandHelp help, po::options_description options,
               const std::vector<std::string>& positional);
 
   /// Whether --help, --help-all or, for the manual and completions, --help-json was asked for. It
@@ -41,6 +43,7 @@ class ParsedWords {
   [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
   template <class T>
   [[nodiscard]] T get(const std::string& name) const {
+    assert(has(name));
     return values_[name].as<T>();
   }
   /// A number of `low` to `high`. Throws UsageError.
@@ -58,9 +61,9 @@ class ParsedWords {
   [[nodiscard]] std::string optionText(bool all) const;
 
   CommandHelp help_;
-  boost::program_options::options_description options_;
+  po::options_description options_;
   std::vector<std::string> positional_;
-  boost::program_options::variables_map values_;
+  po::variables_map values_;
 };
 
 }  // namespace qtet

@@ -52,8 +52,7 @@ void setWeld(const std::string& text, ReadOptions& options) {
 
 }  // namespace
 
-void addReadOptions(boost::program_options::options_description& options, const char* time) {
-  namespace po = boost::program_options;
+void addReadOptions(po::options_description& options, const char* time) {
   options.add_options()("curved", po::value<std::string>()->default_value("split"),
                         "quadratic cells and those of higher degree: split at all of their nodes, "
                         "or linear: their corners alone")(
@@ -112,8 +111,8 @@ std::vector<double> timesOf(const ParsedWords& parsed) {
   return out;
 }
 
-void addTimesOption(boost::program_options::options_description& options) {
-  options.add_options()("times", boost::program_options::value<std::string>(),
+void addTimesOption(po::options_description& options) {
+  options.add_options()("times", po::value<std::string>(),
                         "of numbered files: one time a file, between commas; without it their "
                         "TimeValue, else the numbers in their names");
 }

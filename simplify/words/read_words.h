@@ -12,14 +12,13 @@ namespace qtet {
 
 /// --curved, --weld, --time, --threshold, --plot3d, --read-seconds, --format.
 /// `time` is what --time means where it is not given.
-void addReadOptions(boost::program_options::options_description& options,
-                    const char* time = "last");
+void addReadOptions(po::options_description& options, const char* time = "last");
 
 /// --times: numbers between commas; none where it is not given. Throws UsageError.
 [[nodiscard]] std::vector<double> timesOf(const ParsedWords& parsed);
 
 /// --times of a series of numbered files.
-void addTimesOption(boost::program_options::options_description& options);
+void addTimesOption(po::options_description& options);
 
 /// The input that the words of "IN..." name, for reading and for reports. Several files are set in
 /// `options.listed`, and so is --times.
