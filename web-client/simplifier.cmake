@@ -71,7 +71,7 @@ foreach(room IN ITEMS proto codec simplify read)
   list(TRANSFORM sources REPLACE "^${PROJECT_SOURCE_DIR}/" "")
   # Not those that in_browser.cpp stands for, and those that no log is made with.
   list(FILTER sources EXCLUDE REGEX
-    "/(api|files|commands|samples|ensight|foam|foreign|hdf|process|xdmf)/|foreign_programs")
+    "/(api|files|samples|ensight|foam|foreign|hdf|process|xdmf)/|foreign_programs")
   list(FILTER sources EXCLUDE REGEX "file_family|listed_files|piece_files")
   list(FILTER sources EXCLUDE REGEX
     "wasm_api|check_mesh|cell_transfer|read_apart|add_fields|match_mesh|opened_log|write_mesh|verify")

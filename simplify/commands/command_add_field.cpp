@@ -6,17 +6,20 @@
 #include "proto/level_error_json.h"
 #include "proto/limits.h"
 #include "simplify/clean/clean_mesh.h"
-#include "simplify/commands/command_errors.h"
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/command_measure.h"
-#include "simplify/commands/command_read.h"
-#include "simplify/commands/edited_log_report.h"
-#include "simplify/commands/progress.h"
+#include "simplify/commands/commands.h"
 #include "simplify/log/add_fields.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/mesh/workers.h"
+#include "simplify/produce/edited_log_report.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/steps/cell_labels.h"
+#include "simplify/words/error_words.h"
+#include "simplify/words/field_names.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/measure_words.h"
+#include "simplify/words/parsed_words.h"
+#include "simplify/words/progress.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 namespace {
@@ -121,10 +124,31 @@ Status removeField(const ParsedWords& parsed, Console& console) {
   return {};
 }
 
+CommandHelp addFieldHelp() {
+  return {"add-field",
+          "add-field LOG.qtet --from MESH.vtu [--fields NAMES] [-o OUT.qtet] [--replace]",
+          R"(Adds fields of a mesh file to a log without simplifying again: the geometry stays as it
+is, byte for byte. The file must hold the mesh that the log was made from, in any numbering.
+Where the log knows the errors of its levels, those of the new fields are measured.
+--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields (keys),
+from, added [{name, association, components, type, bits, step, minimum, range, missingValues, bytes,
+error {rms, max} or {wrong} of the base mesh}], notes.)",
+          R"(  qtet add-field fin.qtet --from later.vtu --fields Pressure
+  qtet add-field fin.qtet --from fin.vtu --replace --field-bits 16 -o fine.qtet
+)"};
+}
+
+CommandHelp removeFieldHelp() {
+  return {"remove-field", "remove-field LOG.qtet --fields NAMES [-o OUT.qtet]",
+          R"(Leaves fields of a log out. Everything else stays as it is, byte for byte.
+--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields (keys).)",
+          R"(  qtet remove-field fin.qtet --fields Velocity -o small.qtet
+)"};
+}
+
 }  // namespace
 
 int runAddField(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()(
       "from", po::value<std::string>(),
@@ -142,19 +166,7 @@ int runAddField(const Words& words, Console& console) {
   addErrorOption(options);
   addNoClobber(options);
   addReadOptions(options);
-  const ParsedWords parsed(
-      words,
-      {"add-field", "add-field LOG.qtet --from MESH.vtu [--fields NAMES] [-o OUT.qtet] [--replace]",
-       "Adds fields of a mesh file to a log without simplifying again: the geometry stays as it "
-       "is, byte for byte. The file must hold the mesh that\n"
-       "the log was made from, in any numbering. Where the log knows the errors of its levels, "
-       "those of the new fields are measured.\n"
-       "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
-       "(keys), from, added [{name, association,\ncomponents, type, bits, step, minimum, range, "
-       "missingValues, bytes, error {rms, max} or {wrong} of the base mesh}], notes.",
-       "  qtet add-field fin.qtet --from later.vtu --fields Pressure\n  qtet add-field fin.qtet "
-       "--from fin.vtu --replace --field-bits 16 -o fine.qtet\n"},
-      options, {"LOG"});
+  const ParsedWords parsed(words, addFieldHelp(), options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   Progress progress(console);
   const Status done = addField(parsed, progress, console);
@@ -163,7 +175,6 @@ int runAddField(const Words& words, Console& console) {
 }
 
 int runRemoveField(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()(
       "fields", po::value<std::string>(),
@@ -172,14 +183,7 @@ int runRemoveField(const Words& words, Console& console) {
       "the log to write, NAME.qtet; or - for the standard output; without it the log itself is "
       "replaced once the new one is whole")("json", "print one JSON object");
   addNoClobber(options);
-  const ParsedWords parsed(
-      words,
-      {"remove-field", "remove-field LOG.qtet --fields NAMES [-o OUT.qtet]",
-       "Leaves fields of a log out. Everything else stays as it is, byte for byte.\n"
-       "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
-       "(keys).",
-       "  qtet remove-field fin.qtet --fields Velocity -o small.qtet\n"},
-      options, {"LOG"});
+  const ParsedWords parsed(words, removeFieldHelp(), options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const Status done = removeField(parsed, console);
   return done ? kExitOk : reportFailure(done.error(), parsed.has("json"), console);

@@ -7,18 +7,21 @@
 
 #include "proto/field_key.h"
 #include "proto/limits.h"
-#include "simplify/commands/added_steps.h"
-#include "simplify/commands/command_errors.h"
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/command_read.h"
-#include "simplify/commands/edited_log_report.h"
-#include "simplify/commands/follow_files.h"
-#include "simplify/commands/progress.h"
-#include "simplify/commands/push_log.h"
+#include "simplify/commands/commands.h"
 #include "simplify/log/opened_log.h"
 #include "simplify/mesh/workers.h"
+#include "simplify/produce/added_steps.h"
+#include "simplify/produce/edited_log_report.h"
+#include "simplify/produce/follow_files.h"
 #include "simplify/read/listed_files.h"
+#include "simplify/remote/push_log.h"
 #include "simplify/series/time_statistics.h"
+#include "simplify/words/error_words.h"
+#include "simplify/words/field_names.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/parsed_words.h"
+#include "simplify/words/progress.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 namespace {
@@ -193,10 +196,26 @@ Status addOrFollow(const ParsedWords& parsed, Progress& progress, Console& conso
   return target ? push(output, *target, parsed.has("json"), console) : Status{};
 }
 
+CommandHelp addStepsHelp() {
+  return {"add-steps", "add-steps LOG.qtet FILE... [--times T,T] [-o OUT.qtet]",
+          R"(Adds time steps of a simulation that goes on.
+Each file holds one step or several, of the log's own mesh.
+Steps of a time that the log has are left out, so the same command may be given again and again.
+Steps are read in windows of eight, and coded as differences to each other and to the log's last
+one. Where they make a window of eight full, that is coded once more as one.
+All other blocks of the log stay as they are, byte for byte.
+--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields (keys),
+files, skipped, added [as of add-field], notes, warnings.)",
+          R"(  qtet add-steps run.qtet run.pvd
+  qtet add-steps run.qtet 'step_*.vtu'
+  qtet add-steps run.qtet step-17.vtu step-18.vtu --times 1.7,1.8
+  QTET_TOKEN=... qtet add-steps run.qtet run.pvd --follow --push http://127.0.0.1:8080/
+)"};
+}
+
 }  // namespace
 
 int runAddSteps(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("times", po::value<std::string>(),
                         "one time a file, between commas, where the files know none: 0.1,0.2")(
@@ -222,24 +241,7 @@ int runAddSteps(const Words& words, Console& console) {
   addPushOptions(options);
   addNoClobber(options);
   addReadOptions(options, "all");
-  const ParsedWords parsed(
-      words,
-      {"add-steps", "add-steps LOG.qtet FILE... [--times T,T] [-o OUT.qtet]",
-       "Adds time steps of a simulation that goes on. Each file holds one step or several, of the "
-       "log's own mesh. Steps of a time that the\n"
-       "log has are left out, so the same command may be given again and again.\n"
-       "Steps are read in windows of eight, and coded as differences to each other and to the "
-       "log's last one. Where they make a window of\n"
-       "eight full, that is coded once more as one. All other blocks of the log stay as they are, "
-       "byte for byte.\n"
-       "--json: input, output, digest, bytes, bytesBefore, tetrahedra, vertices, levels, fields "
-       "(keys), files, skipped, added [as of\n"
-       "add-field], notes, warnings.",
-       "  qtet add-steps run.qtet run.pvd\n  qtet add-steps run.qtet 'step_*.vtu'\n  qtet "
-       "add-steps run.qtet step-17.vtu step-18.vtu "
-       "--times 1.7,1.8\n  QTET_TOKEN=... qtet add-steps run.qtet run.pvd --follow --push "
-       "http://127.0.0.1:8080/\n"},
-      options, {"LOG", "FILE..."});
+  const ParsedWords parsed(words, addStepsHelp(), options, {"LOG", "FILE..."});
   if (parsed.helped(console)) return kExitOk;
   Progress progress(console);
   const Status done = addOrFollow(parsed, progress, console);

@@ -1,15 +1,17 @@
 #include <filesystem>
 #include <iomanip>
 
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/command_read.h"
-#include "simplify/commands/progress.h"
+#include "simplify/commands/commands.h"
 #include "simplify/read/check_mesh.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/parsed_words.h"
+#include "simplify/words/progress.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 namespace {
 
-OrderedJson toJson(const CheckReport& report, const std::string& input, const Console& console) {
+OrderedJson checkJson(const CheckReport& report, const std::string& input, const Console& console) {
   OrderedJson findings = OrderedJson::array();
   for (const Finding& finding : report.findings) {
     OrderedJson one = {{"kind", finding.kind},
@@ -62,23 +64,25 @@ void printReport(const CheckReport& report, const std::string& input, const Cons
   out << (report.refused() ? "qtet simplify would refuse it\n" : "qtet simplify takes it\n");
 }
 
+CommandHelp checkHelp() {
+  return {"check", "check IN... [options]",
+          R"(Says everything that is wrong or unusual about a mesh: what it is, how often it is
+there and where first, and whether simplify would refuse it, repair it or keep it.
+Ends with 1 if anything would be refused.
+Tetrahedra are counted after splitting; points and other cells as in the file.)",
+          R"(  qtet check part.vtu
+  qtet check ogrid.vts --weld 1e-6 --json
+)"};
+}
+
 }  // namespace
 
 int runCheck(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("json", "print one JSON object");
   addReadOptions(options);
   addTimesOption(options);
-  const ParsedWords parsed(
-      words,
-      {"check", "check IN... [options]",
-       "Says everything that is wrong or unusual about a mesh: what it is, how often it is there "
-       "and where first, and whether simplify would refuse it,\n"
-       "repair it or keep it. Ends with 1 if anything would be refused. Tetrahedra are counted "
-       "after splitting; points and other cells as in the file.",
-       "  qtet check part.vtu\n  qtet check ogrid.vts --weld 1e-6 --json\n"},
-      options, {"IN..."});
+  const ParsedWords parsed(words, checkHelp(), options, {"IN..."});
   if (parsed.helped(console)) return kExitOk;
   ReadOptions reading = readOptionsOf(parsed);
   const std::string input = inputOf(parsed, reading);
@@ -87,7 +91,7 @@ int runCheck(const Words& words, Console& console) {
   const CheckReport report = checkMesh(input, reading);
   progress.clear();
   if (parsed.has("json")) {
-    printJson(toJson(report, input, console), console);
+    printJson(checkJson(report, input, console), console);
   } else {
     for (const std::string& note : report.read.notes) console.note(note);
     for (const std::string& warning : report.read.warnings) console.warn(warning);

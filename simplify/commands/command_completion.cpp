@@ -1,4 +1,6 @@
 #include "simplify/commands/command_help.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/parsed_words.h"
 
 namespace qtet {
 namespace {
@@ -96,17 +98,20 @@ std::string fishScript() {
   return out;
 }
 
+CommandHelp completionHelp() {
+  return {"completion", "completion bash|zsh|fish",
+          R"(Prints what makes a shell complete qtet's commands and options.
+The Debian package brings it along.)",
+          R"(  source <(qtet completion bash)
+  qtet completion zsh > ~/.zfunc/_qtet
+  qtet completion fish > ~/.config/fish/completions/qtet.fish
+)"};
+}
+
 }  // namespace
 
 int runCompletion(const Words& words, Console& console) {
-  const ParsedWords parsed(
-      words,
-      {"completion", "completion bash|zsh|fish",
-       "Prints what makes a shell complete qtet's commands and options. The Debian package brings "
-       "it along.",
-       "  source <(qtet completion bash)\n  qtet completion zsh > ~/.zfunc/_qtet\n  qtet "
-       "completion fish > ~/.config/fish/completions/qtet.fish\n"},
-      boost::program_options::options_description("options"), {"SHELL"});
+  const ParsedWords parsed(words, completionHelp(), po::options_description("options"), {"SHELL"});
   if (parsed.helped(console)) return kExitOk;
   const auto shell = parsed.get<std::string>("SHELL");
   if (shell != "bash" && shell != "zsh" && shell != "fish")

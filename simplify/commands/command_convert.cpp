@@ -1,8 +1,10 @@
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/command_read.h"
-#include "simplify/commands/progress.h"
+#include "simplify/commands/commands.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/words/field_names.h"
+#include "simplify/words/mesh_output.h"
+#include "simplify/words/progress.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 namespace {
@@ -20,30 +22,32 @@ MeshOutputReport reportOf(const std::string& input, const ReadMesh& read,
            {"notes", withOptionNames(read.report.notes)}}};
 }
 
+CommandHelp convertHelp() {
+  return {"convert", "convert IN -o OUT [options]",
+          R"(Reads a mesh of any format that simplify reads, or the last level of a log, and writes
+its tetrahedra and fields otherwise as they are: neither cleaned nor put on a lattice (but for .glb
+and .drc, whose coordinates and fields have 16 bits).
+The kind of file follows from its name, as for extract; .qtet files are made by simplify.
+--json: output, kind, bytes, tetrahedra, vertices, fields [{name, association, components, type}]
+that the file holds, input, notes; of a log what extract says.)",
+          R"(  qtet convert part.msh -o part.vtu
+  qtet convert part.vtu -o skin.obj
+  qtet convert part.qtet -o part.usda
+  qtet convert - --format msh --to vtu -o - <part.msh >part.vtu
+  qtet convert ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.vtu
+)"};
+}
+
 }  // namespace
 
 int runConvert(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   addMeshOutputOptions(options);
   options.add_options()("fields", po::value<std::string>()->default_value("all"), kFieldsHelp)(
       "original-ids",
       "add the cell field OriginalCellId: which cell of the input each tetrahedron was split from");
   addReadOptions(options);
-  const ParsedWords parsed(
-      words,
-      {"convert", "convert IN -o OUT [options]",
-       "Reads a mesh of any format that simplify reads, or the last level of a log, and writes its "
-       "tetrahedra and fields otherwise as they are: neither\n"
-       "cleaned nor put on a lattice (but for .glb and .drc, whose coordinates and fields have 16 "
-       "bits). The kind of file follows from its name, as for\n"
-       "extract; .qtet files are made by simplify.\n"
-       "--json: output, kind, bytes, tetrahedra, vertices, fields [{name, association, components, "
-       "type}] that the file holds, input, notes; of a log what extract says.",
-       "  qtet convert part.msh -o part.vtu\n  qtet convert part.vtu -o skin.obj\n  qtet convert "
-       "part.qtet -o part.usda\n  qtet convert - --format msh --to vtu -o - <part.msh >part.vtu\n  "
-       "qtet convert ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.vtu\n"},
-      options, {"IN"});
+  const ParsedWords parsed(words, convertHelp(), options, {"IN"});
   if (parsed.helped(console)) return kExitOk;
   const auto input = parsed.get<std::string>("IN");
   if (input.ends_with(".qtet")) {

@@ -1,193 +1,24 @@
 #include <algorithm>
-#include <functional>
 #include <iterator>
-#include <limits>
-#include <numeric>
 #include <utility>
 
-#include "codec/log/target_choice.h"
-#include "proto/field_key.h"
-#include "proto/level_error_json.h"
-#include "proto/series.h"
-#include "simplify/commands/command_measure.h"
-#include "simplify/commands/extract_times.h"
-#include "simplify/commands/instant_collection.h"
-#include "simplify/log/kept_input.h"
+#include "simplify/commands/commands.h"
+#include "simplify/commands/extract_choice.h"
 #include "simplify/log/opened_list.h"
-#include "simplify/log/write_mesh.h"
+#include "simplify/produce/extract_times.h"
+#include "simplify/produce/extracted_level.h"
+#include "simplify/produce/instant_collection.h"
 #include "simplify/read/options/time_steps.h"
-#include "simplify/split/split_cells.h"
+#include "simplify/words/field_names.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/parsed_words.h"
 
 namespace qtet {
 namespace {
 
-Target targetOf(const ParsedWords& parsed, const Manifest& manifest) {
-  const auto cells = [](double most) { return TetrahedraTarget{static_cast<std::uint64_t>(most)}; };
-  if (parsed.has("error")) {
-    auto [field, error] = parseNamedError("error", parsed.get<std::string>("error"));
-    return FieldErrorTarget{error, std::move(field)};
-  }
-  if (parsed.has("boundary-error"))
-    return BoundaryErrorTarget{parsed.number("boundary-error", 0, 1)};
-  if (parsed.has("tets")) return cells(parsed.number("tets", 0, 1e18));
-  return cells(parsed.number("ratio", 0, 1) * manifest.levels.back().tetrahedra);
-}
-
-/// `--level` is not a target: a level that does not exist is an error.
-Result<std::uint32_t> chosenLevel(const ParsedWords& parsed, const Manifest& manifest,
-                                  const LogIndex& index) {
-  if (parsed.has("level"))
-    return static_cast<std::uint32_t>(parsed.integer("level", 0, std::numeric_limits<int>::max()));
-  return levelFor(targetOf(parsed, manifest), manifest, index);
-}
-
-/// The fields of a segment that NAME of `--error` means at these times: those of points if there
-/// are some, and also those without time. Throws UsageError where NAME has a time.
-std::vector<std::uint32_t> fieldsAt(const Manifest& manifest, const std::string& name,
-                                    const std::vector<double>& times) {
-  if (instantName(name))
-    throw UsageError("--error " + name +
-                     " has a time; for a list give the field's name alone, and --time T");
-  const std::vector<double> instants = instantTimes(manifest);
-  std::vector<std::uint32_t> out = fieldsOfKey(manifest.fields, name);
-  std::erase_if(out, [&](std::uint32_t f) {
-    const auto instant = instantName(manifest.fields[f].name);
-    return instant && std::ranges::none_of(times, [&](double time) {
-             const auto place = placeOfTime(instants, time);
-             return place && instants[*place] == instant->time;
-           });
-  });
-  const auto isOfPoints = [&](std::uint32_t f) {
-    return manifest.fields[f].association == "point";
-  };
-  if (std::ranges::any_of(out, isOfPoints)) std::erase_if(out, std::not_fn(isOfPoints));
-  return out;
-}
-
-/// A level of a list's log for some of its times. Errors of fields hold at each of these.
-Result<std::uint32_t> levelOfSegment(const ParsedWords& parsed, const OpenedLog& log,
-                                     const std::vector<double>& times) {
-  if (!parsed.has("error")) return chosenLevel(parsed, log.manifest, log.file.index());
-  const auto [name, error] = parseNamedError("error", parsed.get<std::string>("error"));
-  const std::vector<std::uint32_t> fields = fieldsAt(log.manifest, name, times);
-  if (fields.empty()) return std::unexpected(noSuchField(log.manifest, name));
-  return levelOfFieldErrors(error, fields, log.manifest);
-}
-
-// ---- a mesh of either kind with some of its fields
-
-struct LatticeField {
-  FieldInfo info;
-  std::vector<std::int32_t> values;
-};
-
-std::vector<LatticeField> takeFields(LatticeMesh& mesh) {
-  std::vector<LatticeField> out;
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f)
-    out.push_back({std::move(mesh.fields[f]), std::move(mesh.values[f])});
-  mesh.fields.clear(), mesh.values.clear();
-  return out;
-}
-
-std::vector<MeshField> takeFields(TetMesh& mesh) { return std::exchange(mesh.fields, {}); }
-
-void addField(LatticeMesh& mesh, LatticeField&& field, const std::string& name) {
-  field.info.name = name;
-  mesh.fields.push_back(std::move(field.info));
-  mesh.values.push_back(std::move(field.values));
-}
-
-void addField(TetMesh& mesh, MeshField&& field, const std::string& name) {
-  field.name = name;
-  mesh.fields.push_back(std::move(field));
-}
-
-Result<Bytes> bytesOf(const LatticeMesh& mesh, const std::string& ending,
-                      const MeshFileOptions& options) {
-  return meshFileBytes(mesh, ending, options);
-}
-
-Result<Bytes> bytesOf(const TetMesh& mesh, const std::string& ending, const MeshFileOptions&) {
-  return meshFileBytes(fileMesh(mesh), ending);
-}
-
-/// The fields of the log's levels. The last level also has those that its closing blocks hold.
-std::vector<ManifestField> fieldsOf(const OpenedLog& log, bool restores) {
-  std::vector<ManifestField> out = log.manifest.fields;
-  if (!restores || !log.file.hasClosing(ClosingKind::kOriginalCells)) return out;
-  out.emplace_back().name = kOriginalCellField;
-  out.back().association = "cell";
-  return out;
-}
-
-/// The numbers of the fields that are meant, ascending (field_key.h).
-Result<std::vector<std::uint32_t>> wantedFields(const ParsedWords& parsed,
-                                                const std::vector<ManifestField>& fields) {
-  std::vector<std::uint32_t> wanted(fields.size());
-  std::iota(wanted.begin(), wanted.end(), 0u);
-  const auto names = parseFieldNames(parsed.get<std::string>("fields"));
-  if (!names) return wanted;
-  wanted.clear();
-  for (const std::string& name : *names) {
-    const std::vector<std::uint32_t> meant = fieldsOfKey(fields, name);
-    if (meant.empty())
-      return fail(ErrorCode::kNotFound,
-                  "the log has no field '" + name +
-                      "' at this level; qtet info shows which it has, and what is kept for the "
-                      "last level alone");
-    wanted.insert(wanted.end(), meant.begin(), meant.end());
-  }
-  std::ranges::sort(wanted);
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  return wanted;
-}
-
-constexpr const char* kCollection = ".pvd";
-
-bool isCollection(const MeshOutput& output) { return output.ending == kCollection; }
-
-std::string endingOfFiles(const MeshOutput& output) {
-  return isCollection(output) ? ".vtu" : output.ending;
-}
-
-/// Takes each file as it is made.
-using FileTaker = std::function<Status(const InstantFile& file, Bytes&& bytes)>;
-
-/// Makes the mesh with each file's fields; `numbers` are those of its own fields, ascending.
-template <class Mesh>
-Status makeFiles(Mesh& mesh, const std::vector<std::uint32_t>& numbers,
-                 const std::vector<InstantFile>& files, const MeshOutput& output,
-                 const FileTaker& take) {
-  auto all = takeFields(mesh);
-  for (const InstantFile& file : files) {
-    const bool isLast = &file == &files.back();
-    takeFields(mesh);
-    for (const FieldInFile& field : file.fields) {
-      const auto at = std::ranges::lower_bound(numbers, field.number) - numbers.begin();
-      auto& own = all[static_cast<std::size_t>(at)];
-      addField(mesh, field.isInstant || isLast ? std::move(own) : auto(own), field.name);
-    }
-    Result<Bytes> bytes = bytesOf(mesh, endingOfFiles(output), output.options);
-    if (!bytes) return std::unexpected(bytes.error());
-    if (Status s = take(file, std::move(*bytes)); !s) return s;
-  }
-  return {};
-}
-
-/// At the last level the files are the input itself, as far as the log kept it.
-Status makeInput(const OpenedLog& log, const LatticeMesh& finest,
-                 const std::vector<InstantFile>& files, const MeshOutput& output,
-                 const FileTaker& take) {
-  Result<RestoredInput> input = restoreInput(log.file, finest);
-  if (!input) return std::unexpected(input.error());
-  const bool exact = input->exactPositions ||
-                     std::ranges::find(input->exactFields, true) != input->exactFields.end();
-  const bool asRead = exact && !needsLattice(output.ending);
-  std::vector<std::uint32_t> numbers(asRead ? input->mesh.fields.size()
-                                            : input->lattice.fields.size());
-  std::iota(numbers.begin(), numbers.end(), 0u);
-  return asRead ? makeFiles(input->mesh, numbers, files, output, take)
-                : makeFiles(input->lattice, numbers, files, output, take);
+/// The keys of --fields. Throws UsageError.
+auto wantedFields(const ParsedWords& parsed) {
+  return parseFieldNames(parsed.get<std::string>("fields"));
 }
 
 /// Throws UsageError where one file would hold several instants.
@@ -211,69 +42,6 @@ Result<std::vector<InstantFile>> filesOf(const ParsedWords& parsed, const MeshOu
   auto files = instantFiles(known, wanted, asked, parsed.get<std::string>("LOG"), notes);
   if (files) checkCount(files->size(), asked, output);
   return files;
-}
-
-/// `known`: the fields that the numbers of `wanted` mean, those of the manifest first. Those of an
-/// instant are called as in its file.
-MeshOutputReport reportOf(const Manifest& manifest, std::uint32_t level,
-                          const std::vector<ManifestField>& known,
-                          const std::vector<FieldInFile>& wanted, const std::string& ending) {
-  const ManifestLevel& told = manifest.levels[level];
-  const std::size_t last = manifest.levels.size() - 1;
-  MeshOutputReport out{"level " + std::to_string(level) + " of " + std::to_string(last) + ", " +
-                           counted(told.tetrahedra, "tetrahedron", "tetrahedra") + ", " +
-                           counted(told.vertices, "point", "points"),
-                       {{"level", level},
-                        {"levels", last},
-                        {"tetrahedra", told.tetrahedra},
-                        {"vertices", told.vertices},
-                        {"boundaryTriangles", told.boundaryTriangles}}};
-  std::vector<ManifestField> fields;
-  LevelError error = told.error.value_or(LevelError());
-  error.fields.clear();
-  std::vector<bool> isLabel;
-  for (const auto& [f, name, isInstant] : wanted) {
-    if (!holdsFields(ending, known[f].association)) continue;
-    fields.push_back(known[f]);
-    fields.back().name = name;
-    if (!told.error || f >= told.error->fields.size()) continue;
-    error.fields.push_back(told.error->fields[f]);
-    isLabel.push_back(labelNamesOf(manifest, f) != nullptr);
-  }
-  out.json["fields"] = writtenFieldsJson(fields, ending);
-  if (told.error) out.json["error"] = toJson(error, isLabel);
-  return out;
-}
-
-/// The files that are made of the fields `wanted` among those that are known.
-using FileChooser = std::function<Result<std::vector<InstantFile>>(
-    const std::vector<ManifestField>& known, const std::vector<std::uint32_t>& wanted)>;
-
-/// Makes the files of one log's level.
-Result<MeshOutputReport> extractLog(const ParsedWords& parsed, const OpenedLog& log,
-                                    const Result<std::uint32_t>& level, const MeshOutput& output,
-                                    const FileChooser& choose, const FileTaker& take) {
-  if (!level) return std::unexpected(level.error());
-  const bool restores =
-      *level + 1 == log.manifest.levels.size() && !log.file.closingBlocks().empty();
-  const std::vector<ManifestField> known = fieldsOf(log, restores);
-  const Result<std::vector<std::uint32_t>> wanted = wantedFields(parsed, known);
-  if (!wanted) return std::unexpected(wanted.error());
-  const auto files = choose(known, *wanted);
-  if (!files) return std::unexpected(files.error());
-  std::vector<std::uint32_t> decoded;
-  for (const InstantFile& file : *files)
-    for (const FieldInFile& field : file.fields) decoded.push_back(field.number);
-  std::ranges::sort(decoded);
-  decoded.erase(std::unique(decoded.begin(), decoded.end()), decoded.end());
-  Result<LatticeMesh> mesh =
-      meshAtLevel(log.file, *level, restores ? std::nullopt : std::optional(decoded));
-  if (!mesh) return std::unexpected(mesh.error());
-  if (Status s = restores ? makeInput(log, *mesh, *files, output, take)
-                          : makeFiles(*mesh, decoded, *files, output, take);
-      !s)
-    return std::unexpected(s.error());
-  return reportOf(log.manifest, *level, known, files->front().fields, endingOfFiles(output));
 }
 
 /// The one file of an output, or those of a collection.
@@ -356,8 +124,8 @@ Result<MeshOutputReport> extractList(const ParsedWords& parsed, const std::strin
     const auto choose = [&](const auto& known, const auto& wanted) {
       return Result<std::vector<InstantFile>>(segmentFiles(known, wanted, times));
     };
-    Result<MeshOutputReport> report =
-        extractLog(parsed, *log, levelOfSegment(parsed, *log, times), output, choose, take);
+    Result<MeshOutputReport> report = extractLevel(*log, levelOfSegment(parsed, *log, times),
+                                                   {output, wantedFields(parsed), choose, take});
     if (!report) return report;
     report->json["log"] = segment.log;
     report->json["times"] = times;
@@ -374,8 +142,8 @@ Result<MeshOutputReport> extractOne(const ParsedWords& parsed, const std::string
   const auto choose = [&](const auto& known, const auto& wanted) {
     return filesOf(parsed, output, known, wanted, notes);
   };
-  return extractLog(parsed, *log, chosenLevel(parsed, log->manifest, log->file.index()), output,
-                    choose, take);
+  return extractLevel(*log, chosenLevel(parsed, *log),
+                      {output, wantedFields(parsed), choose, take});
 }
 
 Status extract(const ParsedWords& parsed, Console& console) {
@@ -399,10 +167,37 @@ Status extract(const ParsedWords& parsed, Console& console) {
   return written.finish(*report, console);
 }
 
+CommandHelp extractHelp() {
+  return {"extract",
+          R"(extract LOG.qtet|LIST.json (--level K | --tets N | --ratio R | --error NAME=E
+| --boundary-error E) [--time T] -o OUT)",
+          R"(Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk, .msh (Gmsh
+2.2) or .usda (OpenUSD), its boundary as .obj, .glb (glTF with Draco) or .drc.
+.obj holds no fields, .glb and .drc hold those of points.
+NAME.pvd (ParaView) names a .vtu for each instant of the log's series, in a new folder NAME.
+Where no level is small enough it is level 0.
+A list of logs, NAME.json, gives the mesh of the log that has the time T.
+Each log chooses a level of its own. A list needs --time unless the output is a .pvd.
+Its --error takes the name without a time, and holds at each of the chosen times.
+The last level is the input's mesh, with its own numbering and numbers where the log was made
+with --keep-order and --lossless.
+Errors are those that the log tells, measured when it was made (qtet info shows them).
+--json: output, kind, bytes, level, levels, tetrahedra, vertices and boundaryTriangles of the level,
+fields [{name, association, components, type}] that the file holds, error as in qtet info with the
+same fields, input; of a .pvd also files [{time, file}]; of a list also log and times, or for a .pvd
+of several logs segments, an array of these.)",
+          R"(  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu
+  qtet extract fin.qtet --error Density=0.01 -o near.vtu
+  qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb
+  qtet extract wake.qtet --tets 50000 --time 0:1 -o wake.pvd
+  qtet extract remeshed.json --ratio 0.1 --time 0.3 -o later.vtu
+  curl -sL http://HOST/v1/meshes/fin/log | qtet extract - --ratio 0.1 --to vtu -o - >c.vtu
+)"};
+}
+
 }  // namespace
 
 int runExtract(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   addMeshOutputOptions(options);
   options.add_options()("level", po::value<int>(), "this level; 0 is the base mesh")(
@@ -420,36 +215,7 @@ int runExtract(const Words& words, Console& console) {
       "of series, whose instants are fields NAME@TIME: those of one time, first or last, called "
       "NAME; all, or FROM:TO:EVERY, every so many between two times, with -o NAME.pvd; without it "
       "all instants are fields of one file");
-  const ParsedWords parsed(
-      words,
-      {"extract",
-       "extract LOG.qtet|LIST.json (--level K | --tets N | --ratio R | --error NAME=E | "
-       "--boundary-error E) "
-       "[--time T] -o OUT",
-       "Writes one level of a log as an ordinary mesh: with its cells as .vtu, .vtk, .msh (Gmsh "
-       "2.2) or .usda (OpenUSD), its boundary as\n"
-       ".obj, .glb (glTF with Draco) or .drc. .obj holds no fields, .glb and .drc hold those of "
-       "points. NAME.pvd (ParaView) names a .vtu for each instant of the log's series, in a new "
-       "folder "
-       "NAME. Where no level is small enough it is level 0.\n"
-       "A list of logs, NAME.json, gives the mesh of the log that has the time T. Each log chooses "
-       "a level of its own. A list needs --time unless the output is a .pvd. Its --error takes the "
-       "name without a time, and holds at each of the chosen times.\n"
-       "The last level is the input's mesh, with its own numbering and numbers where the log was "
-       "made with --keep-order and --lossless.\n"
-       "Errors are those that the log tells, measured when it was made (qtet info shows them).\n"
-       "--json: output, kind, bytes, level, levels, tetrahedra, vertices and boundaryTriangles of "
-       "the level, fields [{name, association,\ncomponents, type}] that the file holds, error as "
-       "in qtet info with the same fields, input; of a .pvd also files [{time, file}]; of "
-       "a list also log and times, or for a .pvd of several logs segments, an array of these.",
-       "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n  qtet extract fin.qtet --error "
-       "Density=0.01 -o near.vtu\n"
-       "  qtet extract fin.qtet --tets 20000 --fields Density -o skin.glb\n"
-       "  qtet extract wake.qtet --tets 50000 --time 0:1 -o wake.pvd\n"
-       "  qtet extract remeshed.json --ratio 0.1 --time 0.3 -o later.vtu\n"
-       "  curl -sL http://HOST/v1/meshes/fin/log | qtet extract - --ratio 0.1 --to vtu -o - "
-       ">c.vtu\n"},
-      options, {"LOG"});
+  const ParsedWords parsed(words, extractHelp(), options, {"LOG"});
   if (parsed.helped(console)) return kExitOk;
   const auto given = static_cast<int>(parsed.has("level")) + parsed.has("tets") +
                      parsed.has("ratio") + parsed.has("error") + parsed.has("boundary-error");

@@ -1,7 +1,8 @@
 // The help of every command as data: what manual pages and completions are made of.
 #pragma once
 
-#include "simplify/commands/command_line.h"
+#include "simplify/commands/commands.h"
+#include "simplify/words/json_report.h"
 
 namespace qtet {
 

@@ -3,7 +3,9 @@
 
 #include "proto/version.h"
 #include "simplify/commands/command_help.h"
-#include "simplify/commands/output.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/output.h"
+#include "simplify/words/parsed_words.h"
 
 namespace qtet {
 namespace {
@@ -77,18 +79,20 @@ std::string overviewPage(const std::string& text) {
   return out + ".BR qtet\\-server (1)\n";
 }
 
+CommandHelp manualHelp() {
+  return {"manual", "manual FOLDER",
+          R"(Writes qtet.1 and a page for every command, qtet-COMMAND.1, into an existing folder.
+They say what --help says.)",
+          "  mkdir -p ~/.local/share/man/man1 && qtet manual ~/.local/share/man/man1 && "
+          "man qtet-simplify\n"};
+}
+
 }  // namespace
 
 int runManual(const Words& words, Console& console) {
-  boost::program_options::options_description options("options");
+  po::options_description options("options");
   addNoClobber(options);
-  const ParsedWords parsed(words,
-                           {"manual", "manual FOLDER",
-                            "Writes qtet.1 and a page for every command, qtet-COMMAND.1, into an "
-                            "existing folder. They say what --help says.",
-                            "  mkdir -p ~/.local/share/man/man1 && qtet manual "
-                            "~/.local/share/man/man1 && man qtet-simplify\n"},
-                           options, {"FOLDER"});
+  const ParsedWords parsed(words, manualHelp(), options, {"FOLDER"});
   if (parsed.helped(console)) return kExitOk;
   const fs::path folder = parsed.get<std::string>("FOLDER");
   std::ostringstream overview, err;

@@ -9,11 +9,7 @@
 #include "codec/refine/log_edit.h"
 #include "proto/level_error_json.h"
 #include "proto/series.h"
-#include "simplify/commands/columns.h"
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/command_measure.h"
-#include "simplify/commands/command_read.h"
-#include "simplify/commands/output.h"
+#include "simplify/commands/commands.h"
 #include "simplify/commands/provided_log.h"
 #include "simplify/commands/tool_main.h"
 #include "simplify/log/opened_log.h"
@@ -21,6 +17,12 @@
 #include "simplify/publish/single_page.h"
 #include "simplify/read/process/guarded_folder.h"
 #include "simplify/series/fewer_instants.h"
+#include "simplify/words/columns.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/measure_words.h"
+#include "simplify/words/output.h"
+#include "simplify/words/parsed_words.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 namespace {
@@ -124,10 +126,19 @@ Result<std::string> heldPart(const fs::path& path, std::uint32_t chunks) {
   return out;
 }
 
+CommandHelp pageHelp() {
+  return {"page", "page FILE -o OUT.html [options]",
+          R"(Writes one HTML file with the viewer and the log in it, to send by mail or to keep.
+It opens by a double click, on a phone too, and fetches nothing.
+A mesh becomes a log first, by the usual settings of qtet simplify.)",
+          R"(  qtet page part.vtu -o part.html
+  qtet page part.qtet -o part.html --max-bytes 5M
+)"};
+}
+
 }  // namespace
 
 int runPage(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(),
                         "required: the page to write, NAME.html; or - for the standard output")(
@@ -143,14 +154,7 @@ int runPage(const Words& words, Console& console) {
       "of a mesh: all, none, or names between commas, as `qtet simplify --fields` takes them");
   addNoClobber(options);
   addReadOptions(options);
-  const ParsedWords parsed(
-      words,
-      {"page", "page FILE -o OUT.html [options]",
-       "Writes one HTML file with the viewer and the log in it, to send by mail or to keep. It "
-       "opens by a double click, on a phone too,\n"
-       "and fetches nothing. A mesh becomes a log first, by the usual settings of qtet simplify.",
-       "  qtet page part.vtu -o part.html\n  qtet page part.qtet -o part.html --max-bytes 5M\n"},
-      options, {"FILE"});
+  const ParsedWords parsed(words, pageHelp(), options, {"FILE"});
   if (parsed.helped(console)) return kExitOk;
   const fs::path input = parsed.get<std::string>("FILE");
   const Output output = outputOf(parsed, console);

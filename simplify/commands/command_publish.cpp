@@ -1,10 +1,12 @@
 #include <algorithm>
 
-#include "simplify/commands/output.h"
 #include "simplify/commands/tool_main.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/publish/publish_site.h"
 #include "simplify/publish/site_folder.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/output.h"
+#include "simplify/words/parsed_words.h"
 
 namespace qtet {
 namespace {
@@ -36,30 +38,30 @@ OrderedJson toJson(const std::string& folder, const PublishedSite& site) {
   return {{"output", folder}, {"files", site.files}, {"bytes", site.bytes}, {"meshes", meshes}};
 }
 
+CommandHelp publishHelp() {
+  return {"publish", "publish FOLDER LOG... [--viewer DIR] [--plain] [--json]",
+          R"(Writes a folder that any web server can serve as it is, without a program of ours: the
+viewer, compressed too, the logs NAME.qtet and those of lists NAME.json, index.json with their list,
+and README.txt with the settings for nginx, Caddy, S3 with CloudFront, and GitHub Pages.
+The folder appears whole or not at all.
+One that an earlier publish made is replaced as a whole, logs included; a folder that holds anything
+else is refused.
+--json: output, files, bytes, meshes [{name, bytes, tetrahedra}].)",
+          R"(  qtet publish site fin.qtet
+  qtet publish /var/www/meshes logs/*.qtet
+)"};
+}
+
 }  // namespace
 
 int runPublish(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("viewer", po::value<std::string>(),
                         "the viewer's files; without it those installed with qtet-server")(
       "plain", "without NAME.gz and NAME.br, for a server that compresses by itself")(
       "json", "print one JSON object");
   addNoClobber(options);
-  const ParsedWords parsed(
-      words,
-      {"publish", "publish FOLDER LOG... [--viewer DIR] [--plain] [--json]",
-       "Writes a folder that any web server can serve as it is, without a program of ours: the "
-       "viewer, compressed too, the logs NAME.qtet\n"
-       "and those of lists NAME.json,\n"
-       "index.json with their list, and README.txt with the settings for nginx, Caddy, S3 with "
-       "CloudFront, and GitHub Pages.\n"
-       "The folder appears whole or not at all. One that an earlier publish made is replaced as a "
-       "whole, logs included; a folder that\n"
-       "holds anything else is refused.\n"
-       "--json: output, files, bytes, meshes [{name, bytes, tetrahedra}].",
-       "  qtet publish site fin.qtet\n  qtet publish /var/www/meshes logs/*.qtet\n"},
-      options, {"FOLDER", "LOG..."});
+  const ParsedWords parsed(words, publishHelp(), options, {"FOLDER", "LOG..."});
   if (parsed.helped(console)) return kExitOk;
   const auto folder = parsed.get<std::string>("FOLDER");
   if (Status kept = checkKeepsOld({folder, parsed.has("no-clobber")}); !kept)

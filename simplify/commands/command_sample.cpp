@@ -2,12 +2,14 @@
 #include <set>
 
 #include "proto/field_key.h"
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/instant_collection.h"
-#include "simplify/commands/output.h"
+#include "simplify/commands/commands.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/mesh/moved_place.h"
+#include "simplify/produce/instant_collection.h"
 #include "simplify/samples/samples.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/output.h"
+#include "simplify/words/parsed_words.h"
 
 namespace qtet {
 namespace {
@@ -65,7 +67,6 @@ Result<std::uint64_t> writeSample(const TetMesh& mesh, const Output& output) {
 }  // namespace
 
 int runSample(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("output,o", po::value<std::string>(),
                         "required: the .vtu file to write; with --steps also NAME.pvd, a series "

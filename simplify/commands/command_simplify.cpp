@@ -2,17 +2,21 @@
 
 #include "proto/limits.h"
 #include "proto/utf8.h"
-#include "simplify/commands/command_errors.h"
-#include "simplify/commands/command_fusion.h"
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/command_measure.h"
-#include "simplify/commands/command_read.h"
-#include "simplify/commands/progress.h"
-#include "simplify/commands/simplified_list.h"
-#include "simplify/commands/simplified_log.h"
+#include "simplify/commands/commands.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/parts/metis_partition.h"
+#include "simplify/produce/made_log_report.h"
+#include "simplify/produce/simplified_list.h"
+#include "simplify/produce/simplified_log.h"
 #include "simplify/read/listed_files.h"
+#include "simplify/words/error_words.h"
+#include "simplify/words/field_names.h"
+#include "simplify/words/fusion_words.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/measure_words.h"
+#include "simplify/words/parsed_words.h"
+#include "simplify/words/progress.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 namespace {
@@ -98,10 +102,36 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   return request;
 }
 
+CommandHelp simplifyHelp() {
+  return {"simplify",
+          "simplify IN... -o OUT.qtet|OUT.json [options]",
+          R"(Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...:
+simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them, simplifies them
+level by level and writes the log, from which every level and the whole mesh come back.
+Numbered files (several names, a pattern in quotes, a folder) are the steps of one series.
+A series whose cells change becomes a list of logs (experimental), NAME.json with NAME.0.DIGEST.qtet
+and so on.)",
+          R"(  qtet simplify fin.vtu -o fin.qtet
+  qtet simplify fin.vtu -o fin.qtet --fields Density,Velocity --error all=0.1% --json
+  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet
+  qtet simplify run.pvd --time all -o run.qtet
+  qtet simplify step_*.vtu --time all -o run.qtet
+  qtet simplify remeshed.pvd --time all -o remeshed.json
+)",
+          {{"input", {"format", "times", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
+           {"fields",
+            {"error", "field-bits", "field-weight", "label-weight", "time-statistics", "unit",
+             "time-unit"}},
+           {"quality and base mesh",
+            {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
+             "placement", "shape-weight", "preserve-regions", "position-bits"}},
+           {"output", {"value-codec", "keep-order", "original-ids", "measure"}},
+           {"rare", {"algorithm", "exact-coarse", "parts"}}}};
+}
+
 }  // namespace
 
 int runSimplify(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()(
       "output,o", po::value<std::string>(),
@@ -115,13 +145,13 @@ int runSimplify(const Words& words, Console& console) {
       "field-bits", po::value<int>()->default_value(12),
       "bits of a float field's values, 1 to 28; integer fields are stored exactly")(
       "time-statistics",
-      "of each series: its average, least, largest and standard deviation over all instants, as "
+      "experimental, of each series: its average, least, largest and standard deviation over all "
+      "instants, as "
       "the fields NAME_average, NAME_minimum, NAME_maximum and NAME_stddev")(
       "unit", po::value<std::vector<std::string>>(),
       "NAME=UNIT: the unit of a field or of a series, for the legend, plots and tables; may be "
-      "given "
-      "several times. Names such as \"T [K]\" have theirs")("time-unit", po::value<std::string>(),
-                                                            "the unit of times")(
+      "given several times. Names such as \"T [K]\" have theirs")(
+      "time-unit", po::value<std::string>(), "the unit of times")(
       "value-codec", po::value<std::string>()->default_value("lifted"),
       "how values are coded: lifted is smallest (positions by Draco), draco is quickest to decode, "
       "adaptive is a coder of our own for positions too")(
@@ -145,33 +175,7 @@ int runSimplify(const Words& words, Console& console) {
   addErrorOption(options);
   addFusionOptions(options);
   addMeasureOptions(options);
-  const ParsedWords parsed(
-      words,
-      {"simplify",
-       "simplify IN... -o OUT.qtet|OUT.json [options]",
-       "Reads a volume mesh with its fields (.vtu, .vtk, .msh, Exodus, EnSight, CGNS, ...:\n"
-       "simplify/INPUT.md has them all), splits its cells into tetrahedra, cleans them,\n"
-       "simplifies them level by level and writes the log, from which every level and the whole\n"
-       "mesh come back.\n"
-       "Numbered files (several names, a pattern in quotes, a folder) are the steps of one "
-       "series.\n"
-       "A series whose cells change becomes a list of logs, NAME.json with NAME.0.DIGEST.qtet and "
-       "so on.",
-       "  qtet simplify fin.vtu -o fin.qtet\n  qtet simplify fin.vtu -o fin.qtet --fields "
-       "Density,Velocity --error all=0.1% --json\n"
-       "  qtet simplify ogrid.xyz --plot3d ogrid.q --weld 0 -o ogrid.qtet\n  qtet simplify run.pvd "
-       "--time all -o run.qtet\n  qtet simplify step_*.vtu --time all -o run.qtet\n"
-       "  qtet simplify remeshed.pvd --time all -o remeshed.json\n",
-       {{"input", {"format", "times", "curved", "weld", "threshold", "plot3d", "read-seconds"}},
-        {"fields",
-         {"error", "field-bits", "field-weight", "label-weight", "time-statistics", "unit",
-          "time-unit"}},
-        {"quality and base mesh",
-         {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
-          "placement", "shape-weight", "preserve-regions", "position-bits"}},
-        {"output", {"value-codec", "keep-order", "original-ids", "measure"}},
-        {"rare", {"algorithm", "exact-coarse", "parts"}}}},
-      options, {"IN..."});
+  const ParsedWords parsed(words, simplifyHelp(), options, {"IN..."});
   if (parsed.helped(console)) return kExitOk;
   const Output output = outputOf(parsed, console);
   SimplifyRequest request = requestOf(parsed, output);

@@ -8,12 +8,14 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/command_read.h"
+#include "simplify/commands/commands.h"
 #include "simplify/commands/provided_log.h"
 #include "simplify/commands/tool_main.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/read/process/guarded_folder.h"
+#include "simplify/words/json_report.h"
+#include "simplify/words/parsed_words.h"
+#include "simplify/words/read_words.h"
 
 namespace qtet {
 namespace {
@@ -119,10 +121,22 @@ void followServer(int words, const std::string& name, bool open, Console& consol
   }
 }
 
+CommandHelp viewHelp() {
+  return {
+      "view", "view FILE [options]",
+      R"(Shows a log in the browser, or a mesh after simplifying it with the usual settings into a
+temporary log.
+Serves it on this machine alone until Ctrl-C, prints the URL, and opens it where there is a desktop.
+To keep the log: qtet simplify, then qtet-server.)",
+      R"(  qtet view part.vtu
+  qtet view part.qtet --port 8080 --no-open
+  qtet view run.pvd --time 0.5 --fields p,U
+)"};
+}
+
 }  // namespace
 
 int runView(const Words& words, Console& console) {
-  namespace po = boost::program_options;
   po::options_description options("options");
   options.add_options()("port", po::value<int>()->default_value(0),
                         "TCP port on 127.0.0.1; 0 = any free one")(
@@ -130,15 +144,7 @@ int runView(const Words& words, Console& console) {
       "fields", po::value<std::string>()->default_value("all"),
       "of a mesh: all, none, or names between commas, as `qtet simplify --fields` takes them");
   addReadOptions(options);
-  const ParsedWords parsed(words,
-                           {"view", "view FILE [options]",
-                            "Shows a log in the browser, or a mesh after simplifying it with the "
-                            "usual settings into a temporary log. Serves it on this machine alone\n"
-                            "until Ctrl-C, prints the URL, and opens it where there is a desktop. "
-                            "To keep the log: qtet simplify, then qtet-server.",
-                            "  qtet view part.vtu\n  qtet view part.qtet --port 8080 --no-open\n  "
-                            "qtet view run.pvd --time 0.5 --fields p,U\n"},
-                           options, {"FILE"});
+  const ParsedWords parsed(words, viewHelp(), options, {"FILE"});
   if (parsed.helped(console)) return kExitOk;
   const fs::path input = parsed.get<std::string>("FILE");
   const std::string port = std::to_string(parsed.integer("port", 0, 65535));

@@ -1,4 +1,3 @@
-#include "simplify/commands/commands.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -9,9 +8,10 @@
 #include <sstream>
 
 #include "proto/version.h"
-#include "simplify/commands/command_line.h"
-#include "simplify/commands/did_you_mean.h"
-#include "simplify/commands/standard_input.h"
+#include "simplify/commands/commands.h"
+#include "simplify/words/did_you_mean.h"
+#include "simplify/words/standard_input.h"
+#include "simplify/words/usage_error.h"
 
 namespace qtet {
 namespace {
@@ -41,31 +41,36 @@ constexpr std::array<Command, 16> kCommands{{
 }};
 
 void printHelp(std::ostream& out) {
-  out << "usage: qtet COMMAND [options]\n\nTurns tetrahedral simulation meshes into logs that a "
-         "browser can show coarse-first, and "
-         "back.\n\ncommands:\n";
+  out << R"(usage: qtet COMMAND [options]
+
+Turns tetrahedral simulation meshes into logs that a browser can show coarse-first, and back.
+
+commands:
+)";
   for (const Command& command : kCommands)
     out << "  " << std::left << std::setw(13) << command.name << command.summary << "\n";
-  out << "  help         say more about one of them, as --help after it does\n";
-  out << "\n  qtet --version tells the version.\n"
-         "  - instead of a mesh's or a log's name is the standard input, -o - the standard "
-         "output.\n"
-         "  --no-clobber refuses an output that exists.\n"
-         "  Every command knows --quiet and --verbose. NO_COLOR in the environment keeps colours "
-         "away.\n"
-         "\nexamples:\n"
-         "  qtet sample fin -o fin.vtu\n"
-         "  qtet check fin.vtu\n"
-         "  qtet view fin.vtu\n"
-         "  qtet simplify fin.vtu -o fin.qtet\n"
-         "  qtet info fin.qtet\n"
-         "  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu\n"
-         "  curl -s http://HOST/fin.vtu | qtet check - --format vtu\n"
-         "  qtet verify fin.qtet --against fin.vtu\n"
-         "  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/\n"
-         "  qtet publish site fin.qtet\n"
-         "  qtet page fin.qtet -o fin.html\n"
-         "\nexit codes: 0 done, 1 an input or a file is at fault, 2 the command line is\n";
+  out << R"(  help         say more about one of them, as --help after it does
+
+  qtet --version tells the version.
+  - instead of a mesh's or a log's name is the standard input, -o - the standard output.
+  --no-clobber refuses an output that exists.
+  Every command knows --quiet and --verbose. NO_COLOR in the environment keeps colours away.
+
+examples:
+  qtet sample fin -o fin.vtu
+  qtet check fin.vtu
+  qtet view fin.vtu
+  qtet simplify fin.vtu -o fin.qtet
+  qtet info fin.qtet
+  qtet extract fin.qtet --ratio 0.1 -o coarse.vtu
+  curl -s http://HOST/fin.vtu | qtet check - --format vtu
+  qtet verify fin.qtet --against fin.vtu
+  QTET_TOKEN=... qtet push fin.qtet http://127.0.0.1:8080/
+  qtet publish site fin.qtet
+  qtet page fin.qtet -o fin.html
+
+exit codes: 0 done, 1 an input or a file is at fault, 2 the command line is
+)";
 }
 
 /// Two lines: what is wrong with the words, and where the right ones stand. `command` is empty, or

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "proto/number_text.h"
-#include "simplify/commands/columns.h"
 #include "simplify/log/opened_list.h"
+#include "simplify/words/columns.h"
 
 namespace qtet {
 namespace {

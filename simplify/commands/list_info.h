@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "simplify/commands/command_line.h"
+#include "simplify/words/json_report.h"
 
 namespace qtet {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "simplify/commands/command_line.h"
+#include "simplify/words/parsed_words.h"
 
 namespace qtet {
 

@@ -157,6 +157,7 @@ CostBasis::CostBasis(const LatticeMesh& mesh, std::span<const CostPart> parts) {
 }
 
 void CostBasis::add(std::size_t i, double value, std::span<double> values) const {
+  assert(isDirect() ? i < values.size() : (i + 1) * components_ <= directions_.size());
   if (isDirect())
     values[i] += value;
   else
@@ -164,6 +165,7 @@ void CostBasis::add(std::size_t i, double value, std::span<double> values) const
 }
 
 double CostBasis::changeOf(std::size_t i, std::span<const double> values) const {
+  assert((i + 1) * components_ <= directions_.size() && values.size() == components_);
   assert(!isDirect());
   return dot(std::span(directions_).subspan(i * components_, components_), values);
 }

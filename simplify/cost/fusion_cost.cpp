@@ -209,6 +209,7 @@ void FusionCost::accumulate(VertexId v, const Vector3& origin, const Value& valu
 
 // The sum begins as v's own quadric, about its own place and values.
 void FusionCost::start(VertexId v, Sum& sum) const {
+  assert(v < slot_.size());
   const double* q = &quadrics_[at(v)];
   sum.q = {{q[0], q[1], q[2], q[3], q[4], q[5]}, {q[6], q[7], q[8]}, q[9]};
   sum.weight = q[10];
@@ -240,6 +241,7 @@ Quadric FusionCost::Sum::reduced(std::size_t components) const {
 }
 
 PreyQuadric FusionCost::of(const Prey& prey) const {
+  assert(prey.k >= 2 && prey.k <= 4);
   if (prey.k == 2) return ofEdge(prey.vertex[0], prey.vertex[1]);
   Sum sum;
   sumOf(prey, sum);
@@ -249,6 +251,7 @@ PreyQuadric FusionCost::of(const Prey& prey) const {
 
 // sumOf and reduced in one.
 PreyQuadric FusionCost::ofEdge(VertexId v, VertexId w) const {
+  assert(v != w && v < slot_.size() && w < slot_.size());
   const double* const other = &quadrics_[at(w)];
   const auto [a, b, c, weight] = edgeQuadric<double>(
       &quadrics_[at(v)], [&](std::size_t i) { return other[i]; },

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cctype>
 #include <map>
 #include <set>
@@ -70,6 +71,7 @@ bool isOneInteger(const FieldInfo& field) {
 }
 
 bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
+  assert(field < mesh.fields.size());
   const FieldInfo& info = mesh.fields[field];
   if (!isOneInteger(info)) return false;
   std::vector<std::int32_t> values = mesh.values[field];
@@ -113,6 +115,8 @@ LabelNames namesOfValues(const FieldInfo& info, const std::vector<std::int32_t>&
 }
 
 std::vector<Triangle> interfacesOf(const LatticeMesh& mesh, std::size_t field) {
+  assert(field < mesh.fields.size() && isOneInteger(mesh.fields[field]));
+  assert(mesh.values[field].size() == mesh.tetrahedra.size());
   const std::vector<std::int32_t>& labels = mesh.values[field];
   std::vector<Triangle> out;
   forEachFaceInside(mesh, [&](FaceSide first, FaceSide second) {

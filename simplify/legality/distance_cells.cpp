@@ -1,6 +1,7 @@
 #include "simplify/legality/distance_cells.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace qtet {
@@ -24,6 +25,8 @@ std::size_t hashOf(const LatticeCube& cube) {
 }  // namespace
 
 LatticeCube LatticeCube::at(const Vector3& p, int bits) {
+  assert(std::ranges::all_of(p, [](double x) { return x >= 0 && x < 0x1p30; }));
+  assert(bits >= 0 && bits < 32);
   LatticeCube out{static_cast<std::uint8_t>(bits), {}};
   for (std::size_t k = 0; k < 3; ++k) out.number[k] = static_cast<std::uint32_t>(p[k]) >> bits;
   return out;

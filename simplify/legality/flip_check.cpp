@@ -1,6 +1,7 @@
 #include "simplify/legality/flip_check.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "codec/mesh/growing_mesh.h"
@@ -30,6 +31,8 @@ bool FlipCheck::flipsAt(const Prey& prey, const LatticePoint& p, std::uint32_t m
   // Coordinates reach as far as the lattice; what is too close to call is not called.
   const double error =
       mesh_.latticeBits() <= kExactBits ? 0 : kRounding * std::ldexp(1.0, 3 * mesh_.latticeBits());
+  for (std::uint32_t i = 0; i < prey.k; ++i)
+    assert(last_[i] == kNoCell || mesh_.holds(last_[i], prey.vertex[i]));
   for (std::uint32_t i = 0; i < prey.k; ++i)
     if ((moving >> i & 1) != 0 && last_[i] != kNoCell &&
         flips(mesh_, prey, i, last_[i], place, error))

@@ -1,12 +1,15 @@
 #include "simplify/legality/full_link_check.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "codec/mesh/growing_mesh.h"
 
 namespace qtet {
 
 bool FullLinkCheck::passes(const FusionMesh& mesh, const Prey& prey, const Star& star) {
+  assert(prey.k >= 2 && prey.k <= 4);
+  assert(star.labels.size() == star.affected.size());
   mesh_ = &mesh;
   prey_ = prey;
   build(star);

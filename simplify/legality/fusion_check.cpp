@@ -1,5 +1,7 @@
 #include "simplify/legality/fusion_check.h"
 
+#include <cassert>
+
 #include "simplify/legality/edge_link_check.h"
 
 namespace qtet {
@@ -22,6 +24,7 @@ bool FusionCheck::gatherBoundary(const Prey& prey) {
 }
 
 bool FusionCheck::gatherRest() {
+  assert(prey_.k >= 2 && prey_.k <= 4);
   if (!star_.gather(prey_)) return false;
   shapes_.measure();
   moved_.forget();
@@ -29,11 +32,13 @@ bool FusionCheck::gatherRest() {
 }
 
 double FusionCheck::shapeAt(const LatticePoint& p, double least) const {
+  assert(isGathered());
   const double shape = shapes_.at(p, least);
   return shape >= 0 && envelope_.turnsTooFar(p) ? -1 : shape;
 }
 
 bool FusionCheck::keepsTopology() {
+  assert(isGathered());
   const bool isSmallEdge = prey_.k == 2 && star_.ring().size() <= kMaxRing;
   if (isSmallEdge ? !edgeKeepsTopology(star_) : !link_.passes(mesh_, prey_, star_.star()))
     return false;

@@ -4,6 +4,7 @@
 // without tolerance are exact.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <span>
 
@@ -67,6 +68,7 @@ class FusionCheck {
   /// Whether with the prey at p the solid gains nothing that lies further outside the original one
   /// than the tolerance. REQUIRES gatherBoundary, mayLeave, p on the lattice.
   [[nodiscard]] bool staysNear(const LatticePoint& p) const {
+    assert(mayLeave());
     return envelope_.staysNear(*limits_.allowed, p, known_);
   }
   /// The worst shape among the affected cells with the prey at p (1 = regular, 0 = flat). Negative
@@ -88,6 +90,11 @@ class FusionCheck {
   void takeStar(Star& star) { star_.takeStar(star); }
 
  private:
+  /// gather was true of this prey: the star is its own.
+  [[nodiscard]] bool isGathered() const {
+    return star_.prey().k == prey_.k && star_.prey().vertex == prey_.vertex;
+  }
+
   const FusionMesh& mesh_;
   FusionLimits limits_;
   Prey prey_;

@@ -8,6 +8,7 @@
 namespace qtet {
 
 bool LocalStar::gather(const Prey& prey) {
+  assert(prey.k >= 2 && prey.k <= 4);
   assert(starCellsOf(mesh_, prey) <= kMaxStarCells);
   prey_ = prey;
   for (const VertexId v : prey.vertices()) mesh_.prefetchStar(v);

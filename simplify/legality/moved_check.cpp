@@ -15,7 +15,9 @@ void MovedCheck::findPlaces() {
 
 bool MovedCheck::flipsAt(const LatticePoint& p, std::span<const std::int32_t> integers) {
   assert(integers.size() == 3 * fields_.size());
+  assert(star_.vertices().size() >= star_.prey().k);
   if (places_.empty()) findPlaces();
+  assert(places_.size() == fields_.size() * star_.vertices().size());
   const std::size_t vertices = star_.vertices().size();
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const auto at = std::span(places_).subspan(i * vertices, vertices);

@@ -1,4 +1,4 @@
-// Whether a fusion would flip a cell at an instant at which the mesh has moved (ALGORITHM.md,
+// Whether a fusion would flip a cell at an instant at which the mesh has moved (SERIES.md,
 // "Moving meshes").
 #pragma once
 

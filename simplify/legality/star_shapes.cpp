@@ -1,6 +1,7 @@
 #include "simplify/legality/star_shapes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "codec/mesh/growing_mesh.h"
@@ -43,6 +44,7 @@ double worstSquared(const std::array<std::uint32_t, 4>& s, const std::array<std:
 }  // namespace
 
 void StarShapes::measure() {
+  assert(!star_.vertices().empty());
   const std::span<const VertexId> ids = star_.vertices();
   origin_ = mesh_.position(ids[0]);
   std::array<Vector3, LocalVertices::kMax> room;

@@ -1,11 +1,14 @@
 #include "simplify/log/opened_log.h"
 
+#include <cassert>
+
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
 
 namespace qtet {
 
 std::uint64_t OpenedLog::prefixBytes(std::size_t level) const {
+  assert(level < manifest.levels.size());
   return qtet::prefixBytes(manifest, file.index(), level);
 }
 

@@ -68,12 +68,14 @@ void MeasuredMesh::fitTree() {
 void MeasuredMesh::rebuildTree() { tree_.emplace(history().points, history().cells, boundary_); }
 
 const Fusion* MeasuredMesh::fusionOf(std::uint32_t cell) const {
+  assert(cell < lastFusion_.size());
   if (lastFusion_[cell] == 0) return nullptr;
   const Fusion* fusion = &history().fusions[lastFusion_[cell] - 1];
   return fusion >= step_.data() && fusion < step_.data() + step_.size() ? fusion : nullptr;
 }
 
 std::uint32_t MeasuredMesh::originalTriangle(std::uint32_t ghost) const {
+  assert(!originalBoundary_.empty() && ghost >= originalBoundary_.front());
   // boundary cells stand behind all others, fusion_history.h
   return ghost - originalBoundary_.front();
 }

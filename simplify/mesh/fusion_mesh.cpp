@@ -115,7 +115,10 @@ void FusionMesh::findSingular(Workers* workers) {
 }
 
 void FusionMesh::keep(std::span<const VertexId> vertices) {
-  for (const VertexId v : vertices) singular_[v] = 1;
+  for (const VertexId v : vertices) {
+    assert(v < singular_.size());
+    singular_[v] = 1;
+  }
   hasSingular_ |= !vertices.empty();
 }
 

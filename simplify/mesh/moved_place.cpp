@@ -1,6 +1,7 @@
 #include "simplify/mesh/moved_place.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "codec/mesh/predicates.h"
@@ -37,6 +38,7 @@ bool isConstant(std::span<const std::int32_t> values) {
 MovedPoint movedPoint(const Lattice& lattice, const FieldInfo& field, const LatticePoint& point,
                       std::span<const std::int32_t> integers) {
   MovedPoint out{};
+  assert(integers.size() == 3 && lattice.step > 0);
   for (std::size_t c = 0; c < 3; ++c) {
     const double by = field.value(c, integers[c]) / lattice.step;
     const double rounded = std::clamp(std::floor(by + 0.5), -kFarthest, kFarthest);

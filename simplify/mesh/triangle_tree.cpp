@@ -212,6 +212,7 @@ void TriangleTree::tryPlace(const Vector3& p, const Place& place, std::uint32_t 
 }
 
 std::size_t TriangleTree::nearest(const Vector3& p, NearestTriangle& best, double enough) const {
+  assert(!nodes_.empty());
   struct Waiting {
     double squared;
     std::uint32_t node;

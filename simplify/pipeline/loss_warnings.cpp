@@ -1,6 +1,7 @@
 #include "simplify/pipeline/loss_warnings.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -129,6 +130,7 @@ double wallThicknessOf(const LatticeMesh& mesh) {
 }
 
 std::vector<std::string> lossWarnings(const Manifest& manifest, const LossFacts& facts) {
+  assert(!manifest.levels.empty());
   const ManifestLevel& base = manifest.levels.front();
   std::vector<std::string> out = labelWarnings(manifest);
   if (!isOff(base, facts)) return out;

@@ -1,5 +1,5 @@
 // http_client.h of a program that was built without libcurl.
-#include "simplify/commands/http_client.h"
+#include "simplify/remote/http_client.h"
 
 namespace qtet {
 namespace {

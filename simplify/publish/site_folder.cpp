@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <cassert>
 
 #include <cerrno>
 #include <cstring>
@@ -152,6 +153,7 @@ Result<SiteFolder> SiteFolder::begin(const fs::path& place) {
 }
 
 Status SiteFolder::write(const std::string& name, ByteView bytes) {
+  assert(!name.empty() && fs::path(name).is_relative());
   const fs::path path = hidden_ / name;
   std::error_code code;
   fs::create_directories(path.parent_path(), code);

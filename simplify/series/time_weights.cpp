@@ -1,6 +1,7 @@
 #include "simplify/series/time_weights.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -23,8 +24,10 @@ std::vector<double> polynomialWeights(std::span<const double> times, double time
   std::vector<double> out;
   for (std::size_t i = 0; i < times.size(); ++i) {
     double weight = 1;
-    for (std::size_t j = 0; j < times.size(); ++j)
+    for (std::size_t j = 0; j < times.size(); ++j) {
+      assert(j == i || times[i] != times[j]);
       if (j != i) weight *= (time - times[j]) / (times[i] - times[j]);
+    }
     out.push_back(weight);
   }
   return out;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -19,7 +20,9 @@ namespace qtet {
 class WeightFit {
  public:
   /// All rows count the same. REQUIRES: 1 to TimePrediction::kMaxParents.
-  explicit WeightFit(std::size_t parents) : weights_(parents, 0.0) {}
+  explicit WeightFit(std::size_t parents) : weights_(parents, 0.0) {
+    assert(parents >= 1 && parents <= TimePrediction::kMaxParents);
+  }
   /// A row counts the less the further the weights of a fit before miss it. So a few large misses
   /// do not outweigh many small ones, as they do not in bits.
   explicit WeightFit(std::vector<double> before) : weights_(std::move(before)), isEven_(false) {}

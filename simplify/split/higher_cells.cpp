@@ -1,5 +1,6 @@
 #include "simplify/split/higher_cells.h"
 
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -152,6 +153,7 @@ std::optional<Degrees> degreesOf(std::uint8_t type, std::size_t nodes,
 }
 
 const HigherCell& higherCell(std::uint8_t type, const Degrees& degrees) {
+  assert(isHigherCell(type));
   static std::map<std::pair<Shape, Degrees>, HigherCell> known;
   const Shape shape = shapeOfHigher(type);
   const auto at = known.find({shape, degrees});

@@ -1,6 +1,7 @@
 #include "simplify/split/node_order.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace qtet {
 namespace {
@@ -58,6 +59,7 @@ constexpr std::array<NodeFace, 4> kNodeFaces{
 }  // namespace
 
 int tetrahedronNode(int degree, int i, int j, int k) {
+  assert(degree >= 1 && std::min({i, j, k}) >= 0 && i + j + k <= degree);
   Barycentric<4> node{{i, j, k, degree - i - j - k}};
   int before = 0;
   for (; node.least() > 0; degree -= 4) {
@@ -85,6 +87,8 @@ int tetrahedronNode(int degree, int i, int j, int k) {
 }
 
 int hexahedronNode(const std::array<int, 3>& degrees, int i, int j, int k) {
+  assert(std::ranges::min(degrees) >= 1 && std::min({i, j, k}) >= 0);
+  assert(i <= degrees[0] && j <= degrees[1] && k <= degrees[2]);
   const int a = degrees[0] - 1, b = degrees[1] - 1, c = degrees[2] - 1;  // inner nodes of edges
   const bool atI = i == 0 || i == degrees[0], atJ = j == 0 || j == degrees[1],
              atK = k == 0 || k == degrees[2];
@@ -107,6 +111,8 @@ int hexahedronNode(const std::array<int, 3>& degrees, int i, int j, int k) {
 }
 
 int wedgeNode(const std::array<int, 3>& degrees, int i, int j, int k) {
+  assert(std::ranges::min(degrees) >= 1 && std::min({i, j, k}) >= 0);
+  assert(i + j <= degrees[0] && k <= degrees[2]);
   const int n = degrees[0], a = n - 1, c = degrees[2] - 1;  // inner nodes of edges
   const bool atI = i == 0, atJ = j == 0, atIJ = i + j == n, atK = k == 0 || k == degrees[2];
   const int column = atI && atJ ? 0 : atJ && atIJ ? 1 : 2;

@@ -1,11 +1,10 @@
 // Help, and what is said of words that are not understood.
-#include "simplify/commands/commands.h"
 
 #include <unistd.h>
 
 #include <map>
 
-#include "simplify/commands/did_you_mean.h"
+#include "simplify/words/did_you_mean.h"
 #include "tests/simplify/commands/tool_run.h"
 
 namespace qtet {

@@ -395,7 +395,10 @@ TEST_F(DamagedLog, aManifestThatDoesNotTellOfThisLogIsFound) {
   }
   expectManifestRefused("", "a field less",
                         [](Manifest& m) { m.fields.erase(m.fields.begin() + 1); });
-  expectManifestRefused("", "components", [](Manifest& m) { m.fields[0].minimum = {0, 0}; });
+  expectManifestRefused("", "components", [](Manifest& m) {
+    m.fields[0].components = 2;
+    m.fields[0].minimum = {0, 0};
+  });
   expectManifestRefused("bits", "a field's bits", [](Manifest& m) { m.fields[0].bits = 5; });
 }
 

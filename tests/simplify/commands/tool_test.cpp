@@ -8,8 +8,8 @@
 #include "codec/coding/float_bits.h"
 #include "codec/files/atomic_file.h"
 #include "proto/version.h"
-#include "simplify/commands/printable.h"
 #include "simplify/read/read_mesh.h"
+#include "simplify/words/printable.h"
 #include "tests/simplify/mesh/tet_meshes.h"
 #include "tests/support/paths/test_paths.h"
 

@@ -1,6 +1,5 @@
 // The reports of --json about files that were written: by extract, convert, add-field and
 // remove-field.
-#include "simplify/commands/command_line.h"
 
 #include <gmock/gmock.h>
 

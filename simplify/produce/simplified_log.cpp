@@ -1,0 +1,143 @@
+#include "simplify/produce/simplified_log.h"
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "codec/files/file_spool.h"
+#include "simplify/pipeline/series_pipeline.h"
+#include "simplify/produce/made_log_report.h"
+#include "simplify/produce/written_log.h"
+#include "simplify/read/read_mesh.h"
+#include "simplify/read/read_times.h"
+#include "simplify/series/series.h"
+
+namespace qtet {
+namespace {
+
+/// A stage's name in JSON, and its description for people who wait; kKeep continues what kEncode
+/// began.
+struct StageName {
+  const char* name;
+  const char* doing;
+};
+const std::map<Stage, StageName> kStages{
+    {Stage::kClean, {"clean", "cleaning"}},          {Stage::kQuantise, {"quantise", "quantising"}},
+    {Stage::kSimplify, {"simplify", "simplifying"}}, {Stage::kMeasure, {"measure", "measuring"}},
+    {Stage::kEncode, {"encode", "encoding"}},        {Stage::kKeep, {"keep", nullptr}}};
+
+/// Wall time of each stage, by name, in the order of doing.
+class Stopwatch {
+ public:
+  void lap(const std::string& name) {
+    const Clock::time_point now = Clock::now();
+    seconds_[name] = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+  /// The stages of a pipeline that has just ended.
+  void lap(const PipelineReport& report) {
+    for (const auto& [stage, seconds] : report.seconds) {
+      OrderedJson& sum = seconds_[kStages.at(stage).name];
+      sum = seconds + (sum.is_null() ? 0 : sum.get<double>());
+    }
+    last_ = Clock::now();
+  }
+  [[nodiscard]] OrderedJson seconds() const {
+    OrderedJson out = seconds_;
+    out["total"] = std::chrono::duration<double>(last_ - start_).count();
+    return out;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+  OrderedJson seconds_ = OrderedJson::object();
+};
+
+/// A pipeline's progress, for the person who waits.
+auto shownBy(Progress& progress) {
+  return [&progress, shown = std::optional<Stage>()](Stage stage, double fraction) mutable {
+    const char* doing = kStages.at(stage).doing;
+    if (doing == nullptr) return;
+    if (stage == shown) return progress.update(fraction);
+    progress.stage(doing);
+    shown = stage;
+  };
+}
+
+struct Made {
+  ReadReport read;
+  PipelineOutput output;
+};
+
+Result<Made> makeAtOnce(const SimplifyRequest& request, const std::vector<double>& times,
+                        const PipelineOptions& options, Stopwatch& watch) {
+  Result<ReadMesh> read = times.size() > kWindow
+                              ? readTimesInParts(request.input, request.read, times, kWindow)
+                              : readMesh(request.input, request.read);
+  if (!read) return std::unexpected(read.error());
+  watch.lap("read");
+  Result<PipelineOutput> made = simplifyToLog(std::move(read->mesh), options);
+  if (!made) return std::unexpected(made.error());
+  return Made{std::move(read->report), std::move(*made)};
+}
+
+Result<Made> makeInWindows(const SimplifyRequest& request, const std::vector<double>& times,
+                           const PipelineOptions& options, Stopwatch& watch) {
+  ReadReport report;
+  ReadOptions reading = request.read;
+  const auto read = [&](std::span<const std::size_t> steps) -> Result<TetMesh> {
+    std::vector<double> some;
+    for (const std::size_t step : steps) some.push_back(times[step]);
+    Result<TetMesh> window = readWindow(request.input, reading, some, times.front(), report);
+    if (window && request.read.weld && !report.motion.empty())
+      return fail(ErrorCode::kBadValue,
+                  request.input +
+                      ": its points move, and so many steps cannot be welded: which "
+                      "points stay together is known of a few steps at a time; leave "
+                      "out `weld`, or choose fewer steps with `time`");
+    return window;
+  };
+  Result<TetMesh> sample = read(sampledSteps(times.size()));
+  if (!sample) return std::unexpected(sample.error());
+  reading.moves = !report.motion.empty();
+  watch.lap("read");
+  Result<PipelineOutput> made = simplifySeries(std::move(*sample), times.size(), read, options);
+  if (!made) return std::unexpected(made.error());
+  return Made{std::move(report), std::move(*made)};
+}
+
+/// Beside which file blocks wait until the log is written.
+std::filesystem::path spoolOf(const Output& output) {
+  return output.stream == nullptr ? output.file
+                                  : std::filesystem::temp_directory_path() / "standard-output.qtet";
+}
+
+}  // namespace
+
+Result<OrderedJson> makeLog(const SimplifyRequest& request, const Output& output,
+                            Progress& progress) {
+  Stopwatch watch;
+  progress.stage("reading " + request.input);
+  PipelineOptions options = request.pipeline;
+  options.progress = shownBy(progress);
+  options.spool = [&] { return fileSpoolBeside(spoolOf(output)); };
+  const Result<ChosenTimes> chosen = chosenTimesOf(request.input, request.read);
+  if (!chosen) return std::unexpected(chosen.error());
+  const std::vector<double>& times = chosen->times;
+  const bool isLong = times.size() > kSampledInstants && !request.pipeline.keep.exact &&
+                      times.size() * chosen->valuesOfAStep > kMaxValuesAtOnce;
+  const Result<Made> all = isLong ? makeInWindows(request, times, options, watch)
+                                  : makeAtOnce(request, times, options, watch);
+  if (!all) return std::unexpected(all.error());
+  const PipelineOutput* const made = &all->output;
+  watch.lap(made->report);
+  const Result<WrittenLog> written =
+      writeLog(output, [&](const ByteSink& sink) { return made->log.writeTo(sink); });
+  if (!written) return std::unexpected(written.error());
+  watch.lap("write");
+  return madeLogReport(request, all->read, made->report, *written, watch.seconds());
+}
+
+}  // namespace qtet
