@@ -25,7 +25,7 @@ const kDevices = {
 const kHeight = 320;
 
 async function play({page}) {
-  await page.getByRole('button', {name: 'Play'}).click();
+  await page.getByRole('button', {name: 'Play', exact: true}).click();
   await page.waitForTimeout(1500);
 }
 

@@ -192,7 +192,7 @@ async function playsAMotion(context) {
       ['Displacement@1', 2.5],
     ],
   );
-  await page.getByRole('button', {name: 'Play'}).click();
+  await page.getByRole('button', {name: 'Play', exact: true}).click();
   for (const time of [0, 1])
     await page.waitForFunction(
       (its) => {
