@@ -22,6 +22,9 @@ struct CostFrame {
   double boundaryWeight = 0;  ///< given, or found; without fields of no account
   std::vector<LabelCost> labels;
   double boundaryFactor = 10;  ///< CostOptions::boundaryFactor
+  /// On the planes' quadrics, without fields: lengths to the sixth power would pass the largest
+  /// float on fine lattices. A power of two changes nothing else.
+  double planeScale = 1;
 };
 
 }  // namespace qtet

@@ -33,6 +33,10 @@ struct PreyQuadric {
 /// it.
 inline constexpr double kWallLayer = 3e-5;
 
+/// The squared volume that a fusion adds or takes counts so many times what it would as a squared
+/// distance of the star's boundary, for a star as large as the diagonal; for smaller ones less.
+inline constexpr double kVolumeFactor = 600;
+
 class FusionCost {
  public:
   /// `workers` share the work and change nothing of its outcome. REQUIRES: `mesh` outlives this and
@@ -44,6 +48,9 @@ class FusionCost {
   FusionCost(const FusionMesh& mesh, const CostFrame& frame, std::span<const double> quadrics);
 
   [[nodiscard]] const CostFrame& frame() const { return frame_; }
+  /// The weight of the squared volume that a fusion adds or takes, over the area of the star's
+  /// boundary (ALGORITHM.md, "Volume"). REQUIRES: a triangle at least.
+  [[nodiscard]] double volumeWeight(double area, std::size_t triangles) const;
   /// All that v stands for, as the other constructor takes it.
   [[nodiscard]] std::span<const double> quadric(VertexId v) const {
     return std::span(quadrics_).subspan(at(v), stride_);

@@ -15,6 +15,14 @@
 
 namespace qtet {
 
+/// How the solid's volume changes with the prey at d, from its first vertex: slope . d + change.
+struct VolumeChange {
+  Vector3 slope{};
+  double change = 0;
+  double area = 0;            ///< of the star's boundary as it is
+  std::size_t triangles = 0;  ///< of it
+};
+
 class BoundaryEnvelope {
  public:
   /// FusionLimits::normalCosine.
@@ -34,6 +42,7 @@ class BoundaryEnvelope {
   /// than allowed. It presumes that nothing of it does yet.
   [[nodiscard]] bool staysNear(const AllowedSpace& allowed, const LatticePoint& p,
                                DistanceCells& known) const;
+  [[nodiscard]] VolumeChange volumeChange() const;
   /// Whether with the prey at p a triangle turns further than it may.
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;
 
