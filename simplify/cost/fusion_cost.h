@@ -33,8 +33,8 @@ struct PreyQuadric {
 /// it.
 inline constexpr double kWallLayer = 3e-5;
 
-/// The squared volume that a fusion adds or takes counts so many times what it would as a squared
-/// distance of the star's boundary, for a star as large as the diagonal; for smaller ones less.
+/// The factor on the volume that a fusion adds or takes, beside the boundary's distance. It holds
+/// for a star as large as the diagonal, and falls with the star's size.
 inline constexpr double kVolumeFactor = 600;
 
 class FusionCost {
