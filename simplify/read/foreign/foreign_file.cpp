@@ -96,11 +96,11 @@ std::unexpected<Error> ended(int code, const ForeignInput& input, const fs::path
   }
 }
 
-/// The words of an answer's line behind its first.
-std::vector<std::string> wordsOf(std::string_view line, char between) {
+/// The words of an answer's line behind its first, between tabulators.
+std::vector<std::string> wordsOf(std::string_view line) {
   std::vector<std::string> out;
   while (!line.empty()) {
-    const std::size_t end = std::min(line.find(between), line.size());
+    const std::size_t end = std::min(line.find('\t'), line.size());
     out.emplace_back(line.substr(0, end));
     line.remove_prefix(std::min(end + 1, line.size()));
   }
@@ -118,7 +118,6 @@ class ForeignFile::Program {
   ~Program() { (void)end(true); }
 
   [[nodiscard]] const GuardedFolder& folder() const { return folder_; }
-  [[nodiscard]] const ForeignInput& input() const { return input_; }
 
   /// Starts it by that Python. False: no process could be made.
   [[nodiscard]] bool start(const char* python) {
@@ -246,7 +245,7 @@ Result<ForeignFile> ForeignFile::open(const ForeignInput& input) {
   if (!lines) return std::unexpected(lines.error());
   for (std::string& line : *lines)
     if (line.starts_with("note ")) out.notes_.push_back(line.substr(5));
-  for (const std::string& word : wordsOf(times, '\t')) {
+  for (const std::string& word : wordsOf(times)) {
     double time = 0;
     const auto read = std::from_chars(word.data(), word.data() + word.size(), time);
     if (read.ec != std::errc{})
@@ -272,7 +271,7 @@ Result<std::vector<BlockFile>> ForeignFile::step(std::size_t number,
   for (const std::string& line : *lines) {
     if (line.starts_with("note ")) notes.push_back(line.substr(5));
     if (!line.starts_with("block ")) continue;
-    const std::vector<std::string> words = wordsOf(std::string_view(line).substr(6), '\t');
+    const std::vector<std::string> words = wordsOf(std::string_view(line).substr(6));
     // a spoilt program names files of its own folder alone
     const fs::path name = words.empty() ? fs::path() : fs::path(words.front()).filename();
     out.push_back({folder / name, words.size() > 1 ? words[1] : ""});

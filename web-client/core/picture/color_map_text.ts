@@ -53,7 +53,8 @@ export function parseHex(text: string): number[] | null {
   return kHex.test(text) ? [0, 2, 4].map((at) => parseInt(text.slice(at, at + 2), 16)) : null;
 }
 
-const hexOf = (color: readonly number[]): string =>
+/** "ff8000"; channels are whole. */
+export const hexOf = (color: readonly number[]): string =>
   color.map((channel) => channel.toString(16).padStart(2, '0')).join('');
 
 /** The colours below and above the range, "ff00ff,"; either may be missing. Null: no such text. */

@@ -7,7 +7,7 @@ import {
   labelGradient,
   type ColorMapName,
 } from '../../core/picture/color_maps';
-import {isSteps, splitColorMap} from '../../core/picture/color_map_text';
+import {hexOf, isSteps, splitColorMap} from '../../core/picture/color_map_text';
 import {labelsOf} from '../../core/picture/labels';
 import {find} from '../page/find';
 import {roundTo} from '../page/format';
@@ -162,8 +162,8 @@ class ColorPanel implements Panel {
     for (const [i, name] of ['below', 'above'].entries()) {
       const input = this.input(name);
       input.hidden = !isOn;
-      const hex = beyond[i]?.map((channel) => channel.toString(16).padStart(2, '0')).join('');
-      input.value = `#${hex ?? kBeyond.split(',')[i]!}`;
+      const color = beyond[i];
+      input.value = `#${color ? hexOf(color) : kBeyond.split(',')[i]!}`;
     }
   }
 
