@@ -43,6 +43,10 @@ inline constexpr double kBaseError = 0.01;
 inline constexpr double kMaxBaseLabelError = 0.1;
 /// Bytes of a base mesh at most, which a line of 1 Mbit/s brings in half a second.
 inline constexpr std::size_t kMaxBaseBytes = 64'000;
+/// The rms of a field of floats, over its range: four of 256 colours and a bit.
+inline constexpr double kMaxBaseFieldError = 0.02;
+/// Bytes that a base mesh is worth for that. A field of noise is never near.
+inline constexpr std::size_t kMaxBaseFieldBytes = 24'000;
 
 /// Where the base mesh is when its size is not given: the coarsest level of which it and all finer
 /// ones are near the original.
@@ -56,10 +60,15 @@ struct BaseRule {
   /// The largest share of the volume that has another label (FieldError), and the largest
   /// LabelVolumes::worst().
   double labelError = kMaxBaseLabelError;
+  /// The largest rms of any field of floats, of a series at any instant. A level that would be
+  /// larger than `maxFieldBytes` for that alone is no base mesh.
+  double fieldError = kMaxBaseFieldError;
+  std::size_t maxFieldBytes = kMaxBaseFieldBytes;
 };
 
 /// The bytes that a base mesh takes in a log, to some 20 % (measured on nine meshes with fields of
-/// 12 bits). `components` are those of all point fields.
+/// 12 bits). `components` are those of point fields that a viewer fetches first: of a series one
+/// instant's.
 [[nodiscard]] std::size_t baseBytesOf(std::size_t vertices, std::size_t components);
 
 struct MeasureOptions {

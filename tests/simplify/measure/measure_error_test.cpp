@@ -485,7 +485,10 @@ TEST(MeasureLevels, aRuleChoosesTheCoarsestLevelThatIsNear) {
   const auto errors = measured(history);
   const auto isNear = [&](double error) {
     return [error](const LevelError& level) {
-      return level.boundaryDistance() <= error && level.volumeLost <= 2 * error;
+      return level.boundaryDistance() <= error && level.volumeLost <= 2 * error &&
+             std::ranges::all_of(level.fields, [](const FieldError& field) {
+               return field.rms <= kMaxBaseFieldError;
+             });
     };
   };
   for (const double error : {0.0, 0.01, 0.05}) {
@@ -493,6 +496,29 @@ TEST(MeasureLevels, aRuleChoosesTheCoarsestLevelThatIsNear) {
     ASSERT_TRUE(first != errors.rbegin() && first != errors.rend()) << error;
     EXPECT_TRUE(same(baseBy(history, {.error = error}).error, *std::prev(first))) << error;
   }
+}
+
+TEST(MeasureLevels, aRuleHeedsFieldsUntilTheBaseCostsTooMuch) {
+  const FusionHistory history = simplify(gridMesh(7, 2), {}).value();
+  const auto errors = measured(history);
+  const auto rms = [](const LevelError& level) {
+    return std::ranges::max(level.fields, {}, &FieldError::rms).rms;
+  };
+  const double bound = rms(errors[errors.size() / 2]);
+  const auto first = std::ranges::find_if(errors.rbegin(), errors.rend(),
+                                          [&](const auto& level) { return rms(level) > bound; });
+  ASSERT_TRUE(first != errors.rend());
+  BaseRule rule{.error = 1, .fieldError = bound};
+  const Base near = baseBy(history, rule);
+  EXPECT_TRUE(same(near.error, *std::prev(first)));
+  rule.maxFieldBytes = 0;
+  EXPECT_EQ(baseBy(history, rule).cells, baseBy(history, {.error = 1, .fieldError = 1}).cells);
+  EXPECT_LT(baseBy(history, rule).cells, near.cells);
+
+  FusionHistory ofIntegers = history;
+  for (FieldInfo& field : ofIntegers.fields) field.type = "int32";
+  rule = {.error = 1, .fieldError = bound};
+  EXPECT_LT(baseBy(ofIntegers, rule).cells, near.cells) << "they may be labels";
 }
 
 TEST(MeasureLevels, aRuleTakesNoLevelAboveItsLimits) {
