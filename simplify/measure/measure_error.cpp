@@ -189,7 +189,7 @@ class LevelBounds {
  public:
   LevelBounds(const FusionHistory& history, const MeasureOptions& options,
               std::vector<FieldBound> fields, LevelError least)
-      : options_(options), fields_(std::move(fields)), least_(std::move(least)) {
+      : options_(options), fields_(std::move(fields)), least_(std::move(least)), finest_(history) {
     const std::vector<bool> isLater = laterInstants(std::span(history.fields));
     for (std::size_t f = 0; f < history.fields.size(); ++f) {
       const FieldInfo& field = history.fields[f];
@@ -226,7 +226,8 @@ class LevelBounds {
     const std::size_t bytes = baseBytesOf(size.vertices, components_);
     return isAbove(size.tetrahedra, rule.maxCells) || isAbove(bytes, rule.maxBytes) ||
            (isNear(error, share * rule.error) &&
-            (isAbove(bytes, rule.maxFieldBytes) || areFieldsNear(error, share * rule.fieldError)) &&
+            (isAbove(bytes, rule.maxFieldBytes) || isAbove(size.tetrahedra, mostForFields(rule)) ||
+             areFieldsNear(error, share * rule.fieldError)) &&
             std::max(error.volumeLost, error.volumeGained) <= share * 2 * rule.error &&
             level.labelVolumes <= share * rule.labelError &&
             std::ranges::all_of(options_.labels, [&](std::uint32_t label) {
@@ -234,6 +235,9 @@ class LevelBounds {
             }));
   }
 
+  [[nodiscard]] std::size_t mostForFields(const BaseRule& rule) const {
+    return static_cast<std::size_t>(rule.maxFieldShare * static_cast<double>(finest_.tetrahedra));
+  }
   [[nodiscard]] bool areFieldsNear(const LevelError& error, double bound) const {
     return std::ranges::all_of(floats_, [&](std::size_t f) {
       return error.fields[f].rms <= std::max(bound, least_.fields[f].rms);
@@ -243,6 +247,7 @@ class LevelBounds {
   const MeasureOptions& options_;
   std::vector<FieldBound> fields_;
   LevelError least_;
+  LevelSize finest_;
   std::vector<std::size_t> floats_;  // fields
   std::size_t components_ = 0;
 };

@@ -47,6 +47,8 @@ inline constexpr std::size_t kMaxBaseBytes = 64'000;
 inline constexpr double kMaxBaseFieldError = 0.02;
 /// Bytes that a base mesh is worth for that. A field of noise is never near.
 inline constexpr std::size_t kMaxBaseFieldBytes = 24'000;
+/// The share of the cells that it is worth: more would leave nothing to refine.
+inline constexpr double kMaxBaseFieldShare = 0.25;
 
 /// Where the base mesh is when its size is not given: the coarsest level of which it and all finer
 /// ones are near the original.
@@ -60,10 +62,11 @@ struct BaseRule {
   /// The largest share of the volume that has another label (FieldError), and the largest
   /// LabelVolumes::worst().
   double labelError = kMaxBaseLabelError;
-  /// The largest rms of any field of floats, of a series at any instant. A level that would be
-  /// larger than `maxFieldBytes` for that alone is no base mesh.
+  /// The largest rms of any field of floats, of a series at any instant. For that alone no level
+  /// above these limits is the base mesh. The share is of the finest level's cells.
   double fieldError = kMaxBaseFieldError;
   std::size_t maxFieldBytes = kMaxBaseFieldBytes;
+  double maxFieldShare = kMaxBaseFieldShare;
 };
 
 /// The bytes that a base mesh takes in a log, to some 20 % (measured on nine meshes with fields of
