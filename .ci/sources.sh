@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Unpacks the sources of Debian packages below build/sources, with Debian's patches: libraries that
-# the browser needs as WebAssembly and that Debian builds for processors alone. apt checks their
-# signatures; its own lists and configuration stay as they are.
+# the browser needs as WebAssembly and that Debian builds for processors alone. METIS is
+# linked statically elsewhere, too: Debian's library is shared alone. apt checks their signatures;
+# its own lists and configuration stay as they are.
 #   .ci/sources.sh        does nothing for what is there already
 # Where they cannot be had, a build does without. Continuous integration (CI=true) fails instead:
 # the tests of the browser's simplifier would skip.
@@ -9,7 +10,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 folder=build/sources
 # All are those of this Debian, as the packages that the programs are linked with.
-wanted=(draco expat libdeflate lz4 xz-utils)
+wanted=(draco expat libdeflate lz4 metis xz-utils)
 missing=()
 for name in "${wanted[@]}"; do
   compgen -G "$folder/$name-[0-9]*/" >/dev/null || missing+=("$name")
@@ -22,7 +23,8 @@ without() {
       "again. Or build without CI=true." >&2
     exit 1
   fi
-  echo "setup: $1; the browser's simplifier is left out, and the page takes dropped logs alone" >&2
+  echo "setup: $1; the browser's simplifier is left out, and the page takes dropped logs alone;" \
+    "where the sources of METIS are missing, qtet-portable and the wheel refuse --parts" >&2
   exit 0
 }
 command -v dpkg-source >/dev/null || without "there is no dpkg-source"

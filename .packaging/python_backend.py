@@ -25,7 +25,7 @@ _EARLIEST = 315532800
 # Debian's packages of what is linked statically into the library.
 LINKED = (
     "libdraco-dev libboost-program-options-dev libhdf5-dev libaec-dev libexpat1-dev libdeflate-dev "
-    "liblz4-dev liblzma-dev libwebp-dev libbrotli-dev zlib1g-dev nlohmann-json3-dev"
+    "liblz4-dev liblzma-dev libmetis-dev libwebp-dev libbrotli-dev zlib1g-dev nlohmann-json3-dev"
 ).split()
 
 

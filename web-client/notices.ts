@@ -14,6 +14,7 @@ const kSimplifier = [
   'libdeflate-dev',
   'liblz4-dev',
   'liblzma-dev',
+  'libmetis-dev',
   'libfast-float-dev',
   'nlohmann-json3-dev',
   'libboost-dev',

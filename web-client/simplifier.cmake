@@ -1,8 +1,8 @@
 # The simplifier as WebAssembly: qtet-simplify.wasm, which the page loads when a mesh is dropped. It
-# is made of the rooms' own sources and of five libraries, whose sources .ci/sources.sh unpacks.
+# is made of the rooms' own sources and of six libraries, whose sources .ci/sources.sh unpacks.
 
 set(sources_of_debian ${PROJECT_SOURCE_DIR}/build/sources)
-foreach(name IN ITEMS draco expat libdeflate lz4 xz-utils)
+foreach(name IN ITEMS draco expat libdeflate lz4 metis xz-utils)
   file(GLOB found ${sources_of_debian}/${name}-[0-9]*)
   if(NOT found)
     message(WARNING "The browser's simplifier is left out: it needs the sources of ${name}, which "
@@ -29,7 +29,7 @@ file(CONFIGURE OUTPUT ${headers}/expat_config.h CONTENT "")
 set(target_flags --target=wasm32-wasi -DNDEBUG -ffp-contract=off)
 set(libraries_flags -isystem ${portable}/wasi -isystem ${headers} -isystem ${draco}/src
   -isystem ${expat}/expat/lib -isystem ${libdeflate} -isystem ${lz4}/lib
-  -isystem ${xz_utils}/src/liblzma/api)
+  -isystem ${metis}/include -isystem ${xz_utils}/src/liblzma/api)
 set(simplifier_objects "")
 
 # Adds the command that compiles one file. The rest are its flags.
@@ -59,13 +59,17 @@ function(qtet_simplifier_objects compiler folder files)
   set(simplifier_objects ${simplifier_objects} PARENT_SCOPE)
 endfunction()
 
+# Declarations of what process.cpp defines.
+set(process_flags -D_WASI_EMULATED_SIGNAL -D_WASI_EMULATED_PROCESS_CLOCKS)
+
 # The rooms' own. Exceptions end the module: what throws is stopping, memory that runs out, and the
 # command line, which is not here.
 set(own_flags -std=c++23 -fignore-exceptions -fno-rtti -DBOOST_NO_CXX98_FUNCTION_BASE
-  -DQTET_VERSION="${PROJECT_VERSION}" -Wall -Wextra -Werror -I${PROJECT_SOURCE_DIR}
+  -DQTET_VERSION="${PROJECT_VERSION}" ${process_flags} -Wall -Wextra -Werror -I${PROJECT_SOURCE_DIR}
   ${libraries_flags})
-set(own ${portable}/in_browser.cpp ${portable}/wasi/filesystem.cpp
-  ${PROJECT_SOURCE_DIR}/simplify/api/wasm_simplify.cpp)
+set(own ${portable}/in_browser.cpp ${portable}/wasi/filesystem.cpp ${portable}/wasi/process.cpp
+  ${PROJECT_SOURCE_DIR}/simplify/api/wasm_simplify.cpp
+  ${PROJECT_SOURCE_DIR}/simplify/parts/metis_partition.cpp)
 foreach(room IN ITEMS proto codec simplify read)
   get_target_property(sources qtet_${room} QTET_FILES)
   list(TRANSFORM sources REPLACE "^${PROJECT_SOURCE_DIR}/" "")
@@ -121,6 +125,14 @@ foreach(name IN ITEMS common/common common/block_decoder common/block_header_dec
     check/crc32_fast check/crc64_table check/crc64_fast check/sha256 lz/lz_decoder
     lzma/lzma_decoder lzma/lzma2_decoder delta/delta_common delta/delta_decoder)
   qtet_simplifier_object(${QTET_WASM_CC} ${lzma}/${name}.c ${lzma_flags})
+endforeach()
+
+# Small is better than fast: the page offers no parts yet.
+include(${PROJECT_SOURCE_DIR}/simplify/parts/metis_sources.cmake)
+qtet_metis_sources(metis_sources metis_flags ${metis})
+foreach(source IN LISTS metis_sources)
+  qtet_simplifier_object(${QTET_WASM_CC} ${source} ${metis_flags} -Os ${process_flags}
+    -isystem ${portable}/wasi)
 endforeach()
 
 file(STRINGS ${PROJECT_SOURCE_DIR}/simplify/api/wasm_simplify.h declarations

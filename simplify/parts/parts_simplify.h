@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/parts/cell_graph.h"
@@ -19,6 +20,14 @@ struct PartsOptions {
   /// A mesh of fewer parts than this is not cut, and later what is left.
   std::size_t minParts = 64, minPartsLater = 8;
 };
+
+/// Parts of some `cells` cells, down to two of them: what a small mesh is cut into.
+[[nodiscard]] inline PartsOptions smallParts(Partitioner partition, std::size_t cells) {
+  return {.partition = std::move(partition),
+          .cellsOfAPart = {cells, cells, cells},
+          .minParts = 2,
+          .minPartsLater = 2};
+}
 
 struct PartsFusion {
   FusionHistory history;

@@ -1,6 +1,6 @@
 // Makes the logs of tests/same_bytes.txt in memory: the same bytes from every compiler, processor
-// and number of threads. It needs the rooms proto, codec and simplify alone, no reader and no VTK,
-// so that a cross compiler builds it.
+// and number of threads. It needs the rooms proto, codec and simplify alone, and METIS, no reader
+// and no VTK, so that a cross compiler builds it.
 //   same_bytes [--threads N]      Prints a line a log: its SHA-256, and the command that makes it.
 //   same_bytes --meshes FOLDER    Writes the meshes as .vtu, for programs that simplify files.
 #include <cstdio>
@@ -13,6 +13,7 @@
 #include "codec/files/atomic_file.h"
 #include "proto/checksum.h"
 #include "simplify/log/write_mesh.h"
+#include "simplify/parts/metis_partition.h"
 #include "simplify/pipeline/series_pipeline.h"
 #include "tests/bench/need.h"
 #include "tests/same_bytes/meshes.h"
@@ -26,7 +27,7 @@ using Choice = void (*)(PipelineOptions&);
 
 struct Row {
   std::string_view mesh;
-  std::string_view words;  ///< the options as `qtet simplify` has them
+  std::string_view words;  ///< the options as `qtet simplify` has them, or what else is done
   Choice choose = [](PipelineOptions&) {};
 };
 
@@ -59,6 +60,8 @@ constexpr Row kRows[] = {
        o.fusion.cost.boundaryWeight = 30;
        o.fieldWeights = {{"Density", 2}};
      }},
+    {"fin", " in parts of 1000 cells",
+     [](PipelineOptions& o) { o.parts = smallParts(metisPartitioner(), 1000); }},
     {"beam", ""},
     {"beam", " --time-statistics", [](PipelineOptions& o) { o.timeStatistics = true; }},
     {"ball", ""},

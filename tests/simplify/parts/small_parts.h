@@ -36,11 +36,6 @@ inline std::vector<std::uint32_t> compactParts(const CellGraph& graph, std::uint
 }
 
 /// Some `cells` cells each, down to two of them.
-inline PartsOptions smallParts(std::size_t cells) {
-  return {.partition = compactParts,
-          .cellsOfAPart = {cells, cells, cells},
-          .minParts = 2,
-          .minPartsLater = 2};
-}
+inline PartsOptions smallParts(std::size_t cells) { return qtet::smallParts(compactParts, cells); }
 
 }  // namespace qtet::testing

@@ -28,7 +28,7 @@ interface Exports {
   memory: WebAssembly.Memory;
   _initialize(): void;
   qtet_alloc(bytes: number): number;
-  qtet_simplify_file(name: number): number;
+  qtet_simplify_file(name: number, cellsOfAPart: number): number;
   qtet_report(): number;
   qtet_log(): number;
   qtet_log_bytes(): number;
@@ -36,7 +36,8 @@ interface Exports {
 
 /**
  * The log that `qtet simplify NAME` makes without options, byte for byte. `files` holds the file of
- * that name and those that it names. Throws QtetError with the tool's codes and texts, or
+ * that name and those that it names. With `cellsOfAPart` it is made in parts (simplify/PARTS.md).
+ * Throws QtetError with the tool's codes and texts, or
  * `limit-exceeded` where memory ends.
  */
 export function simplifyFile(
@@ -44,6 +45,7 @@ export function simplifyFile(
   files: readonly PageFile[],
   name: string,
   listen: (progress: SimplifyProgress) => void,
+  cellsOfAPart = 0,
 ): SimplifiedFile {
   const place = new PageFiles(files);
   const progress = (stage: number, fraction: number): void =>
@@ -55,7 +57,7 @@ export function simplifyFile(
   const wasm = exports as unknown as Exports;
   place.attach(wasm.memory);
   wasm._initialize();
-  const code = named(wasm, name);
+  const code = named(wasm, name, cellsOfAPart);
   const report = textAt(wasm.memory, wasm.qtet_report());
   // The module sees the files in its root folder.
   if (code > 0)
@@ -69,12 +71,12 @@ export function simplifyFile(
   return {log, notes, warnings, tetrahedra};
 }
 
-function named(wasm: Exports, name: string): number {
+function named(wasm: Exports, name: string, cellsOfAPart: number): number {
   const bytes = new TextEncoder().encode(`${name}\0`);
   const address = wasm.qtet_alloc(bytes.length) >>> 0;
   new Uint8Array(wasm.memory.buffer, address, bytes.length).set(bytes);
   try {
-    return wasm.qtet_simplify_file(address);
+    return wasm.qtet_simplify_file(address, cellsOfAPart);
   } catch (thrown) {
     // Nothing else traps: what is wrong with a mesh is an error, not a trap.
     if (!(thrown instanceof WebAssembly.RuntimeError)) throw thrown;
