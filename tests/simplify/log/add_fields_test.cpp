@@ -107,12 +107,12 @@ TEST(LogHistory, hasTheValuesOfALogWhoseLastChunkBringsNone) {
   mesh.fields.pop_back(), mesh.values.pop_back();
   testing::addCellFields(mesh);
   const FusionHistory made = simplify(mesh, {}).value();
-  const auto inChunksOf = [&](std::size_t bytes) {
+  const auto inChunksOf = [&](std::uint32_t bytes) {
     LogWriterOptions options;
     options.chunkBytes = bytes;
     return LogFile::fromBytes(encodeLog(made, options).value().bytes).value();
   };
-  std::size_t bytes = 20;
+  std::uint32_t bytes = 20;
   while (bytes < 200 && inChunksOf(bytes).chunks().back().records > 0) ++bytes;
   const LogFile file = inChunksOf(bytes);
   ASSERT_EQ(file.chunks().back().records, 0u);
