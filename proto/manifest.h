@@ -14,6 +14,7 @@
 #include "proto/error.h"
 #include "proto/label_names.h"
 #include "proto/level_error.h"
+#include "proto/series.h"
 
 namespace qtet {
 
@@ -75,6 +76,8 @@ struct Manifest {
   /// None: the first field on the boundary.
   std::optional<Opening> opening = std::nullopt;
   std::vector<ManifestField> fields;
+  /// Those of `fields`, of two instants and more. Made with the manifest (log_manifest.h).
+  std::vector<Series> series{};
   Units units;
   Labels labels;
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh

@@ -65,7 +65,7 @@ void keepOpening(Manifest& manifest, const ManifestField& shown,
   };
   if (place == kept.size())
     place += static_cast<std::size_t>(std::ranges::find_if(added, isShown) - added.begin());
-  for (const Series& series : seriesOf(std::span<const ManifestField>(manifest.fields)))
+  for (const Series& series : manifest.series)
     if (std::ranges::find(series.fields, place) != series.fields.end())
       place = std::ranges::min(series.fields);
   if (place < kept.size() + added.size() && place <= kMaxOpeningField) {
@@ -138,6 +138,7 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
       manifest->labels[std::string(nameWithoutStep(field.info.name).value_or(field.info.name))]
           .insert(field.labelNames->begin(), field.labelNames->end());
   std::swap(manifest->fields, fields);
+  manifest->series = seriesOf(manifest->fields);
   if (manifest->opening) keepOpening(*manifest, fields[manifest->opening->field], kept, added);
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);

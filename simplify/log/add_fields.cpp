@@ -51,7 +51,7 @@ std::vector<std::size_t> decodingOrderOf(const std::vector<FieldInfo>& before,
   for (const Item& item : items) all.push_back(item.info);
   std::vector<std::size_t> out(items.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
-  for (const Series& series : seriesOf(std::span<const FieldInfo>(all))) {
+  for (const Series& series : seriesOf(all)) {
     std::vector<std::size_t> places, ordered;  // of the series' items
     for (const InstantStep& step : decodingOrder(series.fields.size()))
       if (const std::size_t f = series.fields[step.instant]; f >= before.size())

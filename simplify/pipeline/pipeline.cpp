@@ -179,7 +179,7 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
   Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
   if (!options) return std::unexpected(options.error());
-  const bool hasSeries = !seriesOf(std::span<const FieldInfo>(quantised.mesh.fields)).empty();
+  const bool hasSeries = !seriesOf(quantised.mesh.fields).empty();
   options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
   options->stop = run.options.stop;
   if (run.options.algorithm != Algorithm::kPaper &&

@@ -21,9 +21,9 @@ namespace {
 
 /// The time that the log opens at, if that is not its series' first.
 std::optional<double> laterOpening(const Manifest& manifest) {
-  for (const Series& series : seriesOf(std::span(manifest.fields))) {
-    const std::size_t shown = *std::ranges::min_element(series.fields);
-    if (shown != series.fields.front()) return instantName(manifest.fields[shown].name)->time;
+  for (const Series& series : manifest.series) {
+    const auto shown = std::ranges::min_element(series.fields) - series.fields.begin();
+    if (shown != 0) return series.times[static_cast<std::size_t>(shown)];
   }
   return std::nullopt;
 }
