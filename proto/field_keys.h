@@ -62,8 +62,8 @@ class FieldKeys {
   /// The fields, and `series` (of them, series.h), outlive the object and stay where they are.
   template <std::ranges::random_access_range Fields>
   explicit FieldKeys(const Fields& fields, std::span<const Series> series = {}) {
-    for (const auto& field : fields) add({field.name, field.association});
-    for (const Series& one : series) addSeries({one.name, one.association});
+    for (const auto& field : fields) add({field.name, field.association, field.name.instant()});
+    for (const Series& one : series) addSeries({one.name, one.association, {}});
     sort();
   }
 
@@ -86,6 +86,7 @@ class FieldKeys {
  private:
   struct Named {
     std::string_view name, association;
+    std::optional<InstantName> instant;
   };
   void add(const Named& field);
   void addSeries(const Named& series);

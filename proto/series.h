@@ -14,7 +14,7 @@
 #include <tuple>
 #include <vector>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 
 namespace qtet {
 
@@ -61,7 +61,7 @@ template <std::ranges::random_access_range Fields>
       places;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const Field& field = fields[f];
-    const auto name = instantName(field.name);
+    const auto name = field.name.instant();
     if (!name) continue;
     const auto [place, isNew] = places.try_emplace(
         {name->series, field.association, field.components, field.type}, out.size());
@@ -76,8 +76,8 @@ template <std::ranges::random_access_range Fields>
   return out;
 }
 
-/// By field of `fields`, which `all` are the series of: an instant of a series, but not the one of
-/// the lowest number, which a viewer shows and fetches first. It may be of any time.
+/// By field, of which there are `fields`: it is an instant of one of `all`, but not its series' one
+/// of the lowest number. That one may be of any time; a viewer shows and fetches it first.
 [[nodiscard]] inline std::vector<bool> laterInstants(std::span<const Series> all,
                                                      std::size_t fields) {
   std::vector<bool> out(fields);

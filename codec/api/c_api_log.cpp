@@ -130,7 +130,7 @@ qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
   info.largestRoundingError = qtet::largestRoundingError(f);
   info.labels = "";
   if (qtet::labelNamesOf(log.manifest, field) != nullptr)
-    info.labels = log.labels.find(qtet::nameWithoutStep(f.name).value_or(f.name))->second.c_str();
+    info.labels = log.labels.find(f.name.withoutTime())->second.c_str();
   return info;
 }
 

@@ -445,7 +445,7 @@ Status setManifest(LogIndex& index, Manifest manifest) {
     manifest.opening.reset();
   const auto isOfNone = [&](const std::string& name, const auto& isMeant) {
     return std::ranges::none_of(manifest.fields, [&](const ManifestField& field) {
-      return isMeant(field) && nameWithoutStep(field.name).value_or(field.name) == name;
+      return isMeant(field) && field.name.withoutTime() == name;
     });
   };
   std::erase_if(manifest.units, [&](const auto& entry) {

@@ -11,7 +11,7 @@
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
 #include "proto/crc32c.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/limits.h"
 #include "proto/series.h"
 
@@ -135,8 +135,8 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
   }
   for (const NewField& field : added)
     if (field.labelNames)
-      manifest->labels[std::string(nameWithoutStep(field.info.name).value_or(field.info.name))]
-          .insert(field.labelNames->begin(), field.labelNames->end());
+      manifest->labels[std::string(field.info.name.withoutTime())].insert(field.labelNames->begin(),
+                                                                          field.labelNames->end());
   std::swap(manifest->fields, fields);
   manifest->series = seriesOf(manifest->fields);
   if (manifest->opening) keepOpening(*manifest, fields[manifest->opening->field], kept, added);

@@ -61,7 +61,7 @@ TEST(FieldKeys, everyNameMeansWhatItMeansToASearch) {
   for (const ManifestField& field : kMixed.fields)
     for (const std::string& kind : {"", "point:", "cell:", "other:"}) {
       asked.push_back(kind + field.name);
-      if (const auto name = nameWithoutStep(field.name)) asked.push_back(kind + std::string(*name));
+      if (const auto name = field.name.instant()) asked.push_back(kind + std::string(name->series));
     }
   for (const std::string& key : asked) {
     SCOPED_TRACE(key);
