@@ -97,7 +97,8 @@ TEST(QtetC, aSeriesHasItsTimesAndTheirFields) {
       qtet_field_info field{};
       ASSERT_EQ(qtet_log_get_field(log.get(), fields[i], sizeof field, &field), QTET_OK);
       EXPECT_EQ(field.association, info.association);
-      const auto instant = field.name.instant();
+      const FieldName name(field.name);
+      const auto instant = name.instant();
       ASSERT_TRUE(instant) << field.name;
       EXPECT_EQ(instant->series, info.name);
       EXPECT_EQ(instant->time, times[i]);
