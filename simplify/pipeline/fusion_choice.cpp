@@ -126,8 +126,8 @@ std::vector<LabelCost> labelCosts(const std::vector<FieldInfo>& fields, double b
   std::vector<LabelCost> out;
   std::set<std::string_view> series;
   for (const auto& [field, named] : labels) {
-    const auto name = nameWithoutStep(fields[field].name);
-    const bool isLater = name && !series.insert(*name).second;
+    const auto name = fields[field].name.instant();
+    const bool isLater = name && !series.insert(name->series).second;
     out.push_back({field, named.value_or(isLater ? 0 : labelWeightBeside(boundaryWeight))});
   }
   return out;
