@@ -190,7 +190,8 @@ class LevelBounds {
   LevelBounds(const FusionHistory& history, const MeasureOptions& options,
               std::vector<FieldBound> fields, LevelError least)
       : options_(options), fields_(std::move(fields)), least_(std::move(least)), finest_(history) {
-    const std::vector<bool> isLater = laterInstants(std::span(history.fields));
+    const std::vector<bool> isLater =
+        laterInstants(seriesOf(history.fields), history.fields.size());
     for (std::size_t f = 0; f < history.fields.size(); ++f) {
       const FieldInfo& field = history.fields[f];
       if (!isCellField(field) && !isLater[f]) components_ += field.components;

@@ -65,8 +65,7 @@ constexpr double kOpenedWeight = 2;
 
 /// Whether both are the same field, or instants of one series.
 bool isOneQuantity(const FieldInfo& a, const FieldInfo& b) {
-  return a.association == b.association &&
-         nameWithoutStep(a.name).value_or(a.name) == nameWithoutStep(b.name).value_or(b.name);
+  return a.association == b.association && a.name.withoutTime() == b.name.withoutTime();
 }
 
 std::vector<double> weightsOf(const QuantisedMesh& quantised,
