@@ -7,6 +7,7 @@ import {mkdirSync} from 'node:fs';
 import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
 import {processorSeconds} from './browser_processes.mjs';
+import {axesChecks} from './axes_checks.mjs';
 import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
 import {colorChecks} from './color_checks.mjs';
@@ -56,7 +57,7 @@ const lists = {
   transport: {...transportChecks, ...movieChecks, ...segmentChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
-  edge: {...edgeChecks, ...warpChecks},
+  edge: {...edgeChecks, ...warpChecks, ...axesChecks},
   legend: {...legendChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,

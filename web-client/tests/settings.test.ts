@@ -107,6 +107,8 @@ describe('settings', () => {
       warp: null,
       warpScale: null,
       restEdges: false,
+      axes: false,
+      lengthUnit: null,
       time: null,
       timePart: null,
       timeLoops: true,

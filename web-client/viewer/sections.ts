@@ -1,6 +1,7 @@
 // The sections of the panel, and the panels in them. Another panel takes a file and a line here.
 
 import {filePanel} from './drop/file_panel';
+import {axesPanel} from './panels/axes_panel';
 import {clipPanel} from './panels/clip_panel';
 import {colorPanel, stepsPanel} from './panels/color_panel';
 import {histogramPanel} from './panels/histogram_panel';
@@ -33,7 +34,7 @@ const kSections: readonly Section[] = [
   },
   {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}]},
   {name: 'level', title: 'Level of detail', isFolded: true, panels: [levelPanel]},
-  {name: 'view', title: 'View', isFolded: true, panels: [viewPanel]},
+  {name: 'view', title: 'View', isFolded: true, panels: [viewPanel, axesPanel]},
   {name: 'file', title: 'File', isFolded: true, panels: [filePanel]},
   {name: 'statistics', title: 'Statistics', isFolded: true, panels: [statisticsPanel]},
 ];

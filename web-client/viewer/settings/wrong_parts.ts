@@ -68,6 +68,7 @@ const kRules: Partial<Record<Name, Rule>> = {
   surface: oneOf('on', 'off'),
   'warp-scale': [(text) => parseNumbers(text).length === 1, 'a number; 1 is the true size'],
   'rest-edges': oneOf('on', 'off'),
+  axes: oneOf('on', 'off'),
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
     kLayers
