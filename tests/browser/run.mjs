@@ -15,6 +15,7 @@ import {dropChecks} from './drop_checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
 import {galleryChecks} from './gallery_checks.mjs';
+import {groundChecks} from './ground_checks.mjs';
 import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {lineChecks} from './line_checks.mjs';
@@ -57,7 +58,7 @@ const lists = {
   transport: {...transportChecks, ...movieChecks, ...segmentChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
-  edge: {...edgeChecks, ...warpChecks, ...axesChecks},
+  edge: {...edgeChecks, ...warpChecks, ...axesChecks, ...groundChecks},
   legend: {...legendChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,

@@ -108,6 +108,7 @@ describe('settings', () => {
       warpScale: null,
       restEdges: false,
       axes: false,
+      ground: null,
       lengthUnit: null,
       time: null,
       timePart: null,

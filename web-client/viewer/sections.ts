@@ -4,6 +4,7 @@ import {filePanel} from './drop/file_panel';
 import {axesPanel} from './panels/axes_panel';
 import {clipPanel} from './panels/clip_panel';
 import {colorPanel, stepsPanel} from './panels/color_panel';
+import {groundPanel} from './panels/ground_panel';
 import {histogramPanel} from './panels/histogram_panel';
 import {kToolMarkup} from './panels/inspect';
 import {levelPanel} from './panels/level_panel';
@@ -34,7 +35,7 @@ const kSections: readonly Section[] = [
   },
   {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}]},
   {name: 'level', title: 'Level of detail', isFolded: true, panels: [levelPanel]},
-  {name: 'view', title: 'View', isFolded: true, panels: [viewPanel, axesPanel]},
+  {name: 'view', title: 'View', isFolded: true, panels: [viewPanel, axesPanel, groundPanel]},
   {name: 'file', title: 'File', isFolded: true, panels: [filePanel]},
   {name: 'statistics', title: 'Statistics', isFolded: true, panels: [statisticsPanel]},
 ];

@@ -34,6 +34,8 @@ export interface Pick {
   cell: number;
   /** Its vertices. */
   corners: number[];
+  /** Their places on the lattice, as they are drawn. */
+  places: Vector[];
   /** In the mesh's own coordinates; `lattice` is the same place on the lattice. */
   position: Vector;
   lattice: Vector;
@@ -162,6 +164,9 @@ export class Inspector {
     return {
       cell,
       corners: cornersOf(cells, cell),
+      places: cornersOf(cells, cell).map(
+        (corner) => [...cells.points.subarray(3 * corner, 3 * corner + 3)] as Vector,
+      ),
       lattice,
       position: this.positionOf(lattice),
       rest: rest && {lattice: rest, position: this.positionOf(rest)},

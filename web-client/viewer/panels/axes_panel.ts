@@ -22,8 +22,9 @@ class AxesPanel implements Panel {
   /** Null: it is not wanted, or not loaded yet. */
   private ruler: typeof Ruler | null = null;
   private settings: Settings | null = null;
-  /** What was drawn last. */
+  /** What was drawn last, and on which canvas. */
   private drawn = '';
+  private size = '';
 
   constructor(
     page: Page,
@@ -62,6 +63,9 @@ class AxesPanel implements Panel {
     this.svg.toggleAttribute('hidden', bounds.length === 0);
     if (!scale || !ruler || !view || bounds.length === 0) return;
     const {clientWidth: width, clientHeight: height} = view.canvas;
+    const size = `${width} ${height}`;
+    if (size !== this.size) this.makeRoom();
+    this.size = size;
     const {toCanvas} = view.pose;
     const drawn = [...toCanvas, width, height, ...bounds, scale.unit].join();
     if (drawn === this.drawn) return;
@@ -81,15 +85,19 @@ class AxesPanel implements Panel {
     this.show();
   }
 
-  /** The fitted mesh makes room for the numbers. */
   private show(): void {
+    this.makeRoom();
+    this.follow();
+  }
+
+  /** Beside the fitted mesh, for the numbers. */
+  private makeRoom(): void {
     const {ruler, settings} = this;
     const {view} = this.host;
     const {clientWidth = 1, clientHeight = 1} = view?.canvas ?? {};
     const [across = 0, down = 0] = ruler?.kRulerRoom ?? [];
     const room = [across / clientWidth, down / clientHeight] as const;
     view?.setBoxed(settings?.axes && ruler ? room : null);
-    this.follow();
   }
 
   private write(texts: readonly RulerText[]): void {

@@ -1,4 +1,4 @@
-// The value under a pointer that rests. It is a label at the pointer; nothing else moves.
+// The value under a pointer that rests, as a label at the pointer, and the outline of its cell.
 
 import type {Pick} from '../../core/session/inspector';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
@@ -6,6 +6,7 @@ import type {FieldInfo} from '../../core/protocol/fields';
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
 import {formatIn} from '../page/format';
+import {cellPath} from './cell_outline';
 import {scalarName} from './panel';
 
 /** So long the pointer has to rest. */
@@ -43,6 +44,8 @@ export function hoverText(
 
 export class Hover {
   private readonly label: HTMLElement;
+  /** The cell at the pointer. */
+  private readonly marks: SVGSVGElement;
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Counts the rests: a late answer belongs to none. */
   private rest = 0;
@@ -52,6 +55,9 @@ export class Hover {
     private readonly host: HoverHost,
   ) {
     this.label = find(root, '.hover');
+    this.marks = find<SVGSVGElement>(root, '.marks').cloneNode() as SVGSVGElement;
+    this.marks.removeAttribute('part');
+    find(root, '.layer').append(this.marks);
     root.addEventListener('pointermove', (event) => this.move(event as PointerEvent));
     for (const type of ['pointerdown', 'wheel', 'keydown', 'pointerout'])
       root.addEventListener(type, () => this.hide(), {passive: true});
@@ -62,6 +68,7 @@ export class Hover {
     clearTimeout(this.timer);
     ++this.rest;
     this.label.hidden = true;
+    this.marks.replaceChildren();
   }
 
   private move(event: PointerEvent): void {
@@ -79,6 +86,9 @@ export class Hover {
     const pick = await this.host.pick(x, y);
     const text = pick && hoverText(pick, shown.scalar, shown.fields);
     if (!text || rest !== this.rest) return;
+    const cell = document.createElementNS(this.marks.namespaceURI, 'path');
+    cell.setAttribute('d', cellPath(pick.places.map((place) => view.project(place))));
+    this.marks.replaceChildren(cell);
     const {label} = this;
     label.textContent = text;
     label.hidden = false;

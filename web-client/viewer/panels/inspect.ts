@@ -10,6 +10,7 @@ import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
+import {cellPath} from './cell_outline';
 import {segments} from './markup';
 import {withUnit} from './panel';
 import {ResultCard} from './result_card';
@@ -162,6 +163,12 @@ export class Inspect {
     const {view} = this.host;
     this.marks.replaceChildren();
     if (!view) return;
+    if (this.tool === 'point')
+      for (const {places} of this.points) {
+        const cell = document.createElementNS(this.marks.namespaceURI, 'path');
+        cell.setAttribute('d', cellPath(places.map((place) => view.project(place))));
+        this.marks.append(cell);
+      }
     const at = this.points.map(({lattice}) => view.project(lattice));
     if (at.length === 2)
       this.marks.append(shape('line', {x1: at[0]!.x, y1: at[0]!.y, x2: at[1]!.x, y2: at[1]!.y}));

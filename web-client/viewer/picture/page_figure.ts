@@ -1,6 +1,7 @@
 // The figure of what the page shows now.
 
 import type {Frame, View} from '../../webgl/view';
+import {find} from '../page/find';
 import {isOnDark} from '../page/ground';
 import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
@@ -16,7 +17,7 @@ export interface FigureHost {
 
 /** The frame in which the figure's mesh is drawn, with the page's legend of now. */
 export function pageFrame(page: Page, host: FigureHost, figure: Figure): Frame {
-  const onDark = figure.ground === 'seen' && isOnDark(page.element);
+  const onDark = figure.ground === 'seen' && isOnDark(find(page.root, '.scene'));
   const {canvas} = viewOf(host);
   return {...frameOf(figure, legendOf(page.root), canvas, host.settings.axes), onDark};
 }
@@ -47,8 +48,8 @@ function looksOf({element}: Page, host: FigureHost): Looks {
   const its = (name: string): string => style.getPropertyValue(name).trim();
   const scale = scaleOf(host.settings, host.mesh.manifest);
   return {
-    ink: its('--ink'),
-    softInk: its('--ink-soft'),
+    ink: its('--scene-ink') || its('--ink'),
+    softInk: its('--scene-ink-soft') || its('--ink-soft'),
     ground: its('--ground'),
     back: style.backgroundImage,
     font: style.fontFamily,

@@ -37,6 +37,7 @@ const kAfterLayers = [
   'rest-edges',
   'axes',
   'length-unit',
+  'ground',
   'quality',
   'projection',
   'camera',
@@ -92,6 +93,8 @@ export interface Settings {
   axes: boolean;
   /** That of coordinates; null: the log may know it. */
   lengthUnit: string | null;
+  /** One of kGrounds, or a colour as RRGGBB; null: that of the page. */
+  ground: string | null;
   /** The time that is shown of series; null: that which opens. */
   time: number | null;
   /** The times that playing begins and ends at; null: all instants of a series play. */
@@ -126,6 +129,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     warpScale: parseNumber(get('warp-scale')),
     restEdges: get('rest-edges') === 'on',
     axes: get('axes') === 'on',
+    ground: parseGround(get('ground')),
     lengthUnit: parseText(get('length-unit'), kMaxUnit),
     time: parseNumber(get('time')),
     timePart: parsePair(get('time-range')),
@@ -144,6 +148,14 @@ function parsePair(text: string | null): [number, number] | null {
   const isPair = low !== undefined && high !== undefined && more === undefined && low < high;
   return isPair ? [low, high] : null;
 }
+
+export const kGrounds = ['light', 'dark', 'white'];
+
+/** A colour as RRGGBB. */
+export const isHexColor = (text: string): boolean => /^[\da-f]{6}$/i.test(text);
+
+const parseGround = (text: string | null): string | null =>
+  text !== null && (kGrounds.includes(text) || isHexColor(text)) ? text : null;
 
 /** Null instead of an empty text. */
 function parseText(text: string | null, max: number): string | null {

@@ -15,7 +15,7 @@ import {fieldKeys} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
 import {hint} from './nearest';
-import {kViewAttributes, type ViewAttribute} from './settings';
+import {isHexColor, kGrounds, kViewAttributes, type ViewAttribute} from './settings';
 import {kNoWarp, warpField} from './warp';
 
 type Name = ViewAttribute | 'transport';
@@ -69,6 +69,11 @@ const kRules: Partial<Record<Name, Rule>> = {
   'warp-scale': [(text) => parseNumbers(text).length === 1, 'a number; 1 is the true size'],
   'rest-edges': oneOf('on', 'off'),
   axes: oneOf('on', 'off'),
+  ground: [
+    (text) => kGrounds.includes(text) || isHexColor(text),
+    `${kGrounds.join(', ')}, or a colour, 3c3c3c`,
+    kGrounds,
+  ],
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
     kLayers
