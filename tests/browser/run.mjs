@@ -23,6 +23,7 @@ import {monkeyChecks} from './monkey_checks.mjs';
 import {movieChecks} from './movie_checks.mjs';
 import {pageChecks} from './page_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
+import {pinChecks} from './pin_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
 import {posterChecks} from './poster_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
@@ -58,7 +59,7 @@ const lists = {
   transport: {...transportChecks, ...movieChecks, ...segmentChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
-  edge: {...edgeChecks, ...warpChecks, ...axesChecks, ...groundChecks},
+  edge: {...edgeChecks, ...warpChecks, ...axesChecks, ...groundChecks, ...pinChecks},
   legend: {...legendChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,

@@ -9,6 +9,7 @@ import {histogramPanel} from './panels/histogram_panel';
 import {kToolMarkup} from './panels/inspect';
 import {levelPanel} from './panels/level_panel';
 import type {PanelKind} from './panels/panel';
+import {pinsPanel} from './panels/pins';
 import {statisticsPanel} from './panels/statistics_panel';
 import {surfacePanel} from './panels/surface_panel';
 import {valuePanels} from './panels/value_panel';
@@ -33,7 +34,7 @@ const kSections: readonly Section[] = [
     title: 'Inside',
     panels: [clipPanel, ...valuePanels(true), volumePanel, ...valuePanels(false)],
   },
-  {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}]},
+  {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}, pinsPanel]},
   {name: 'level', title: 'Level of detail', isFolded: true, panels: [levelPanel]},
   {name: 'view', title: 'View', isFolded: true, panels: [viewPanel, axesPanel, groundPanel]},
   {name: 'file', title: 'File', isFolded: true, panels: [filePanel]},

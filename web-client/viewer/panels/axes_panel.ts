@@ -1,5 +1,5 @@
-// The switch of the box with numbers round the mesh, and the box itself behind the canvas. What
-// draws it is loaded when it is switched on.
+// The switch of the box with numbers round the mesh, and the box itself behind the canvas. The code
+// that draws it is loaded when it is switched on.
 
 import {find} from '../page/find';
 import type {Page} from '../page/page';
@@ -22,7 +22,7 @@ class AxesPanel implements Panel {
   /** Null: it is not wanted, or not loaded yet. */
   private ruler: typeof Ruler | null = null;
   private settings: Settings | null = null;
-  /** What was drawn last, and on which canvas. */
+  /** The last drawing and the size of its canvas, as texts. */
   private drawn = '';
   private size = '';
 

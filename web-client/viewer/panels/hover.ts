@@ -21,8 +21,14 @@ export interface HoverHost {
   readonly shown: {scalar: Scalar; fields: readonly FieldInfo[]} | null;
 }
 
-/** "Velocity, x 1.25", or "No value"; null if the field is not here. */
-export function hoverText(
+/** "Velocity, x 1.25 m/s"; null if the field is not here. */
+export function hoverText(pick: Pick, scalar: Scalar, fields: readonly FieldInfo[]): string | null {
+  const value = valueText(pick, scalar, fields);
+  return value === null ? null : `${scalarName(scalar, fields)} ${value}`;
+}
+
+/** "1.25 m/s", or "no value"; null if the field is not here. */
+export function valueText(
   {fields: values}: Pick,
   scalar: Scalar,
   fields: readonly FieldInfo[],
@@ -38,8 +44,7 @@ export function hoverText(
       : found[component]!;
   const info = fields[scalar.field]!;
   const unit = info.unit === undefined ? '' : `\u00a0${info.unit}`;
-  const text = Number.isNaN(value) ? 'no value' : formatIn(info, value) + unit;
-  return `${scalarName(scalar, fields)} ${text}`;
+  return Number.isNaN(value) ? 'no value' : formatIn(info, value) + unit;
 }
 
 export class Hover {
@@ -56,7 +61,7 @@ export class Hover {
   ) {
     this.label = find(root, '.hover');
     this.marks = find<SVGSVGElement>(root, '.marks').cloneNode() as SVGSVGElement;
-    this.marks.removeAttribute('part');
+    this.marks.setAttribute('part', 'hint');
     find(root, '.layer').append(this.marks);
     root.addEventListener('pointermove', (event) => this.move(event as PointerEvent));
     for (const type of ['pointerdown', 'wheel', 'keydown', 'pointerout'])

@@ -1,5 +1,5 @@
-// The instants of the shown series that play, one after the other, each wholly on the screen. The attribute
-// `time` stays as it is, so that neither the address nor the steps of undo change.
+// The instants of the shown series that play, one after the other, each wholly on the screen. The
+// attribute `time` stays as it is, so that neither the address nor the steps of undo change.
 
 import type {FieldInfo} from '../../core/protocol/fields';
 import {instantsOf, isSameTime} from '../../core/protocol/series';

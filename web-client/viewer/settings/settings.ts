@@ -38,6 +38,7 @@ const kAfterLayers = [
   'axes',
   'length-unit',
   'ground',
+  'points',
   'quality',
   'projection',
   'camera',

@@ -15,6 +15,7 @@ import {fieldKeys} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
 import {hint} from './nearest';
+import {kMaxPoints, parsePoints} from './points';
 import {isHexColor, kGrounds, kViewAttributes, type ViewAttribute} from './settings';
 import {kNoWarp, warpField} from './warp';
 
@@ -80,6 +81,10 @@ const kRules: Partial<Record<Name, Rule>> = {
       .flatMap((layer) => [layer, ...(layer.more ?? [])])
       .map((its): [string, Rule] => [its.name, [(text) => its.isRight(text), its.expected]]),
   ),
+  points: [
+    (text) => parsePoints(text) !== null,
+    `up to ${kMaxPoints} places of three coordinates: 1,2,0.5 3,2,0`,
+  ],
   quality: [
     (text) => parseLimit(text) !== null,
     'full, 1%, error:0.01, cells:20000 or bytes:100000',
