@@ -119,7 +119,7 @@ export class Inspector {
     });
   }
 
-  /** What lies at a lattice place of the mesh at rest, where it is drawn; null without a mesh. */
+  /** The cell at a lattice place of the mesh at rest, and where that place is drawn. Null: no mesh. */
   at(place: Vector, {warp}: Display): Pick | null {
     const rest = meshArrays(this.assembler);
     const mesh = meshArrays(this.assembler, warp);
