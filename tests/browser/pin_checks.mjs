@@ -2,6 +2,8 @@
 
 import assert from 'node:assert/strict';
 import {kCoarsePhone, kDesktop} from './browser.mjs';
+import {serveMesh} from './programs.mjs';
+import {linearBox} from './volume_checks.mjs';
 
 async function opened({server, browser}, query, device) {
   const viewer = await browser.open(`${server.url}?${query}`, device);
@@ -89,4 +91,30 @@ async function keepsSeveralPoints(context) {
   }
 }
 
-export const pinChecks = {pinsKeepSeveralPoints: keepsSeveralPoints};
+/** A point belongs to the mesh at rest: a warp moves it, and not its value. */
+async function movesPointsWithAWarp(context) {
+  const Displacement = (x, y, z) => [0.4 * z, 0, 0];
+  const Height = (x, y, z) => z;
+  await serveMesh(context, 'pinned', linearBox(3, {Displacement, Height}));
+  const viewer = await opened(
+    context,
+    'mesh=pinned&field=Height&warp=Displacement&warp-scale=1&points=0.5,0,0.5',
+    kDesktop,
+  );
+  const [pin] = await pinsOf(viewer);
+  const moved = await viewer.page.evaluate(() => {
+    const {meshView, viewing} = window.qtetViewer;
+    const {origin, step} = viewing.mesh.manifest.lattice;
+    return meshView.project([0.7, 0, 0.5].map((x, axis) => (x - origin[axis]) / step));
+  });
+  const away = Math.hypot(pin.at[0] - moved.x, pin.at[1] - moved.y);
+  assert.ok(away < 3, `the point lies ${away} pixels from where it is moved`);
+  assert.ok(Math.abs(Number(pin.text) - 0.5) < 0.01, pin.text);
+  await viewer.screenshot('pins-warped');
+  assert.deepEqual(viewer.problems, []);
+}
+
+export const pinChecks = {
+  pinsKeepSeveralPoints: keepsSeveralPoints,
+  pinsMoveWithAWarp: movesPointsWithAWarp,
+};

@@ -119,7 +119,7 @@ export class Inspector {
     });
   }
 
-  /** The cell at a lattice place of the mesh at rest, and where that place is drawn. Null: no mesh. */
+  /** The cell at a lattice place of the mesh at rest, and where that is drawn; null: no mesh. */
   at(place: Vector, {warp}: Display): Pick | null {
     const rest = meshArrays(this.assembler);
     const mesh = meshArrays(this.assembler, warp);

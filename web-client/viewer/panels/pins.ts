@@ -1,5 +1,5 @@
-// Points that are kept. Each is a dot on the mesh, and beside it a small card of the same colour with
-// the value of the shown field. They follow the mesh, its time, and the camera.
+// Points that are kept. Each is a dot on the mesh, and beside it a small card of the same colour
+// with the value of the shown field. They follow the mesh, its time, and the camera.
 
 import type {Vector} from '../../core/protocol/geometry';
 import {isEqual} from '../../core/protocol/equal';
