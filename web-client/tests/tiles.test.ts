@@ -41,7 +41,7 @@ function meshCamera(): MeshCamera {
   const canvas = new WorkerCanvas({} as OffscreenCanvas);
   canvas.resize({width: 1280, height: 800, pixelRatio: 1});
   const camera = new MeshCamera(canvas, () => undefined);
-  camera.setInsets(kInsets);
+  camera.setRoom({insets: kInsets});
   camera.resize(1280, 800);
   camera.growTo({bounds: [0, 0, 0, 200, 100, 50]});
   return camera;
@@ -119,8 +119,8 @@ test.each([false, true])('aCoveredPictureGoesToTheFreeArea (moved: %s)', (isMove
     return transformed(camera.sightOf(its).toCanvas, [200, 100, 0]).slice(0, 2);
   };
   const before = seenBy(camera.orbit.lens).map((share) => expect.closeTo(share) as number);
-  expect(camera.setCovered(kCovered)).toBe(true);
-  expect(camera.setCovered({...kCovered})).toBe(false);
+  expect(camera.setRoom({covered: kCovered})).toBe(true);
+  expect(camera.setRoom({covered: {...kCovered}})).toBe(false);
   camera.resize(1280, 800);
   const {lens, target} = camera.orbit;
   const [x, y] = transformed(product(lens.toCube, lens.toEye), target);
@@ -129,14 +129,14 @@ test.each([false, true])('aCoveredPictureGoesToTheFreeArea (moved: %s)', (isMove
   expect(camera.orbit.state).toEqual(state);
   expect(corners(camera, kWhole)).toEqual(saved);
   expect(seenBy(camera.uncovered())).toEqual(before);
-  expect(camera.setCovered(null)).toBe(true);
+  expect(camera.setRoom({covered: null})).toBe(true);
   camera.resize(1280, 800);
   expect(seenBy(lens)).toEqual(before);
 });
 
 test('aMoveInACoveredPictureFollowsThePointer', () => {
   const camera = meshCamera();
-  camera.setCovered(kCovered);
+  camera.setRoom({covered: kCovered});
   camera.resize(1280, 800);
   const {lens, target} = camera.orbit;
   const placeOf = (): Vector => transformed(product(lens.toCube, lens.toEye), target);

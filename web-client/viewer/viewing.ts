@@ -10,6 +10,7 @@ import type {Direction} from '../webgl/directions';
 import type {View} from '../webgl/view';
 import {Graphics, type ViewStart} from './graphics';
 import {CameraWatch} from './page/camera_watch';
+import {find} from './page/find';
 import {isOnDark, watchGround} from './page/ground';
 import {Hurry} from './page/hurry';
 import {Notices} from './page/notices';
@@ -135,7 +136,7 @@ export class Viewing implements LaterHost {
     this.later?.panels.update(this.settings, mesh);
     this.later?.time.update(this.settings, mesh);
     this.startPlaying();
-    view?.setLook({...this.settings, onDark: isOnDark(page.element)});
+    view?.setLook({...this.settings, onDark: isOnDark(find(page.root, '.scene'))});
     view?.setParallel(this.settings.parallel);
     view?.setPlaying(this.playsEveryMs);
     if (!this.isPlaying) this.hurry.end();

@@ -2,9 +2,9 @@
 
 const kDarkScheme = '(prefers-color-scheme: dark)';
 /** The mean channel of a middle grey. */
-const kMiddle = 128;
+export const kMiddle = 128;
 
-/** Light ink stands on a dark ground. */
+/** Light ink stands on a dark ground. The canvas has that of its own ground. */
 export function isOnDark(element: Element): boolean {
   const [red = 0, green = 0, blue = 0] =
     getComputedStyle(element)

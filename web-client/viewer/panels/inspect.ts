@@ -10,6 +10,8 @@ import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
+import {cellPath} from './cell_outline';
+import {hoverText} from './hover';
 import {segments} from './markup';
 import {withUnit} from './panel';
 import {ResultCard} from './result_card';
@@ -42,6 +44,10 @@ export interface InspectHost extends OverTimeHost {
   readonly view: View | null;
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
+  /** Another point may stay. */
+  readonly hasRoom: boolean;
+  /** A place of the mesh at rest, in its own coordinates. */
+  keep(place: Vector): void;
 }
 
 export class Inspect {
@@ -60,6 +66,7 @@ export class Inspect {
     this.card = new ResultCard(root, (text) => host.announce(text), {
       close: () => this.clear(),
       saveTable: () => void this.saveTable(),
+      keep: () => this.keep(),
       overTime: () => void this.overTime.begin(materialPlace(this.points[0]!)),
       exact: () => this.overTime.askExact(),
     });
@@ -162,6 +169,12 @@ export class Inspect {
     const {view} = this.host;
     this.marks.replaceChildren();
     if (!view) return;
+    if (this.tool === 'point')
+      for (const {places} of this.points) {
+        const cell = document.createElementNS(this.marks.namespaceURI, 'path');
+        cell.setAttribute('d', cellPath(places.map((place) => view.project(place))));
+        this.marks.append(cell);
+      }
     const at = this.points.map(({lattice}) => view.project(lattice));
     if (at.length === 2)
       this.marks.append(shape('line', {x1: at[0]!.x, y1: at[0]!.y, x2: at[1]!.x, y2: at[1]!.y}));
@@ -206,12 +219,23 @@ export class Inspect {
       if (values.length > 1)
         rows.push([withUnit(`${info.name}, magnitude`, info), format(Math.hypot(...values))]);
     }
-    rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
+    rows.push(['Cell', formatCount(pick.cell)]);
+    rows.push(['Its corners', pick.corners.map(formatCount).join(', ')]);
     const {isOpen} = this.overTime;
-    this.card.show(`Cell ${formatCount(pick.cell)}`, rows, isOpen);
+    const {color} = this.host;
+    this.card.show((color && hoverText(pick, color, fields)) ?? 'Point', rows, isOpen);
+    this.card.offerKeep(this.host.hasRoom);
     this.card.offerOverTime(this.offersOverTime);
     this.placeCard();
     if (isOpen) void this.overTime.begin(materialPlace(pick));
+  }
+
+  /** It gets a card of its own. */
+  private keep(): void {
+    const [pick] = this.points;
+    if (!pick) return;
+    this.clear();
+    this.host.keep(pick.rest?.position ?? pick.position);
   }
 
   private get offersOverTime(): boolean {

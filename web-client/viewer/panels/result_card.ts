@@ -14,6 +14,8 @@ export interface CardActions {
   close(): void;
   /** Saves the plot's values. */
   saveTable(): void;
+  /** The point stays. */
+  keep(): void;
   /** Plots the values over time. */
   overTime(): void;
   /** Gets those exactly. */
@@ -38,6 +40,7 @@ export class ResultCard {
     this.card = find(root, '.result');
     onClick(root, '.copy-result', () => void this.copy());
     onClick(root, '.save-table', () => actions.saveTable());
+    onClick(root, '.keep-point', () => actions.keep());
     onClick(root, '.over-time', () => actions.overTime());
     onClick(this.card, '.exact', () => actions.exact());
     onClick(root, '.close-result', () => actions.close());
@@ -52,6 +55,7 @@ export class ResultCard {
   show(title: string, rows: [string, string][], hasPlot: boolean): void {
     this.endPlot();
     this.offerOverTime(false);
+    this.offerKeep(false);
     this.card.hidden = false;
     find(this.card, '.plot').hidden = !hasPlot;
     this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
@@ -72,6 +76,11 @@ export class ResultCard {
   /** Offers the plot over time, or not. */
   offerOverTime(isOffered: boolean): void {
     find(this.card, '.over-time').hidden = !isOffered;
+  }
+
+  /** Offers to keep the point, or not. */
+  offerKeep(isOffered: boolean): void {
+    find(this.card, '.keep-point').hidden = !isOffered;
   }
 
   /** Offers the exact values, or not. */

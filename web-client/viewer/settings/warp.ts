@@ -38,7 +38,7 @@ export interface Warpable {
 const isVectors = ({association, components}: FieldInfo): boolean =>
   association === 'point' && components === 3;
 
-const isDisplacement = ({name, instant}: FieldInfo): boolean =>
+export const isDisplacement = ({name, instant}: FieldInfo): boolean =>
   kDisplacement.test(instant?.series ?? name);
 
 /** Among keys of fields that of displacements, which may move the first picture; null: none. */
