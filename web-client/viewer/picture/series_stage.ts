@@ -61,7 +61,7 @@ export class SeriesStage implements Stage {
   }
 
   /** Those of the part that plays. */
-  private played(instants: number[], fields: readonly FieldInfo[]): number[] {
+  private played(instants: readonly number[], fields: readonly FieldInfo[]): readonly number[] {
     const {mesh, settings} = this.host;
     if (!settings.timePart) return instants;
     const [first, last] = partOf(mesh.times, settings.timePart).map((at) => mesh.times[at]!.time);
