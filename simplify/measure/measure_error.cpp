@@ -228,7 +228,7 @@ class LevelBounds {
     return isAbove(size.tetrahedra, rule.maxCells) || isAbove(bytes, rule.maxBytes) ||
            (isNear(error, share * rule.error) &&
             (isAbove(bytes, rule.maxFieldBytes) || isAbove(size.tetrahedra, mostForFields(rule)) ||
-             areFieldsNear(error, share * rule.fieldError)) &&
+             areFieldsNear(error, share * 2 * rule.error)) &&
             std::max(error.volumeLost, error.volumeGained) <= share * 2 * rule.error &&
             level.labelVolumes <= share * rule.labelError &&
             std::ranges::all_of(options_.labels, [&](std::uint32_t label) {

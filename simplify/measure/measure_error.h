@@ -43,18 +43,16 @@ inline constexpr double kBaseError = 0.01;
 inline constexpr double kMaxBaseLabelError = 0.1;
 /// Bytes of a base mesh at most, which a line of 1 Mbit/s brings in half a second.
 inline constexpr std::size_t kMaxBaseBytes = 64'000;
-/// The rms of a field of floats, over its range: four of 256 colours and a bit.
-inline constexpr double kMaxBaseFieldError = 0.02;
-/// Bytes that a base mesh is worth for that. A field of noise is never near.
+/// Bytes of a base mesh at most that is larger for its fields alone. Noise is never near.
 inline constexpr std::size_t kMaxBaseFieldBytes = 24'000;
-/// The share of the cells that it is worth: more would leave nothing to refine.
+/// The same as a share of the cells: more would leave little to refine.
 inline constexpr double kMaxBaseFieldShare = 0.25;
 
 /// Where the base mesh is when its size is not given: the coarsest level of which it and all finer
 /// ones are near the original.
 struct BaseRule {
   /// The largest LevelError::boundaryDistance(). Twice that is the bound of the volume lost, and of
-  /// the volume gained.
+  /// the volume gained. It is that of the rms of each field of floats too, at any instant.
   double error = kBaseError;
   /// A larger level is no base mesh, however far from the original the coarser ones are.
   std::size_t maxCells = std::numeric_limits<std::size_t>::max();
@@ -62,9 +60,7 @@ struct BaseRule {
   /// The largest share of the volume that has another label (FieldError), and the largest
   /// LabelVolumes::worst().
   double labelError = kMaxBaseLabelError;
-  /// The largest rms of any field of floats, of a series at any instant. For that alone no level
-  /// above these limits is the base mesh. The share is of the finest level's cells.
-  double fieldError = kMaxBaseFieldError;
+  /// A level above these is no base mesh for fields alone. The share is of the finest one's cells.
   std::size_t maxFieldBytes = kMaxBaseFieldBytes;
   double maxFieldShare = kMaxBaseFieldShare;
 };

@@ -484,10 +484,10 @@ TEST(MeasureLevels, aRuleChoosesTheCoarsestLevelThatIsNear) {
       simplify(gridMesh(7, 2, [](int i, int j, int) { return i != 3 || j < 2; }), fusion).value();
   const auto errors = measured(history);
   const auto isNear = [&](double error) {
-    return [error](const LevelError& level) {
+    return [error, least = errors.back()](const LevelError& level) {
       return level.boundaryDistance() <= error && level.volumeLost <= 2 * error &&
-             std::ranges::all_of(level.fields, [](const FieldError& field) {
-               return field.rms <= kMaxBaseFieldError;
+             std::ranges::equal(level.fields, least.fields, [&](const auto& its, const auto& own) {
+               return its.rms <= std::max(2 * error, own.rms);
              });
     };
   };
@@ -506,26 +506,23 @@ TEST(MeasureLevels, aRuleHeedsFieldsUntilTheBaseCostsTooMuch) {
   const auto rms = [](const LevelError& level) {
     return std::ranges::max(level.fields, {}, &FieldError::rms).rms;
   };
-  const double bound = rms(errors[errors.size() / 2]);
-  const auto first = std::ranges::find_if(errors.rbegin(), errors.rend(),
-                                          [&](const auto& level) { return rms(level) > bound; });
+  const double error = rms(errors[errors.size() / 2]) / 2;
+  const auto first = std::ranges::find_if(
+      errors.rbegin(), errors.rend(), [&](const auto& level) { return rms(level) > 2 * error; });
   ASSERT_TRUE(first != errors.rend());
-  BaseRule rule{.error = 1, .fieldError = bound, .maxFieldShare = 1};
+  BaseRule rule{.error = error, .maxFieldShare = 1};
   const Base near = baseBy(history, rule);
   EXPECT_TRUE(same(near.error, *std::prev(first)));
-  const std::size_t all = testing::meshOfHistory(history, history.levels).tetrahedra.size();
-  const std::size_t cells =
-      baseBy(history, {.error = 1, .fieldError = 0, .maxFieldShare = 0.9}).cells;
-  EXPECT_LE(cells, all * 9 / 10);
-  EXPECT_GT(cells, all * 8 / 10) << "a level's growth below its limit";
-  rule.maxFieldBytes = 0;
-  EXPECT_EQ(baseBy(history, rule).cells, baseBy(history, {.error = 1, .fieldError = 1}).cells);
-  EXPECT_LT(baseBy(history, rule).cells, near.cells);
 
   FusionHistory ofIntegers = history;
   for (FieldInfo& field : ofIntegers.fields) field.type = "int32";
-  rule = {.error = 1, .fieldError = bound, .maxFieldShare = 1};
   EXPECT_LT(baseBy(ofIntegers, rule).cells, near.cells) << "they may be labels";
+  rule.maxFieldBytes = 0;
+  EXPECT_LT(baseBy(history, rule).cells, near.cells);
+  const std::size_t all = testing::meshOfHistory(history, history.levels).tetrahedra.size(),
+                    limited = baseBy(history, {.error = error, .maxFieldShare = 0.9}).cells;
+  EXPECT_LE(limited, all * 9 / 10);
+  EXPECT_GT(limited, near.cells);
 }
 
 TEST(MeasureLevels, aRuleTakesNoLevelAboveItsLimits) {
