@@ -23,7 +23,8 @@ struct InstantName {
   double time;
 };
 
-/// Converts from and to text, and compares as text does.
+/// Converts from and to text, and compares as text does. A name that was moved from is good for
+/// nothing but to be given another one.
 class FieldName {
  public:
   FieldName() = default;

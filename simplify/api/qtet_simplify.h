@@ -133,9 +133,9 @@ typedef struct {
   /* Since 0.3. The base mesh's tetrahedra, instead of targetRatio; 0: as that says */
   uint32_t baseCells;
   /* Since 0.3. The base mesh is the coarsest level whose boundary is within this fraction of the
-   * diagonal, and whose volume and fields are within twice this fraction, fields up to 24 kB or a
-   * quarter of the tetrahedra. NaN: 0.01, and 30,000 tetrahedra or 64 kB at most, where no other
-   * member chooses the base mesh */
+   * diagonal. Its volume is within twice this fraction. Since 0.4 fields of floats are, too, as far
+   * as 24 kB and a quarter of the tetrahedra allow. NaN: 0.01, and 30,000 tetrahedra or 64 kB at
+   * most, where no other member chooses the base mesh */
   double baseError;
   /* Since 0.4. 1: each series NAME@TIME gives the fields NAME_average, NAME_minimum, NAME_maximum
    * and NAME_stddev, its statistics over all instants; 0 */

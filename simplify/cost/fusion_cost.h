@@ -33,8 +33,8 @@ struct PreyQuadric {
 /// it.
 inline constexpr double kWallLayer = 3e-5;
 
-/// The factor on the volume that a fusion adds or takes, beside the boundary's distance. It holds
-/// for a star as large as the diagonal, and falls with the star's size.
+/// The factor on the volume that a fusion adds or takes, beside the boundary's distance. Smaller
+/// stars weigh less, by the root of their area over the diagonal's square.
 inline constexpr double kVolumeFactor = 600;
 
 class FusionCost {

@@ -15,7 +15,7 @@
 
 namespace qtet {
 
-/// How the solid's volume changes with the prey at d, from its first vertex: slope . d + change.
+/// The solid gains slope . d + change of volume if the prey goes to d, seen from its first vertex.
 struct VolumeChange {
   Vector3 slope{};
   double change = 0;
@@ -42,6 +42,7 @@ class BoundaryEnvelope {
   /// than allowed. It presumes that nothing of it does yet.
   [[nodiscard]] bool staysNear(const AllowedSpace& allowed, const LatticePoint& p,
                                DistanceCells& known) const;
+  /// REQUIRES: gather.
   [[nodiscard]] VolumeChange volumeChange() const;
   /// Whether with the prey at p a triangle turns further than it may.
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;

@@ -66,8 +66,8 @@ struct BaseRule {
 };
 
 /// The bytes that a base mesh takes in a log, to some 20 % (measured on nine meshes with fields of
-/// 12 bits). `components` are those of point fields that a viewer fetches first: of a series one
-/// instant's.
+/// 12 bits). `components` are those of point fields that a viewer fetches first. A series counts
+/// with one instant.
 [[nodiscard]] std::size_t baseBytesOf(std::size_t vertices, std::size_t components);
 
 struct MeasureOptions {

@@ -523,7 +523,7 @@ def document(args, facts, results, bases):
     ]
     lines += [
         "The base mesh by the tool's defaults, which a viewer shows first. Its errors are the known"
-        " ones of the log; the distance is a bound. Of a label the share of the volume counts that"
+        " ones of the log; the distance is a bound. A label's error is the share of the volume that"
         " has another one.",
         "",
         *base_meshes(bases),

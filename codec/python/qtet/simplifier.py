@@ -427,7 +427,8 @@ def simplify(
     source      what the log calls its input
     target_ratio          of the base mesh's tetrahedra to the input's; without, base_error chooses
     base_cells            tetrahedra of the base mesh, instead of a ratio
-    base_error            how far the base mesh's boundary may be, over the diagonal; 0.01
+    base_error            how far the base mesh's boundary may be, over the diagonal; 0.01. Volume
+                          and fields may be twice that
     boundary_weight       what the boundary's place counts beside the fields; chosen by the mesh
     shape_weight          what badly shaped cells cost; 0.5
     envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0.005

@@ -298,6 +298,7 @@ TEST(MeasureLevels, noPlaceOfALevelOrOfTheOriginalIsFurtherThanItsMaximum) {
           sampledMaximum(*history, history->cells, mesh.boundary(), mesh.originalTree());
       EXPECT_GE(errors[level].toLevel.max * mesh.diagonal(), toLevel - 1e-6) << level;
       EXPECT_GE(errors[level].toOriginal.max * mesh.diagonal(), toOriginal - 1e-6) << level;
+      // a triangle's search ends after 400 places
       EXPECT_LE(errors[level].toLevel.max * mesh.diagonal(), 1.2 * toLevel + 1e-6) << level;
       EXPECT_LE(errors[level].toOriginal.max * mesh.diagonal(), 1.2 * toOriginal + 1e-6) << level;
       if (level > 0) mesh.coarsen(), mesh.fitTree();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/simplify/pipeline/field_meshes.h"
 
 namespace qtet {
@@ -33,6 +35,21 @@ TEST(FusionChoice, whatAViewerOpensWithCountsDouble) {
   EXPECT_EQ(weightsBy(options, 3), (Weights{1, 1, 1, 1})) << "a field of cells has no weight";
   options.fieldWeights = {{"Swirl", 1}};
   EXPECT_EQ(weightsBy(options, 0), (Weights{1, 1, 1, 1})) << "where somebody says";
+}
+
+TEST(FusionChoice, thePipelineAsksForWhatTheLogOpensWith) {
+  TetMesh mesh = boxSample();
+  mesh.fields.insert(mesh.fields.begin(), mesh.fields[0]);
+  std::ranges::fill(mesh.fields[0].values, 0);
+  mesh.fields[0].name = "Flat", mesh.fields[0].values[0] = 1;
+  PipelineOptions options;
+  const auto madeBy = [&] { return simplifyToLog(TetMesh(mesh), options).value(); };
+  const PipelineOutput unasked = madeBy();
+  ASSERT_TRUE(unasked.report.manifest.opening && unasked.report.manifest.opening->field == 1);
+  options.fieldWeights = {{"Scalar", 2}};
+  EXPECT_EQ(madeBy().log.head, unasked.log.head);
+  options.fieldWeights = {{"Scalar", 1}};
+  EXPECT_NE(madeBy().log.head, unasked.log.head);
 }
 
 }  // namespace
