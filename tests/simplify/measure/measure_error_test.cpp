@@ -518,12 +518,17 @@ TEST(MeasureLevels, aRuleHeedsFieldsUntilTheBaseCostsTooMuch) {
   FusionHistory ofIntegers = history;
   for (FieldInfo& field : ofIntegers.fields) field.type = "int32";
   EXPECT_LT(baseBy(ofIntegers, rule).cells, near.cells) << "they may be labels";
-  rule.maxFieldBytes = 0;
-  EXPECT_LT(baseBy(history, rule).cells, near.cells);
-  const std::size_t all = testing::meshOfHistory(history, history.levels).tetrahedra.size(),
-                    limited = baseBy(history, {.error = error, .maxFieldShare = 0.9}).cells;
-  EXPECT_LE(limited, all * 9 / 10);
-  EXPECT_GT(limited, near.cells);
+  const std::size_t without =
+      baseBy(history, {.error = error, .maxFieldBytes = 0, .maxFieldShare = 1}).cells;
+  EXPECT_LT(without, near.cells);
+
+  const double all = static_cast<double>(
+                   testing::meshOfHistory(history, history.levels).tetrahedra.size()),
+               most = static_cast<double>(without + near.cells) / 2;
+  rule.maxFieldShare = most / all;
+  const std::size_t limited = baseBy(history, rule).cells;
+  EXPECT_LE(static_cast<double>(limited), most);
+  EXPECT_GT(limited, without);
 }
 
 TEST(MeasureLevels, aRuleTakesNoLevelAboveItsLimits) {
