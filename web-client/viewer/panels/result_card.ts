@@ -58,6 +58,12 @@ export class ResultCard {
     this.offerKeep(false);
     this.card.hidden = false;
     find(this.card, '.plot').hidden = !hasPlot;
+    this.write(title, rows);
+    this.announce([title, ...rows.map((row) => row.join(' '))].join('. '));
+  }
+
+  /** Its texts, while a plot stays. */
+  write(title: string, rows: [string, string][]): void {
     this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
     find(this.card, 'h2').textContent = title;
     find(this.card, 'dl').replaceChildren(
@@ -70,7 +76,6 @@ export class ResultCard {
         return row;
       }),
     );
-    this.announce([title, ...rows.map((row) => row.join(' '))].join('. '));
   }
 
   /** Offers the plot over time, or not. */
