@@ -229,7 +229,7 @@ export class Inspect {
 
   private askAgain(): Promise<Pick | null> | null {
     const {client} = this.host;
-    return this.asked && client && client.at(this.asked);
+    return this.asked ? (client?.at(this.asked) ?? null) : null;
   }
 
   private takeAgain(pick: Pick | null): void {

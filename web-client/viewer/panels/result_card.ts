@@ -64,8 +64,11 @@ export class ResultCard {
 
   /** Its texts, while a plot stays. */
   write(title: string, rows: [string, string][]): void {
-    this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
-    find(this.card, 'h2').textContent = title;
+    const heading = find(this.card, 'h2');
+    const text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
+    if (text === this.text && title === heading.textContent) return; // a selection stays
+    this.text = text;
+    heading.textContent = title;
     find(this.card, 'dl').replaceChildren(
       ...rows.map(([name, value]) => {
         const row = document.createElement('div');
