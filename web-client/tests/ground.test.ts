@@ -1,33 +1,33 @@
 import {expect, test} from 'vitest';
-import {showGround} from '../viewer/page/ground';
-import {groundStyle} from '../viewer/settings/ground';
+import {showColor} from '../viewer/panels/ground_panel';
 
-/** As an element's style. */
+/** As an element's style: an empty value removes the property. */
 class Properties extends Map<string, string> {
   setProperty(name: string, value: string): void {
-    this.set(name, value);
-  }
-  removeProperty(name: string): void {
-    this.delete(name);
+    if (value === '') this.delete(name);
+    else this.set(name, value);
   }
 }
 
-test('everyGroundHasInkThatIsReadOnIt', () => {
-  const isLight = (ground: string): boolean => groundStyle(ground)['scene-ink'] === '#e9eef5';
-  for (const dark of ['dark', '000000', '7f7f7f']) expect(isLight(dark), dark).toBe(true);
-  for (const light of ['light', 'white', '808080', 'ffffff']) expect(isLight(light)).toBe(false);
+const shownOn = (style: Properties, color: string | null): Properties => {
+  showColor({style} as unknown as HTMLElement, color);
+  return style;
+};
+
+test('everyColourHasInkThatIsReadOnIt', () => {
+  const isLight = (color: string): boolean =>
+    shownOn(new Properties(), color).get('--scene-ink') === '#e9eef5';
+  for (const dark of ['000000', '7f7f7f', '0000ff']) expect(isLight(dark), dark).toBe(true);
+  for (const light of ['808080', 'ffffff', 'ffff00']) expect(isLight(light), light).toBe(false);
 });
 
 test('thePagesOwnPropertiesStay', () => {
-  const style = new Properties([
+  const page = [
     ['--back', 'red'],
     ['--ground', 'blue'],
-  ]);
-  const page = new Map(style);
-  const element = {style} as unknown as HTMLElement;
-  showGround(element, '3c3c3c');
-  expect(style.get('--own-ground')).toBe('#3c3c3c');
+  ] as const;
+  const style = new Properties(page);
+  expect(shownOn(style, '3c3c3c').get('--own-ground')).toBe('#3c3c3c');
   expect(style.get('--back')).toBe('red');
-  showGround(element, null);
-  expect(new Map(style)).toEqual(page);
+  expect([...shownOn(style, null)]).toEqual(page);
 });

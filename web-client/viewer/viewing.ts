@@ -11,7 +11,7 @@ import type {View} from '../webgl/view';
 import {Graphics, type ViewStart} from './graphics';
 import {CameraWatch} from './page/camera_watch';
 import {find} from './page/find';
-import {groundColor, isOnDark, showGround, watchGround} from './page/ground';
+import {isOnDark, watchGround} from './page/ground';
 import {Hurry} from './page/hurry';
 import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
@@ -132,7 +132,6 @@ export class Viewing implements LaterHost {
     this.settings = settingsFor(this.mesh, (name) => page.read(name));
     this.stream.follow();
     const {mesh} = this;
-    showGround(page.element, this.settings.ground);
     this.later?.tellWrongParts();
     this.later?.panels.update(this.settings, mesh);
     this.later?.time.update(this.settings, mesh);
@@ -166,7 +165,8 @@ export class Viewing implements LaterHost {
   // ---- ActionsHost, PanelsHost
 
   async picture(): Promise<Blob | null> {
-    return this.view?.picture(groundColor(this.page.element)) ?? null;
+    const ground = getComputedStyle(this.page.element).getPropertyValue('--ground-now');
+    return this.view?.picture(ground) ?? null;
   }
 
   async movie(options: MovieOptions): Promise<Blob> {

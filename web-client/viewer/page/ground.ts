@@ -1,22 +1,9 @@
 // The ground that the canvas lies on: the page's own style decides, or the attribute `ground`.
 
-import {groundStyle, kMiddle} from '../settings/ground';
-
 const kDarkScheme = '(prefers-color-scheme: dark)';
 
-/** Null: that of the page. The cards stay as the page has them. */
-export function showGround({style}: HTMLElement, ground: string | null): void {
-  for (const [name, value] of Object.entries(groundStyle(ground)))
-    if (value === undefined) style.removeProperty(`--${name}`);
-    else style.setProperty(`--${name}`, value);
-}
-
-/** One colour for pictures. */
-export function groundColor(element: Element): string {
-  const style = getComputedStyle(element);
-  const its = (name: string): string => style.getPropertyValue(name).trim();
-  return its('--own-ground') || its('--ground');
-}
+/** The mean channel of a middle grey. */
+export const kMiddle = 128;
 
 /** Light ink stands on a dark ground. The canvas has the ink of its own ground. */
 export function isOnDark(element: Element): boolean {

@@ -2,7 +2,7 @@
 
 import type {Frame, View} from '../../webgl/view';
 import {find} from '../page/find';
-import {groundColor, isOnDark} from '../page/ground';
+import {isOnDark} from '../page/ground';
 import type {Page} from '../page/page';
 import type {ShownMesh} from '../page/shown_mesh';
 import {scaleOf} from '../settings/length_unit';
@@ -50,7 +50,7 @@ function looksOf({element}: Page, host: FigureHost): Looks {
   return {
     ink: its('--scene-ink') || its('--ink'),
     softInk: its('--scene-ink-soft') || its('--ink-soft'),
-    ground: groundColor(element),
+    ground: its('--ground-now'),
     back: style.backgroundImage,
     font: style.fontFamily,
     axes,
