@@ -13,7 +13,7 @@ const kTitles = [
   ...kGrounds.map((name) => [name, name[0]!.toUpperCase() + name.slice(1)]),
   ['own', 'Own'],
 ];
-/** Of texts, and of softer ones (style.css has the same). */
+/** For texts, and for softer ones (style.css has the same). */
 const kInks = {light: ['#16202c', '#556273'], dark: ['#e9eef5', '#9aa8ba']} as const;
 const kFirstOwn = '808080';
 

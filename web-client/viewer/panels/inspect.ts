@@ -58,7 +58,7 @@ export class Inspect {
   private readonly card: ResultCard;
   private readonly overTime: OverTime;
   private readonly marks: SVGSVGElement;
-  /** What lies now where a point was. */
+  /** Asks which cell and values a point has now. */
   private readonly question = new RepeatedQuestion(
     () => this.askAgain(),
     (pick) => this.takeAgain(pick),
