@@ -1,7 +1,9 @@
 // The ground behind the mesh, and the cell that is pointed at.
 
 import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
 import {kCoarsePhone, kDesktop} from './browser.mjs';
+import {readPng} from './png.mjs';
 
 async function opened({server, browser}, query, device) {
   const viewer = await browser.open(`${server.url}?${query}`, device);
@@ -65,6 +67,37 @@ async function choosesAGround(context) {
   assert.match(await viewer.text('.notice p'), /ground="drak" is not understood.*dark/);
 }
 
+/** A chosen ground is there with the first picture, and in saved ones. The page's own stays. */
+async function savesItsGround(context) {
+  const viewer = await opened(context, 'mesh=box&ground=204060', kDesktop);
+  const {page} = viewer;
+  const corner = await page.evaluate(async () => {
+    const picture = await createImageBitmap(await window.qtetViewer.picture());
+    const canvas = new OffscreenCanvas(1, 1).getContext('2d');
+    canvas.drawImage(picture, 0, 0);
+    return [...canvas.getImageData(0, 0, 1, 1).data];
+  });
+  assert.deepEqual(corner, [0x20, 0x40, 0x60, 255]);
+  await page.getByRole('button', {name: 'Save picture'}).click();
+  const dialog = page.getByRole('dialog', {name: 'Save picture'});
+  await dialog.getByText('As seen', {exact: true}).click();
+  const saved = page.waitForEvent('download');
+  await dialog.getByRole('button', {name: 'Save', exact: true}).click();
+  const {at} = readPng(readFileSync(await (await saved).path()));
+  assert.deepEqual([...at(1, 1)].slice(0, 3), [0x20, 0x40, 0x60]);
+  await page.keyboard.press('Escape');
+  const back = await page.evaluate(() => {
+    const {style} = window.qtetViewer;
+    style.setProperty('--back', 'rgb(1, 2, 3)');
+    window.qtetViewer.setAttribute('ground', 'white');
+    const own = getComputedStyle(window.qtetViewer).backgroundColor;
+    window.qtetViewer.removeAttribute('ground');
+    return [own, getComputedStyle(window.qtetViewer).backgroundColor];
+  });
+  assert.deepEqual(back, ['rgb(255, 255, 255)', 'rgb(1, 2, 3)']);
+  assert.deepEqual(viewer.problems, []);
+}
+
 /** The cell under a pointer that rests has an outline, and that of a card keeps one. */
 async function outlinesTheCell(context) {
   const viewer = await opened(context, 'mesh=box&clip=none');
@@ -105,5 +138,6 @@ async function outlinesTheCell(context) {
 
 export const groundChecks = {
   groundIsChosen: choosesAGround,
+  groundIsSaved: savesItsGround,
   groundOutlinesTheCell: outlinesTheCell,
 };

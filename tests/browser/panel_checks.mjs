@@ -219,7 +219,8 @@ async function showsTheValueAtThePointer(context) {
   const viewer = await opened(context, 'mesh=fin&field=Density&clip=none');
   const {page} = viewer;
   const label = page.locator('qtet-viewer .hover');
-  const hide = () => page.addStyleTag({content: 'qtet-viewer::part(hint) { display: none }'});
+  const content = 'qtet-viewer::part(hint), qtet-viewer::part(marks) { display: none }';
+  const hide = () => page.addStyleTag({content});
   const before = await viewer.screenshot('hover-before');
   const camera = await cameraOf(viewer);
   await page.mouse.move(500, 340);

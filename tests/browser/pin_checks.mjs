@@ -111,7 +111,35 @@ async function movesPointsWithAWarp(context) {
   assert.ok(away < 3, `the point lies ${away} pixels from where it is moved`);
   assert.ok(Math.abs(Number(pin.text) - 0.5) < 0.01, pin.text);
   await viewer.screenshot('pins-warped');
+  await followsThePicture(viewer, pin.at);
   assert.deepEqual(viewer.problems, []);
+}
+
+/** Another picture comes under a pointer that rests, and while a card is open. */
+async function followsThePicture({page}, [x, y]) {
+  const row = (name) =>
+    page.locator('qtet-viewer .result dl div', {hasText: name}).first().locator('dd').innerText();
+  const show = (name, value) =>
+    page.evaluate((words) => window.qtetViewer.setAttribute(...words), [name, value]);
+  const hovered = (text) => page.locator('qtet-viewer .hover', {hasText: text}).waitFor();
+  await page.mouse.move(x - 20, y);
+  await hovered('Height');
+  await show('field', 'Displacement');
+  await hovered('Displacement');
+  await page.getByText('Point', {exact: true}).click();
+  await page.mouse.click(x - 20, y);
+  await page.locator('qtet-viewer .result').waitFor();
+  const [moved, rest] = [await row('Position'), await row('Position at rest')];
+  await show('warp-scale', '0.5');
+  await page.waitForFunction(
+    (before) =>
+      !window.qtetViewer.shadowRoot.querySelector('.result dl').textContent.includes(before),
+    moved,
+  );
+  const [now, atRest] = [await row('Position'), await row('Position at rest')];
+  assert.equal(atRest, rest);
+  const [before, after, still] = [moved, now, rest].map((text) => Number(text.split(',')[0]));
+  assert.ok(Math.abs(after - still - (before - still) / 2) < 0.01, `${moved} ${now} ${rest}`);
 }
 
 export const pinChecks = {

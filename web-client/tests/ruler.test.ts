@@ -67,6 +67,15 @@ describe('Ruler', () => {
     for (const line of box) expect(line.every(Number.isFinite)).toBe(true);
   });
 
+  test('aCanvasWithoutASizeHasOnlyFiniteLines', () => {
+    const {box, grid, ticks, numbers} = rulerOf(kBounds, kScale, {
+      toCanvas: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+      ...{width: 0, height: 0},
+    });
+    for (const line of [...box, ...grid, ...ticks]) expect(line.every(Number.isFinite)).toBe(true);
+    for (const {x, y} of numbers) expect(Number.isFinite(x + y)).toBe(true);
+  });
+
   test('noNumberHidesAnother', () => {
     const {numbers} = seenFrom([160, -9, 12.2]);
     numbers.forEach((a, i) =>

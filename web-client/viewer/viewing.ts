@@ -165,7 +165,7 @@ export class Viewing implements LaterHost {
   // ---- ActionsHost, PanelsHost
 
   async picture(): Promise<Blob | null> {
-    const ground = getComputedStyle(this.page.element).getPropertyValue('--ground');
+    const ground = getComputedStyle(this.page.element).getPropertyValue('--ground-now');
     return this.view?.picture(ground) ?? null;
   }
 
@@ -299,7 +299,7 @@ export class Viewing implements LaterHost {
       },
       change,
     );
-    this.later?.panels.showPicture(snapshot, view.pose.frameMs);
+    this.later?.showPicture(snapshot, view.pose.frameMs);
     this.later?.time.follow();
   }
 
@@ -311,7 +311,7 @@ export class Viewing implements LaterHost {
     this.later ??= new Later(this.page, this, this.shell);
     this.apply();
     const {snapshot} = this.mesh;
-    if (snapshot && this.view) this.later.panels.showPicture(snapshot, this.view.pose.frameMs);
+    if (snapshot && this.view) this.later.showPicture(snapshot, this.view.pose.frameMs);
   }
 
   /** Keeps the camera. The mesh comes again from the worker that decodes. */

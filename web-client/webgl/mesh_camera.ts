@@ -41,6 +41,9 @@ interface Room {
 
 type Seen = Pick<Snapshot, 'bounds' | 'surface' | 'warp'>;
 
+/** Cards that cover more of a small page cover the mesh. */
+const kLeastFree = 0.1;
+
 const kNoReach = {bounds: [] as number[], scale: 0, isAtRestToo: false};
 
 export class MeshCamera {
@@ -391,13 +394,17 @@ export class MeshCamera {
   }
 }
 
-/** The shares of the width and of the height that are free. */
+/** The shares of the width and of the height that are free: never none, however small a page is. */
 const freeOf = (
   {left, right, top, bottom}: Insets,
   boxed: Boxed | null = null,
 ): [number, number] => {
   const [across, down] = boxed ?? [0, 0];
-  return [1 - left - right - 2 * across, 1 - top - bottom - 2 * down];
+  const besides = (covered: number, room: number): number => {
+    const free = Math.max(kLeastFree, 1 - covered);
+    return free - Math.min(2 * room, free / 2);
+  };
+  return [besides(left + right, across), besides(top + bottom, down)];
 };
 
 /** The middle of the free area, in pixels. */

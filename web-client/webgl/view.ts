@@ -36,6 +36,7 @@ export interface Frame {
   pixelRatio: number;
   /** It will lie on a dark ground: lines beside the mesh are light. */
   onDark?: boolean;
+  /** As View.setBoxed. */
   boxed?: Boxed | null;
 }
 
@@ -111,7 +112,7 @@ export interface View {
    * camera and saved pictures stay as they are. Null: the picture goes back.
    */
   setCovered(insets: Insets | null): void;
-  /** Null: the mesh itself is fitted. */
+  /** Numbers round the mesh's box get this room. Null: the mesh itself is fitted. */
   setBoxed(boxed: Boxed | null): void;
   /**
    * The place that the first view of the next mesh looks at: bounds in lattice coordinates; null:

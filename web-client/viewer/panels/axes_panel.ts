@@ -96,7 +96,8 @@ class AxesPanel implements Panel {
     const {view} = this.host;
     const {clientWidth = 1, clientHeight = 1} = view?.canvas ?? {};
     const [across = 0, down = 0] = ruler?.kRulerRoom ?? [];
-    const room = [across / clientWidth, down / clientHeight] as const;
+    // A hidden page has a canvas without a size.
+    const room = [across / Math.max(1, clientWidth), down / Math.max(1, clientHeight)] as const;
     view?.setBoxed(settings?.axes && ruler ? room : null);
   }
 

@@ -52,6 +52,8 @@ export class Hover {
   /** The cell at the pointer. */
   private readonly marks: SVGSVGElement;
   private timer: ReturnType<typeof setTimeout> | undefined;
+  /** Where the pointer rests; null: it does not, or the picture moves. */
+  private at: [number, number] | null = null;
   /** Counts the rests: a late answer belongs to none. */
   private rest = 0;
 
@@ -61,16 +63,24 @@ export class Hover {
   ) {
     this.label = find(root, '.hover');
     this.marks = find<SVGSVGElement>(root, '.marks').cloneNode() as SVGSVGElement;
-    this.marks.setAttribute('part', 'hint');
+    this.marks.setAttribute('part', 'marks');
     find(root, '.layer').append(this.marks);
     root.addEventListener('pointermove', (event) => this.move(event as PointerEvent));
     for (const type of ['pointerdown', 'wheel', 'keydown', 'pointerout'])
       root.addEventListener(type, () => this.hide(), {passive: true});
   }
 
+  /** The mesh has another value or shape at the pointer: it says them once that rests, too. */
+  showPicture(): void {
+    const {at} = this;
+    this.hide();
+    if (at) this.restAt(at);
+  }
+
   /** Must also be called when the picture moves. */
   hide(): void {
     clearTimeout(this.timer);
+    this.at = null;
     ++this.rest;
     this.label.hidden = true;
     this.marks.replaceChildren();
@@ -80,8 +90,12 @@ export class Hover {
     this.hide();
     const onPicture = (event.target as Element).matches('.scene');
     if (!onPicture || event.pointerType === 'touch' || event.buttons !== 0) return;
-    const {offsetX, offsetY} = event;
-    this.timer = setTimeout(() => void this.show(offsetX, offsetY), kRestMs);
+    this.restAt([event.offsetX, event.offsetY]);
+  }
+
+  private restAt(at: [number, number]): void {
+    this.at = at;
+    this.timer = setTimeout(() => void this.show(...at), kRestMs);
   }
 
   private async show(x: number, y: number): Promise<void> {

@@ -98,6 +98,7 @@ export class Panels {
     const plotted = {color, isWhole};
     if (!isEqual(plotted, this.plotted)) this.inspect.refresh();
     this.plotted = plotted;
+    this.inspect.showPicture();
   }
 
   /** Shows the range of the colours. */

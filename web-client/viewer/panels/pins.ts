@@ -8,7 +8,8 @@ import {find, setText} from '../page/find';
 import type {Page} from '../page/page';
 import {parsePoints, pointsText} from '../settings/points';
 import {valueText} from './hover';
-import type {Panel, PanelKind, PanelsHost, Scene} from './panel';
+import type {Panel, PanelKind, PanelsHost} from './panel';
+import {RepeatedQuestion} from './repeated_question';
 
 /** They differ from each other on both grounds, also for most who see few colours. */
 const kColors = [
@@ -25,11 +26,12 @@ const kColors = [
 class Pins implements Panel {
   private readonly layer = document.createElement('div');
   private points: Vector[] = [];
-  private scene: Scene | null = null;
   /** Null: the point is not known yet, or the mesh has no cells. */
   private picks: (Pick | null)[] = [];
-  /** The values are asked for; `again`: they may be others by now. */
-  private asking: 'no' | 'once' | 'again' = 'no';
+  private readonly question = new RepeatedQuestion(
+    () => this.ask(),
+    (picks) => this.take(picks),
+  );
 
   constructor(
     private readonly page: Page,
@@ -39,18 +41,18 @@ class Pins implements Panel {
     find(page.root, '.layer').after(this.layer);
   }
 
-  update(_: unknown, scene: Scene | null): void {
-    this.scene = scene;
+  update(): void {
     const points = parsePoints(this.page.read('points') ?? '') ?? [];
     if (isEqual(points, this.points)) return;
     this.points = points;
     this.picks = [];
     this.layer.replaceChildren(...points.map((_point, i) => this.cardOf(i)));
-    void this.ask();
+    this.question.forget();
+    this.question.repeat();
   }
 
   showPicture(): void {
-    void this.ask();
+    this.question.repeat();
   }
 
   /** The cards follow the picture. */
@@ -67,6 +69,7 @@ class Pins implements Panel {
   }
 
   clear(): void {
+    this.question.forget();
     this.picks = [];
     this.follow();
   }
@@ -89,26 +92,20 @@ class Pins implements Panel {
     return card;
   }
 
-  /** One question at a time: a series plays faster than a large mesh answers. */
-  private async ask(): Promise<void> {
-    const {host, points, scene} = this;
-    if (points.length === 0 || !scene || !host.mesh.snapshot || host.opening !== null) return;
-    if (this.asking !== 'no') return void (this.asking = 'again');
-    this.asking = 'once';
-    const {origin, step} = scene.manifest.lattice;
-    const places = points.map(
-      (point) => point.map((x, axis) => (x - origin[axis]!) / step) as Vector,
+  private ask(): Promise<(Pick | null)[]> | null {
+    const {client, mesh, opening} = this.host;
+    if (this.points.length === 0 || !mesh.snapshot || opening !== null) return null;
+    const {origin, step} = mesh.manifest!.lattice;
+    return Promise.all(
+      this.points.map((point) =>
+        client.at(point.map((x, axis) => (x - origin[axis]!) / step) as Vector),
+      ),
     );
-    const {mesh} = host;
-    const picks = await Promise.all(places.map((place) => host.client.at(place))).catch(() => []);
-    const isAgain = (this.asking as string) === 'again';
-    this.asking = 'no';
-    if (mesh === host.mesh && points === this.points) this.take(picks);
-    if (isAgain || points !== this.points) await this.ask();
   }
 
   private take(picks: (Pick | null)[]): void {
-    const {mesh} = this.host;
+    const {mesh, opening} = this.host;
+    if (opening !== null) return; // the worker has another mesh
     this.picks = picks;
     const color = mesh.snapshot?.color;
     const fields = mesh.manifest?.fields ?? [];

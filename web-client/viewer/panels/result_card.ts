@@ -58,8 +58,17 @@ export class ResultCard {
     this.offerKeep(false);
     this.card.hidden = false;
     find(this.card, '.plot').hidden = !hasPlot;
-    this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
-    find(this.card, 'h2').textContent = title;
+    this.write(title, rows);
+    this.announce([title, ...rows.map((row) => row.join(' '))].join('. '));
+  }
+
+  /** Its texts, while a plot stays. */
+  write(title: string, rows: [string, string][]): void {
+    const heading = find(this.card, 'h2');
+    const text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
+    if (text === this.text && title === heading.textContent) return; // a selection stays
+    this.text = text;
+    heading.textContent = title;
     find(this.card, 'dl').replaceChildren(
       ...rows.map(([name, value]) => {
         const row = document.createElement('div');
@@ -70,7 +79,6 @@ export class ResultCard {
         return row;
       }),
     );
-    this.announce([title, ...rows.map((row) => row.join(' '))].join('. '));
   }
 
   /** Offers the plot over time, or not. */

@@ -1,4 +1,4 @@
-// Movies of the shown series: all instants in order, drawn as pictures are.
+// Movies of the shown series: the instants of the part that plays, drawn as pictures are.
 
 import {find} from '../page/find';
 import {cutOf, fileNameOf, originOf} from '../panels/origin';

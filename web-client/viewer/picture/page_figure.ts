@@ -50,7 +50,7 @@ function looksOf({element}: Page, host: FigureHost): Looks {
   return {
     ink: its('--scene-ink') || its('--ink'),
     softInk: its('--scene-ink-soft') || its('--ink-soft'),
-    ground: its('--ground'),
+    ground: its('--ground-now'),
     back: style.backgroundImage,
     font: style.fontFamily,
     axes,

@@ -6,7 +6,8 @@ import type {Vector} from '../../core/protocol/geometry';
 
 /** Each has a colour of its own. */
 export const kMaxPoints = 8;
-const kDigits = 6;
+/** A georeferenced mesh has millions of metres. */
+const kDigits = 10;
 
 /** "1,2,0.5 3,2,0"; null if it is something else, or more. */
 export function parsePoints(text: string): Vector[] | null {

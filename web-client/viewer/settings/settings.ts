@@ -14,6 +14,7 @@ import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {shownInstant} from '../../core/protocol/series';
 import type {CameraState} from '../../webgl/camera';
+import {isGround} from './ground';
 
 const kBeforeLayers = [
   'mesh',
@@ -150,13 +151,8 @@ function parsePair(text: string | null): [number, number] | null {
   return isPair ? [low, high] : null;
 }
 
-export const kGrounds = ['light', 'dark', 'white'];
-
-/** A colour as RRGGBB. */
-export const isHexColor = (text: string): boolean => /^[\da-f]{6}$/i.test(text);
-
 const parseGround = (text: string | null): string | null =>
-  text !== null && (kGrounds.includes(text) || isHexColor(text)) ? text : null;
+  text !== null && isGround(text) ? text : null;
 
 /** Null instead of an empty text. */
 function parseText(text: string | null, max: number): string | null {

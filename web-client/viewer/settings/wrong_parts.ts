@@ -14,9 +14,10 @@ import {parseLimit} from '../../core/protocol/limit';
 import {fieldKeys} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
+import {isGround, kGrounds} from './ground';
 import {hint} from './nearest';
 import {kMaxPoints, parsePoints} from './points';
-import {isHexColor, kGrounds, kViewAttributes, type ViewAttribute} from './settings';
+import {kViewAttributes, type ViewAttribute} from './settings';
 import {kNoWarp, warpField} from './warp';
 
 type Name = ViewAttribute | 'transport';
@@ -70,11 +71,7 @@ const kRules: Partial<Record<Name, Rule>> = {
   'warp-scale': [(text) => parseNumbers(text).length === 1, 'a number; 1 is the true size'],
   'rest-edges': oneOf('on', 'off'),
   axes: oneOf('on', 'off'),
-  ground: [
-    (text) => kGrounds.includes(text) || isHexColor(text),
-    `${kGrounds.join(', ')}, or a colour, 3c3c3c`,
-    kGrounds,
-  ],
+  ground: [isGround, `${kGrounds.join(', ')}, or a colour, 3c3c3c`, kGrounds],
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
     kLayers
