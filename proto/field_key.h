@@ -1,41 +1,17 @@
 // Which field a name means. Options, URLs, messages and the C library share this rule. It works on
-// any list of things with a name and an association. Each look-up walks the list; for many look-ups
-// in one list there is field_keys.h.
+// any list of things with a FieldName and an association. Each look-up walks the list; for many
+// look-ups in one list there is field_keys.h.
 #pragma once
 
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <ranges>
 #include <string_view>
 #include <vector>
 
+#include "proto/field_name.h"
+
 namespace qtet {
-
-/// The two parts of "T@0.5", the name of a field in a step of a series
-/// (simplify/read/steps/join_blocks.h).
-struct InstantName {
-  std::string_view series;
-  double time;
-};
-
-/// nullopt for a name that does not end in "@" and a finite number.
-[[nodiscard]] inline std::optional<InstantName> instantName(std::string_view name) {
-  const std::size_t at = name.rfind('@');
-  if (at == std::string_view::npos || at == 0) return std::nullopt;
-  double time = 0;
-  const char* const end = name.data() + name.size();
-  const auto [stop, code] = std::from_chars(name.data() + at + 1, end, time);
-  if (code != std::errc() || stop != end || !std::isfinite(time)) return std::nullopt;
-  return InstantName{name.substr(0, at), time};
-}
-
-/// "T" for "T@0.5"; nullopt as instantName.
-[[nodiscard]] inline std::optional<std::string_view> nameWithoutStep(std::string_view name) {
-  const auto instant = instantName(name);
-  return instant ? std::optional(instant->series) : std::nullopt;
-}
 
 /// Whether `key` is the name or "point:NAME" or "cell:NAME", as the association is.
 [[nodiscard]] inline bool isCalled(std::string_view association, std::string_view name,
@@ -79,8 +55,7 @@ template <std::ranges::random_access_range Fields>
   std::vector<std::uint32_t> out = fieldsOfName(fields, key);
   if (!out.empty()) return out;
   return fieldsThat(fields, [&](const auto& field) {
-    const auto name = nameWithoutStep(field.name);
-    return name && isCalled(field.association, *name, key);
+    return field.name.isInstant() && isCalled(field.association, field.name.withoutTime(), key);
   });
 }
 

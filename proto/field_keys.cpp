@@ -91,8 +91,7 @@ void FieldKeys::add(const Named& field) {
   const auto number = static_cast<std::uint32_t>(fields_.size());
   fields_.push_back(field);
   names_.add(field.name, field.association, number);
-  if (const auto series = nameWithoutStep(field.name))
-    instants_.add(*series, field.association, number);
+  if (field.instant) instants_.add(field.instant->series, field.association, number);
 }
 
 void FieldKeys::addSeries(const Named& series) {
@@ -135,7 +134,7 @@ std::optional<std::uint32_t> FieldKeys::seriesOfKey(std::string_view key) const 
 
 std::string FieldKeys::keyOf(std::size_t f) const {
   assert(f < fields_.size());
-  const auto& [name, association] = fields_[f];
+  const auto& [name, association, instant] = fields_[f];
   return names_.firstNamed(name) == f ? std::string(name)
                                       : std::string(association) + ":" + std::string(name);
 }
@@ -145,17 +144,17 @@ std::vector<ListedKey> FieldKeys::listed() const {
   const auto groupOf = [](std::string_view series, std::string_view association) {
     return std::pair(series, association);
   };
-  for (const auto& [name, association] : fields_)
-    if (const auto series = nameWithoutStep(name)) ++instants[groupOf(*series, association)];
+  for (const auto& [name, association, instant] : fields_)
+    if (instant) ++instants[groupOf(instant->series, association)];
   std::vector<ListedKey> out;
   std::set<std::string> known;
   for (std::size_t f = 0; f < fields_.size(); ++f) {
-    const auto& [name, association] = fields_[f];
-    const auto series = nameWithoutStep(name);
+    const auto& [name, association, instant] = fields_[f];
     ListedKey item{keyOf(f)};
-    if (series && instants.at(groupOf(*series, association)) > 1) {
-      const bool isMeant = association == kPoint || !instants.contains(groupOf(*series, kPoint));
-      std::string ofSeries = (isMeant ? "" : std::string(association) + ":") + std::string(*series);
+    if (instant && instants.at(groupOf(instant->series, association)) > 1) {
+      const std::string_view series = instant->series;
+      const bool isMeant = association == kPoint || !instants.contains(groupOf(series, kPoint));
+      std::string ofSeries = (isMeant ? "" : std::string(association) + ":") + std::string(series);
       if (fieldsOfName(ofSeries).empty()) item = {std::move(ofSeries), true};
     }
     if (known.insert(item.key).second) out.push_back(std::move(item));

@@ -62,8 +62,8 @@ class FieldKeys {
   /// The fields, and `series` (of them, series.h), outlive the object and stay where they are.
   template <std::ranges::random_access_range Fields>
   explicit FieldKeys(const Fields& fields, std::span<const Series> series = {}) {
-    for (const auto& field : fields) add({field.name, field.association});
-    for (const Series& one : series) addSeries({one.name, fields_[one.fields.front()].association});
+    for (const auto& field : fields) add({field.name, field.association, field.name.instant()});
+    for (const Series& one : series) addSeries({one.name, one.association, {}});
     sort();
   }
 
@@ -72,7 +72,8 @@ class FieldKeys {
   [[nodiscard]] std::optional<std::uint32_t> fieldOfKey(std::string_view key) const;
   [[nodiscard]] std::vector<std::uint32_t> fieldsOfName(std::string_view key) const;
   [[nodiscard]] std::vector<std::uint32_t> fieldsOfKey(std::string_view key) const;
-  /// The number of the series that `key` means, as seriesOfKey (series.h).
+  /// The number of the series that `key` means: of points before of cells. "cell:NAME" means one of
+  /// cells.
   [[nodiscard]] std::optional<std::uint32_t> seriesOfKey(std::string_view key) const;
   /// The key of field f, as fieldKey (manifest.h). REQUIRES: such a field.
   [[nodiscard]] std::string keyOf(std::size_t f) const;
@@ -85,6 +86,7 @@ class FieldKeys {
  private:
   struct Named {
     std::string_view name, association;
+    std::optional<InstantName> instant;
   };
   void add(const Named& field);
   void addSeries(const Named& series);

@@ -1,11 +1,13 @@
 #include "proto/field_list.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 
 namespace qtet {
 namespace {
@@ -27,16 +29,17 @@ std::string textOf(const Item& item) {
 
 std::string fieldList(std::span<const std::string> names) {
   std::vector<Item> items;
-  std::map<std::string_view, std::size_t> placeOf;
+  std::map<std::string, std::size_t, std::less<>> placeOf;
   for (const std::string& name : names) {
-    const auto instant = instantName(name);
-    if (!instant || placeOf.try_emplace(instant->series, items.size()).second) {
+    const FieldName parts(name);
+    const auto instant = parts.instant();
+    if (!instant || placeOf.try_emplace(std::string(instant->series), items.size()).second) {
       const double time = instant ? instant->time : 0;
       items.push_back({name, name, time, time});
       continue;
     }
     const double time = instant->time;
-    Item& item = items[placeOf.at(instant->series)];
+    Item& item = items[placeOf.find(instant->series)->second];
     ++item.count;
     if (time < item.from) item.first = name, item.from = time;
     if (time > item.to) item.last = name, item.to = time;

@@ -33,7 +33,7 @@ InstantFile Instants::fileAt(std::optional<double> time) const {
     } else if (instant->second.first == time) {
       const std::string& series = instant->second.second;
       const bool isTaken = taken_.contains({series, fields_[f].association});
-      out.fields.push_back({f, isTaken ? fields_[f].name : series, true});
+      out.fields.push_back({f, isTaken ? fields_[f].name.text() : series, true});
     }
   }
   return out;

@@ -30,15 +30,11 @@ struct InstantFile {
   std::vector<FieldInFile> fields;
 };
 
-/// The instants of the series (seriesOf) among some fields of a log.
+/// The instants of the series among some fields of a log.
 class Instants {
  public:
-  /// `wanted`: ascending numbers of `fields`, which outlive the object, as `wanted` does. A series
-  /// has `fewest` instants at least: in a log of a list (SEGMENT_LIST.md) 1.
-  Instants(const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
-           std::size_t fewest = 2)
-      : Instants(fields, wanted, seriesOf(std::span(fields), fewest)) {}
-  /// `series` are those of all the fields.
+  /// `wanted`: ascending numbers of `fields`, which outlive the object, as `wanted` does. `series`
+  /// are those of all the fields.
   Instants(const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
            std::span<const Series> series);
 

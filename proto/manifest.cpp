@@ -14,7 +14,8 @@ namespace qtet {
 
 std::string fieldKey(const Manifest& manifest, std::size_t f) {
   const ManifestField& field = manifest.fields[f];
-  return fieldOfKey(manifest, field.name) == f ? field.name : field.association + ":" + field.name;
+  return fieldOfKey(manifest, field.name) == f ? field.name.text()
+                                               : field.association + ":" + field.name;
 }
 
 std::string firstField(const Manifest& manifest) {
@@ -39,8 +40,8 @@ bool mayBeLabel(const ManifestField& field) {
          field.step == 1;
 }
 
-std::string_view unitOf(const Manifest& manifest, std::string_view name) {
-  const std::string_view series = nameWithoutStep(name).value_or(name);
+std::string_view unitOf(const Manifest& manifest, const FieldName& name) {
+  const std::string_view series = name.withoutTime();
   if (const auto at = manifest.units.find(series); at != manifest.units.end()) return at->second;
   const std::size_t open = series.rfind(" [");
   if (open == std::string_view::npos || open == 0 || !series.ends_with(']')) return {};
@@ -50,7 +51,7 @@ std::string_view unitOf(const Manifest& manifest, std::string_view name) {
 const LabelNames* labelNamesOf(const Manifest& manifest, std::size_t f) {
   const ManifestField& field = manifest.fields[f];
   if (!mayBeLabel(field)) return nullptr;
-  const auto at = manifest.labels.find(nameWithoutStep(field.name).value_or(field.name));
+  const auto at = manifest.labels.find(field.name.withoutTime());
   return at == manifest.labels.end() ? nullptr : &at->second;
 }
 
@@ -97,7 +98,7 @@ std::string manifestToJson(const Manifest& manifest) {
   if (const auto unit = timeUnit(manifest); !unit.empty()) out["timeUnit"] = unit;
   out["fields"] = Json::array();
   for (const ManifestField& f : manifest.fields)
-    out["fields"].push_back({{"name", f.name},
+    out["fields"].push_back({{"name", f.name.text()},
                              {"components", f.components},
                              {"type", f.type},
                              {"association", f.association},

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "proto/error.h"
+#include "proto/field_name.h"
 #include "proto/label_names.h"
 #include "proto/level_error.h"
+#include "proto/series.h"
 
 namespace qtet {
 
@@ -22,7 +24,7 @@ inline constexpr std::array<std::string_view, 10> kFieldTypes{
     "float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64"};
 
 struct ManifestField {
-  std::string name;
+  FieldName name;
   std::uint32_t components = 1;
   std::string type;                   ///< one of kFieldTypes
   std::string association = "point";  ///< point or cell
@@ -75,6 +77,8 @@ struct Manifest {
   /// None: the first field on the boundary.
   std::optional<Opening> opening = std::nullopt;
   std::vector<ManifestField> fields;
+  /// Those of `fields`, of two instants and more. Made with the manifest (log_manifest.h).
+  std::vector<Series> series{};
   Units units;
   Labels labels;
   std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
@@ -93,7 +97,7 @@ struct Manifest {
 
 /// The unit of the field of this name or of its series: that of the manifest, else the "K" of a
 /// name "T [K]". Empty: unknown.
-[[nodiscard]] std::string_view unitOf(const Manifest& manifest, std::string_view name);
+[[nodiscard]] std::string_view unitOf(const Manifest& manifest, const FieldName& name);
 /// The names of a label's values, perhaps none of them; null: field `f` is no label.
 [[nodiscard]] const LabelNames* labelNamesOf(const Manifest& manifest, std::size_t f);
 /// By field, whether it is a label.

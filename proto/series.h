@@ -7,13 +7,14 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 
 namespace qtet {
 
@@ -43,14 +44,16 @@ inline constexpr double kNearTime = 1e-9;
 
 struct Series {
   std::string name;
+  std::string association;          ///< of its fields: point or cell
   std::vector<std::size_t> fields;  ///< numbers of the instants' fields, by time
   std::vector<double> times;        ///< ascending, as many
 };
 
 /// The series of `fewest` and more instants, in the order of their first fields. Instants agree in
 /// association, components and type. Where two have one time, the first counts.
-template <class Field>
-[[nodiscard]] std::vector<Series> seriesOf(std::span<const Field> fields, std::size_t fewest = 2) {
+template <std::ranges::random_access_range Fields>
+[[nodiscard]] std::vector<Series> seriesOf(const Fields& fields, std::size_t fewest = 2) {
+  using Field = std::ranges::range_value_t<Fields>;
   std::vector<Series> out;
   std::map<std::tuple<std::string_view, decltype(Field::association), decltype(Field::components),
                       decltype(Field::type)>,
@@ -58,11 +61,11 @@ template <class Field>
       places;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const Field& field = fields[f];
-    const auto name = instantName(field.name);
+    const auto name = field.name.instant();
     if (!name) continue;
     const auto [place, isNew] = places.try_emplace(
         {name->series, field.association, field.components, field.type}, out.size());
-    if (isNew) out.push_back({std::string(name->series), {}, {}});
+    if (isNew) out.push_back({std::string(name->series), field.association, {}, {}});
     Series& series = out[place->second];
     const auto at = std::ranges::lower_bound(series.times, name->time);
     if (at != series.times.end() && *at == name->time) continue;
@@ -73,28 +76,13 @@ template <class Field>
   return out;
 }
 
-/// The series among those of `fields` that `key` means: of points before of cells. "cell:NAME"
-/// means one of cells. nullptr: none.
-template <class Field>
-[[nodiscard]] const Series* seriesOfKey(std::span<const Series> all, std::span<const Field> fields,
-                                        std::string_view key) {
-  const Series* out = nullptr;
+/// By field, of which there are `fields`: it is an instant of one of `all`, but not its series' one
+/// of the lowest number. That one may be of any time; a viewer shows and fetches it first.
+[[nodiscard]] inline std::vector<bool> laterInstants(std::span<const Series> all,
+                                                     std::size_t fields) {
+  std::vector<bool> out(fields);
   for (const Series& series : all) {
-    assert(!series.fields.empty() && series.fields.front() < fields.size());
-    const Field& first = fields[series.fields.front()];
-    if (!isCalled(first.association, series.name, key)) continue;
-    if (first.association == "point") return &series;
-    if (out == nullptr) out = &series;
-  }
-  return out;
-}
-
-/// By field: an instant of a series, but not the one of the lowest number, which a viewer shows and
-/// fetches first. It may be of any time.
-template <class Field>
-[[nodiscard]] std::vector<bool> laterInstants(std::span<const Field> fields) {
-  std::vector<bool> out(fields.size());
-  for (const Series& series : seriesOf(fields)) {
+    assert(!series.fields.empty() && std::ranges::max(series.fields) < fields);
     for (const std::size_t f : series.fields) out[f] = true;
     out[*std::ranges::min_element(series.fields)] = false;
   }

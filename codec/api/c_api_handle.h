@@ -41,7 +41,6 @@ struct qtet_log : qtet::Failure {
 
   std::optional<qtet::LogFile> file;
   qtet::Manifest manifest;                                 // of `file`
-  std::vector<qtet::Series> series;                        // of `manifest`
   std::vector<std::string> units;                          // of its fields, and then of times
   std::map<std::string, std::string, std::less<>> labels;  // by name without @TIME, as JSON
   std::optional<qtet::Refiner> refiner;                    // of `file`, with a complete level

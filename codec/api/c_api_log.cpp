@@ -35,7 +35,6 @@ qtet_status take(qtet_log* log, Result<LogFile> file, const std::string& path) {
     if (!path.empty()) manifest.error().message = path + ": " + manifest.error().message;
     return log->refuse(manifest.error());
   }
-  log->series = qtet::seriesOf(std::span(std::as_const(manifest->fields)));
   log->manifest = std::move(*manifest);
   for (const ManifestField& field : log->manifest.fields)
     log->units.emplace_back(qtet::unitOf(log->manifest, field.name));
@@ -50,7 +49,6 @@ void close(qtet_log* log) {
   log->refiner.reset();
   log->file.reset();
   log->manifest = {};
-  log->series.clear();
   log->units.clear();
   log->labels.clear();
 }
@@ -110,8 +108,8 @@ qtet_log_info infoOf(const qtet_log& log) {
   return info;
 }
 
-std::uint32_t associationOf(const ManifestField& field) {
-  return field.association == "cell" ? QTET_CELL : QTET_POINT;
+std::uint32_t associationOf(const auto& fieldOrSeries) {
+  return fieldOrSeries.association == "cell" ? QTET_CELL : QTET_POINT;
 }
 
 qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
@@ -132,7 +130,7 @@ qtet_field_info infoOfField(const qtet_log& log, std::uint32_t field) {
   info.largestRoundingError = qtet::largestRoundingError(f);
   info.labels = "";
   if (qtet::labelNamesOf(log.manifest, field) != nullptr)
-    info.labels = log.labels.find(qtet::nameWithoutStep(f.name).value_or(f.name))->second.c_str();
+    info.labels = log.labels.find(f.name.withoutTime())->second.c_str();
   return info;
 }
 
@@ -200,10 +198,11 @@ qtet_status qtet_log::needLevel(std::uint32_t level) {
 }
 
 qtet_status qtet_log::needSeries(std::uint32_t number) {
-  return number < series.size()
+  return number < manifest.series.size()
              ? QTET_OK
              : refuse(QTET_NOT_FOUND, "there is no series " + std::to_string(number) +
-                                          "; the log has " + std::to_string(series.size()));
+                                          "; the log has " +
+                                          std::to_string(manifest.series.size()));
 }
 
 qtet_log* qtet_log_create() { return new (std::nothrow) qtet_log; }
@@ -270,18 +269,18 @@ qtet_status qtet_log_find_field(qtet_log* log, const char* name, uint32_t* field
 }
 
 uint32_t qtet_log_series_count(const qtet_log* log) {
-  return log != nullptr ? static_cast<std::uint32_t>(log->series.size()) : 0;
+  return log != nullptr ? static_cast<std::uint32_t>(log->manifest.series.size()) : 0;
 }
 
 qtet_status qtet_log_get_series(qtet_log* log, uint32_t series, size_t infoBytes,
                                 qtet_series_info* info) {
   return withLog(log, [&] {
     if (const qtet_status status = log->needSeries(series)) return status;
-    const qtet::Series& found = log->series[series];
+    const qtet::Series& found = log->manifest.series[series];
     return give(
         log,
-        qtet_series_info{associationOf(log->manifest.fields[found.fields.front()]),
-                         static_cast<std::uint32_t>(found.fields.size()), found.name.c_str()},
+        qtet_series_info{associationOf(found), static_cast<std::uint32_t>(found.fields.size()),
+                         found.name.c_str()},
         infoBytes, info);
   });
 }
@@ -290,7 +289,7 @@ qtet_status qtet_log_copy_series(qtet_log* log, uint32_t series, size_t count, d
                                  uint32_t* fields) {
   return withLog(log, [&]() -> qtet_status {
     if (const qtet_status status = log->needSeries(series)) return status;
-    const qtet::Series& found = log->series[series];
+    const qtet::Series& found = log->manifest.series[series];
     if (count < found.times.size())
       return log->refuse(QTET_BAD_ARGUMENT, "the arrays have room for " + std::to_string(count) +
                                                 " instants, the series has " +

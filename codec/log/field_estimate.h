@@ -19,7 +19,8 @@ class FieldEstimate {
  public:
   /// `history` must outlive it.
   explicit FieldEstimate(const FusionHistory& history) : history_(history) {
-    const std::vector<bool> isLater = laterInstants(std::span<const FieldInfo>(history.fields));
+    const std::vector<bool> isLater =
+        laterInstants(seriesOf(history.fields), history.fields.size());
     for (std::size_t f = 0; f < history.fields.size(); ++f)
       if (!isLater[f]) (isCellField(history.fields[f]) ? cellFields_ : pointFields_).push_back(f);
   }

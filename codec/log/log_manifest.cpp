@@ -437,14 +437,15 @@ Status setManifest(LogIndex& index, Manifest manifest) {
   assert(!manifest.levels.empty() && manifest.fields.size() == index.fields.size());
   if (manifest.levels.front().error)
     if (Status s = checkFigures(manifest.levels.size(), manifest.fields.size()); !s) return s;
-  const std::vector<bool> isLater = laterInstants(std::span<const ManifestField>(manifest.fields));
+  const std::vector<bool> isLater =
+      laterInstants(seriesOf(manifest.fields), manifest.fields.size());
   const auto first = std::ranges::find(isLater, true);
   index.laterFields = index.hasSeries() ? static_cast<std::uint32_t>(isLater.end() - first) : 0;
   if (manifest.opening && manifest.opening->field >= manifest.fields.size() - index.laterFields)
     manifest.opening.reset();
   const auto isOfNone = [&](const std::string& name, const auto& isMeant) {
     return std::ranges::none_of(manifest.fields, [&](const ManifestField& field) {
-      return isMeant(field) && nameWithoutStep(field.name).value_or(field.name) == name;
+      return isMeant(field) && field.name.withoutTime() == name;
     });
   };
   std::erase_if(manifest.units, [&](const auto& entry) {
@@ -486,12 +487,14 @@ Result<Manifest> manifestOf(const LogIndex& index) {
   const auto front = shapes.first(shapes.size() - index.laterFields);
   if (Status s = readFields(r, front, names, out); !s) return std::unexpected(s.error());
   if (Status s = readLevels(r, index, out); !s) return std::unexpected(s.error());
-  if (index.laterFields == 0) return out;
-  ByteReader later(index.laterManifest, index.laterOffset);
-  if (Status s = readFields(later, shapes.subspan(front.size()), names, out); !s)
-    return std::unexpected(s.error());
-  if (Status s = readLaterErrors(later, index.laterFields, out); !s)
-    return std::unexpected(s.error());
+  if (index.laterFields > 0) {
+    ByteReader later(index.laterManifest, index.laterOffset);
+    if (Status s = readFields(later, shapes.subspan(front.size()), names, out); !s)
+      return std::unexpected(s.error());
+    if (Status s = readLaterErrors(later, index.laterFields, out); !s)
+      return std::unexpected(s.error());
+  }
+  out.series = seriesOf(out.fields);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/mesh/time_parents.h"
+#include "proto/field_name.h"
 #include "proto/label_names.h"
 
 namespace qtet {
@@ -56,7 +57,7 @@ inline constexpr std::int32_t kMissing = std::numeric_limits<std::int32_t>::min(
 /// The meaning of a field's integers: value of component c = minimum[c] + step * integer. Integer
 /// fields have step 1 and lose nothing.
 struct FieldInfo {
-  std::string name;
+  FieldName name;
   std::uint32_t components = 1;
   std::string type = "float32";  ///< of the input: float32, float64, int8 ... uint64
   /// The element that a value belongs to: point or cell (a tetrahedron).

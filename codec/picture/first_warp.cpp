@@ -35,7 +35,7 @@ bool isDisplacement(const ManifestField& field, std::string_view name) {
 /// The largest value of the field, or of its series.
 double largestOf(const Manifest& manifest, std::uint32_t field) {
   double out = manifest.fields[field].range[1];
-  for (const Series& series : seriesOf(std::span(manifest.fields)))
+  for (const Series& series : manifest.series)
     if (std::ranges::find(series.fields, field) != series.fields.end())
       for (const std::size_t f : series.fields) out = std::max(out, manifest.fields[f].range[1]);
   return out;
@@ -59,12 +59,11 @@ bool isFirstMoved(const Manifest& manifest, const LatticeMesh& mesh, double larg
 }  // namespace
 
 std::optional<std::uint32_t> displacementOf(const Manifest& manifest) {
-  const std::span fields(manifest.fields);
-  const std::vector<bool> isLater = laterInstants(fields);
+  const std::vector<ManifestField>& fields = manifest.fields;
+  const std::vector<bool> isLater = laterInstants(manifest.series, fields.size());
   std::vector<std::string_view> names(fields.size());
   for (std::size_t f = 0; f < fields.size(); ++f) names[f] = fields[f].name;
-  const std::vector<Series> all = seriesOf(fields);
-  for (const Series& series : all)
+  for (const Series& series : manifest.series)
     for (const std::size_t f : series.fields) names[f] = series.name;
   for (std::uint32_t f = 0; f < fields.size(); ++f)
     if (!isLater[f] && isDisplacement(fields[f], names[f])) return f;

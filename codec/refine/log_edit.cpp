@@ -11,7 +11,7 @@
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
 #include "proto/crc32c.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/limits.h"
 #include "proto/series.h"
 
@@ -65,7 +65,7 @@ void keepOpening(Manifest& manifest, const ManifestField& shown,
   };
   if (place == kept.size())
     place += static_cast<std::size_t>(std::ranges::find_if(added, isShown) - added.begin());
-  for (const Series& series : seriesOf(std::span<const ManifestField>(manifest.fields)))
+  for (const Series& series : manifest.series)
     if (std::ranges::find(series.fields, place) != series.fields.end())
       place = std::ranges::min(series.fields);
   if (place < kept.size() + added.size() && place <= kMaxOpeningField) {
@@ -135,9 +135,10 @@ Result<EditedLog> withFields(const LogFile& log, const std::vector<std::uint32_t
   }
   for (const NewField& field : added)
     if (field.labelNames)
-      manifest->labels[std::string(nameWithoutStep(field.info.name).value_or(field.info.name))]
-          .insert(field.labelNames->begin(), field.labelNames->end());
+      manifest->labels[std::string(field.info.name.withoutTime())].insert(field.labelNames->begin(),
+                                                                          field.labelNames->end());
   std::swap(manifest->fields, fields);
+  manifest->series = seriesOf(manifest->fields);
   if (manifest->opening) keepOpening(*manifest, fields[manifest->opening->field], kept, added);
   for (ManifestLevel& level : manifest->levels)
     if (level.error) keepErrors(*level.error, level.level, kept, added);

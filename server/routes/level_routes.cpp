@@ -95,7 +95,7 @@ std::vector<FieldOutline> outlinesOf(const LevelRequest& level) {
   std::vector<FieldOutline> out;
   for (std::size_t i = 0; i < level.fields.size(); ++i) {
     const ManifestField& field = level.mesh->manifest.fields[level.fields[i]];
-    out.push_back({level.names.empty() ? field.name : level.names[i], field.components,
+    out.push_back({level.names.empty() ? field.name.text() : level.names[i], field.components,
                    field.association == "cell"});
   }
   return out;

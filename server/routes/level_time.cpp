@@ -42,7 +42,8 @@ OrRefusal<std::optional<double>> chosenTime(const std::vector<double>& times,
 }  // namespace
 
 OrRefusal<LevelRequest> atTime(LevelRequest wanted, const std::string& asked) {
-  const Instants instants(wanted.mesh->manifest.fields, wanted.fields, wanted.mesh->series);
+  const Manifest& manifest = wanted.mesh->manifest;
+  const Instants instants(manifest.fields, wanted.fields, manifest.series);
   const OrRefusal<std::optional<double>> time = chosenTime(instants.times(), asked);
   if (!time) return std::unexpected(time.error());
   const InstantFile file = instants.fileAt(*time);

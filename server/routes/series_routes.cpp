@@ -17,7 +17,7 @@ std::vector<std::uint32_t> fieldsOfSeries(const ServedMesh& mesh, std::string_vi
   const FieldKeys& keys = mesh.keys();
   std::vector<std::uint32_t> out;
   if (const auto series = keys.seriesOfKey(key)) {
-    for (const std::size_t f : mesh.series[*series].fields)
+    for (const std::size_t f : mesh.manifest.series[*series].fields)
       out.push_back(static_cast<std::uint32_t>(f));
     std::ranges::sort(out);
   } else if (const auto one = keys.fieldOfKey(key)) {

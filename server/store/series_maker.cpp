@@ -14,7 +14,7 @@
 #include "codec/mesh/mesh.h"
 #include "codec/refine/level_fields.h"
 #include "codec/refine/refiner.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/number_text.h"
 #include "server/store/cell_at_point.h"
 
@@ -238,8 +238,8 @@ Result<Bytes> SeriesMaker::make(const LevelRequest& request, const std::stop_tok
   const auto take = [&](std::uint32_t f) {
     if (!std::ranges::binary_search(request.fields, f)) return;
     const ManifestField& field = manifest.fields[f];
-    const std::optional<InstantName> instant = instantName(field.name);
-    name = instant ? instant->series : field.name;
+    const std::optional<InstantName> instant = field.name.instant();
+    name = field.name.withoutTime();
     instants.push_back({instant ? std::optional(instant->time) : std::nullopt,
                         valuesAt(field, refiner.fieldValues(f), *place, corners)});
   };

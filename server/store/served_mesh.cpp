@@ -66,7 +66,8 @@ bool ServedMesh::isQuick(Text which) const {
 }
 
 const FieldKeys& ServedMesh::keys() const {
-  std::call_once(texts->keysOnce, [this] { texts->keys.emplace(manifest.fields, series); });
+  std::call_once(texts->keysOnce,
+                 [this] { texts->keys.emplace(manifest.fields, manifest.series); });
   return *texts->keys;
 }
 

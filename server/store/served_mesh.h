@@ -14,7 +14,6 @@
 #include "codec/refine/log_file.h"
 #include "proto/field_keys.h"
 #include "proto/manifest.h"
-#include "proto/series.h"
 #include "server/wire/document.h"
 
 namespace qtet {
@@ -54,7 +53,6 @@ struct ServedMesh {
   std::unique_ptr<Descriptor> descriptor{};
   /// Its part of limits::kMaxCopiedBytes; nullptr: the file is mapped.
   std::shared_ptr<void> copied{};
-  std::vector<Series> series = seriesOf(std::span<const ManifestField>(manifest.fields));
 
   /// `GET /v1/meshes/{id}`, and `GET /v1/logs/{sha256}/manifest`
   enum class Text : std::uint8_t { kDescription, kManifest };
@@ -64,7 +62,7 @@ struct ServedMesh {
   /// It is made already, or making it takes no longer than a turn may (limits::kLongTurn).
   [[nodiscard]] bool isQuick(Text which) const;
   [[nodiscard]] const Document& description() const { return text(Text::kDescription); }
-  /// The keys of the manifest's fields and of `series`. Made when it is first asked for;
+  /// The keys of the manifest's fields and series. Made when it is first asked for;
   /// thread-safe, as the texts.
   [[nodiscard]] const FieldKeys& keys() const;
   struct Texts;

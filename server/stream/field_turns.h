@@ -21,7 +21,7 @@ struct Series;
 using FieldTurns = std::vector<std::vector<std::uint32_t>>;
 
 /// One turn at least; the first has all fields that are no wished instants. With a time a name that
-/// no field has means a series (seriesOfKey). Then fields come with those that they are predicted
+/// no field has means a series (FieldKeys). Then fields come with those that they are predicted
 /// from, and instants ahead that would make more than kMaxRequestFields fields are left out.
 /// Returns the first name that means nothing instead. REQUIRES: `keys`, `series` and `shapes` are
 /// those of one log.

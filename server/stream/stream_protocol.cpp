@@ -96,8 +96,8 @@ void StreamProtocol::handle(const OpenMessage& message) {
   if (!message.digest.empty() && message.digest != mesh->log.digest())
     return refuse(kLogChanged, "the mesh '" + message.mesh + "' has the digest " +
                                    mesh->log.digest() + " by now");
-  auto turns =
-      fieldTurns(message.fields, message.time, mesh->keys(), mesh->series, mesh->log.fields());
+  auto turns = fieldTurns(message.fields, message.time, mesh->keys(), mesh->manifest.series,
+                          mesh->log.fields());
   if (!turns) {
     StreamRefusal unknown = unknownField(*mesh, turns.error());
     return refuse(unknown.code, std::move(unknown.detail));

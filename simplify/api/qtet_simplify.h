@@ -120,7 +120,8 @@ typedef struct {
   uint32_t threads;        /* as many as there are processors at most; 1. The log is the same */
   double maxBoundaryError; /* over the diagonal; NaN: no bound */
   const qtet_named_number* maxFieldErrors; /* rms over the field's range */
-  const qtet_named_number* fieldWeights;   /* of point fields; others count 1 */
+  const qtet_named_number* fieldWeights;   /* of point fields; others count 1. Without, 2
+                                            * for the one that a viewer opens with */
   uint32_t maxFieldErrorCount, fieldWeightCount;
   const char* regions;    /* a cell field whose values keep their topology, or null */
   const char* source;     /* the name that the log calls its input, or null */
@@ -132,8 +133,9 @@ typedef struct {
   /* Since 0.3. The base mesh's tetrahedra, instead of targetRatio; 0: as that says */
   uint32_t baseCells;
   /* Since 0.3. The base mesh is the coarsest level whose boundary is within this fraction of the
-   * diagonal and whose volume is within twice this fraction. NaN: 0.01, and 30,000 tetrahedra or 64
-   * kB at most, where no other member chooses the base mesh */
+   * diagonal. Its volume is within twice this fraction. Since 0.4 fields of floats are, too, as far
+   * as 24 kB and a quarter of the tetrahedra allow. NaN: 0.01, and 30,000 tetrahedra or 64 kB at
+   * most, where no other member chooses the base mesh */
   double baseError;
   /* Since 0.4. 1: each series NAME@TIME gives the fields NAME_average, NAME_minimum, NAME_maximum
    * and NAME_stddev, its statistics over all instants; 0 */

@@ -102,7 +102,7 @@ bool areFewOutlying(const MeshField& field, const FieldExtents& others) {
 
 void OutlyingInstants::add(const MeshField& field, const FieldExtents& own,
                            const FieldExtents& others) {
-  const auto name = instantName(field.name);
+  const auto name = field.name.instant();
   if (!name) return;
   const auto at =
       found_.try_emplace({field.association, std::string(name->series)}, Found{own, others, {}});
@@ -148,7 +148,7 @@ ValueBounds withRanges(std::span<const MeshField> fields, const ValueBounds& bou
   const std::vector<std::optional<ValueBound>> known = valueBoundsOf(fields, bounds);
   std::map<std::string, ValueBound> least;  // by a key of the series
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const auto name = instantName(fields[f].name);
+    const auto name = fields[f].name.instant();
     if (!name || !known[f] || !known[f]->isOfRange()) continue;
     ValueBound bound = *known[f];
     bound.range = all.scales[f].extents.largest();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/limits.h"
 #include "proto/number_text.h"
 #include "proto/rounding_error.h"
@@ -60,7 +60,7 @@ double roomForRounding(const FieldInfo& info, double extent, double bound) {
   double magnitude = 0;
   for (const double low : info.minimum) magnitude = std::max(magnitude, std::abs(low));
   const double later = typeRounding(info.type, magnitude + kLaterExtents * extent);
-  if (instantName(info.name) && later < bound / 8) return later;
+  if (info.name.isInstant() && later < bound / 8) return later;
   return typeRounding(info.type, magnitude + 2 * extent);  // bits hold less than two extents
 }
 
@@ -79,7 +79,7 @@ std::unexpected<Error> tooFine(const FieldInfo& info, double extent, double boun
 void takeBoundOfConstant(double bound, FieldInfo& info) {
   info.bits = kMinFieldBits;
   if (const double rounding = roomForRounding(info, 1, bound);
-      bound > rounding && !instantName(info.name))
+      bound > rounding && !info.name.isInstant())
     info.step = std::min(1.0, 2 * (bound - rounding));
 }
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/limits.h"
 #include "simplify/commands/commands.h"
 #include "simplify/log/opened_log.h"
@@ -34,8 +34,8 @@ void printSeries(const std::vector<const NewField*>& added, std::ostream& out) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> sums;
   for (const NewField* const field : added) {
     const ManifestField& info = field->info;
-    auto& [instants, bytes] = sums[info.association + " field " +
-                                   std::string(nameWithoutStep(info.name).value_or(info.name))];
+    auto& [instants, bytes] =
+        sums[info.association + " field " + std::string(info.name.withoutTime())];
     ++instants;
     bytes += bytesOf(*field);
   }
@@ -49,8 +49,8 @@ void warnOfStatistics(const Manifest& manifest, const std::vector<NewField>& add
                       Console& console) {
   std::set<std::pair<std::string, std::string>> statistics;  // association, name
   for (const NewField& field : added)
-    if (const auto series = nameWithoutStep(field.info.name))
-      for (const std::string& name : statisticsNames(*series))
+    if (const auto instant = field.info.name.instant())
+      for (const std::string& name : statisticsNames(instant->series))
         statistics.emplace(field.info.association, name);
   std::string names;
   for (const ManifestField& field : manifest.fields)

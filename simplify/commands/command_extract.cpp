@@ -28,18 +28,19 @@ void checkCount(std::size_t instants, const std::string& asked, const MeshOutput
                      " instants; -o NAME.pvd writes a file of each");
 }
 
+std::vector<InstantFile> oneFile(const std::vector<ManifestField>& known,
+                                 const std::vector<std::uint32_t>& wanted) {
+  InstantFile all;
+  for (const std::uint32_t f : wanted) all.fields.push_back({f, known[f].name, false});
+  return {std::move(all)};
+}
+
 /// The files that `--time` and the output's kind ask for.
 Result<std::vector<InstantFile>> filesOf(const ParsedWords& parsed, const MeshOutput& output,
-                                         const std::vector<ManifestField>& known,
-                                         const std::vector<std::uint32_t>& wanted,
+                                         const Instants& instants,
                                          std::vector<std::string>& notes) {
-  if (!parsed.has("time") && !isCollection(output)) {
-    InstantFile all;
-    for (const std::uint32_t f : wanted) all.fields.push_back({f, known[f].name, false});
-    return std::vector<InstantFile>{std::move(all)};
-  }
   const std::string asked = parsed.has("time") ? parsed.get<std::string>("time") : "all";
-  auto files = instantFiles(known, wanted, asked, parsed.get<std::string>("LOG"), notes);
+  auto files = instantFiles(instants, asked, parsed.get<std::string>("LOG"), notes);
   if (files) checkCount(files->size(), asked, output);
   return files;
 }
@@ -122,7 +123,8 @@ Result<MeshOutputReport> extractList(const ParsedWords& parsed, const std::strin
     const Result<OpenedLog> log = openSegment(input, segment);
     if (!log) return std::unexpected(log.error());
     const auto choose = [&](const auto& known, const auto& wanted) {
-      return Result<std::vector<InstantFile>>(segmentFiles(known, wanted, times));
+      return Result<std::vector<InstantFile>>(
+          segmentFiles(Instants(known, wanted, seriesOf(known, 1)), times));
     };
     Result<MeshOutputReport> report = extractLevel(*log, levelOfSegment(parsed, *log, times),
                                                    {output, wantedFields(parsed), choose, take});
@@ -139,8 +141,10 @@ Result<MeshOutputReport> extractOne(const ParsedWords& parsed, const std::string
                                     std::vector<std::string>& notes) {
   const Result<OpenedLog> log = openLog(input);
   if (!log) return std::unexpected(log.error());
-  const auto choose = [&](const auto& known, const auto& wanted) {
-    return filesOf(parsed, output, known, wanted, notes);
+  const auto choose = [&](const auto& known,
+                          const auto& wanted) -> Result<std::vector<InstantFile>> {
+    if (!parsed.has("time") && !isCollection(output)) return oneFile(known, wanted);
+    return filesOf(parsed, output, Instants(known, wanted, log->manifest.series), notes);
   };
   return extractLevel(*log, chosenLevel(parsed, *log),
                       {output, wantedFields(parsed), choose, take});

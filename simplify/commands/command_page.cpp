@@ -62,14 +62,13 @@ struct MadePage {
   }
 };
 
-/// Instants of the longest series, of these fields alone.
+/// Instants of the longest series, of these fields alone, ascending numbers.
 std::size_t instantsOf(const Manifest& manifest, const std::vector<std::uint32_t>& fields) {
-  std::vector<ManifestField> kept;
-  for (const std::uint32_t f : fields) kept.push_back(manifest.fields[f]);
-  std::size_t out = 0;
-  for (const Series& series : seriesOf(std::span<const ManifestField>(kept)))
-    out = std::max(out, series.fields.size());
-  return out;
+  const auto isKept = [&](std::size_t f) { return std::ranges::binary_search(fields, f); };
+  std::ptrdiff_t out = 0;
+  for (const Series& series : manifest.series)
+    out = std::max(out, std::ranges::count_if(series.fields, isKept));
+  return static_cast<std::size_t>(out);
 }
 
 /// Where the log does not fit, instants of its series go before levels do.

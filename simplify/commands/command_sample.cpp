@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "simplify/commands/commands.h"
 #include "simplify/log/write_mesh.h"
 #include "simplify/mesh/moved_place.h"
@@ -30,7 +30,7 @@ std::string listOfSamples() {
 TetMesh stepOf(const TetMesh& mesh, double time) {
   TetMesh out{mesh.points, mesh.tetrahedra, {}, mesh.pointType};
   for (const MeshField& field : mesh.fields) {
-    const auto name = instantName(field.name);
+    const auto name = field.name.instant();
     if (!name || name->time != time) continue;
     if (name->series == kDisplacement) {
       for (std::size_t i = 0; i < out.points.size(); ++i)
@@ -48,7 +48,7 @@ TetMesh stepOf(const TetMesh& mesh, double time) {
 Result<std::uint64_t> writeSteps(const TetMesh& mesh, const std::filesystem::path& file) {
   InstantCollection steps(file);
   std::set<double> times;
-  for (const MeshField& field : mesh.fields) times.insert(instantName(field.name)->time);
+  for (const MeshField& field : mesh.fields) times.insert(field.name.instant()->time);
   for (const double time : times)
     if (Status s = steps.add(time, vtuBytes(stepOf(mesh, time))); !s)
       return std::unexpected(s.error());

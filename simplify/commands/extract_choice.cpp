@@ -33,13 +33,13 @@ Target targetOf(const ParsedWords& parsed, const Manifest& manifest) {
 /// are some, and also those without time. Throws UsageError where NAME has a time.
 std::vector<std::uint32_t> fieldsAt(const Manifest& manifest, const std::string& name,
                                     const std::vector<double>& times) {
-  if (instantName(name))
+  if (FieldName(name).isInstant())
     throw UsageError("--error " + name +
                      " has a time; for a list give the field's name alone, and --time T");
   const std::vector<double> instants = instantTimes(manifest);
   std::vector<std::uint32_t> out = fieldsOfKey(manifest.fields, name);
   std::erase_if(out, [&](std::uint32_t f) {
-    const auto instant = instantName(manifest.fields[f].name);
+    const auto instant = manifest.fields[f].name.instant();
     return instant && std::ranges::none_of(times, [&](double time) {
              const auto place = placeOfTime(instants, time);
              return place && instants[*place] == instant->time;

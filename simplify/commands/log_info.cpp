@@ -136,7 +136,7 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
   add("digest", info["digest"]);
   for (const auto& [what, size] : info["kept"].items())
     add("kept", what + ": " + grouped(size) + " bytes");
-  for (const Series& series : seriesOf(std::span<const ManifestField>(log.manifest.fields)))
+  for (const Series& series : log.manifest.series)
     add("series", series.name + ": " + std::to_string(series.fields.size()) + " instants, " +
                       brief(series.times.front()) + " to " + brief(series.times.back()) +
                       (timeUnit(log.manifest).empty() ? "" : " ") +

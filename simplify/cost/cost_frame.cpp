@@ -12,7 +12,8 @@ CostFrame::CostFrame(const LatticeMesh& mesh, const CostOptions& options)
       diagonal(diagonalOf(mesh)),
       boundaryWeight(options.boundaryWeight.value_or(0)),
       labels(options.labels),
-      boundaryFactor(options.boundaryFactor) {
+      boundaryFactor(options.boundaryFactor),
+      planeScale(std::ldexp(0.25, -3 * mesh.lattice.bits)) {
   if (!options.boundaryWeight && !parts.empty())
     boundaryWeight = balancedBoundaryWeight(mesh, parts);
   if (!basis.isDirect()) return;

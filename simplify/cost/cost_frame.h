@@ -22,6 +22,9 @@ struct CostFrame {
   double boundaryWeight = 0;  ///< given, or found; without fields of no account
   std::vector<LabelCost> labels;
   double boundaryFactor = 10;  ///< CostOptions::boundaryFactor
+  /// The factor of all planes' quadrics, without fields. Normals are twice an area, so a quarter of
+  /// their square counts. A power of two keeps lengths to the sixth below the largest float.
+  double planeScale = 1;
 };
 
 }  // namespace qtet

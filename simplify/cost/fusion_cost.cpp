@@ -160,9 +160,6 @@ void FusionCost::addTriangles(std::span<const Triangle> triangles, double bounda
 
 // Eq. 1-3: weight a_p^2, so n / 2 as it is.
 void FusionCost::addPlanes(const LatticeMesh& lattice) {
-  // A length to the sixth power in lattice steps would pass the largest float on fine lattices; a
-  // power of two changes nothing else.
-  const double scale = std::ldexp(0.25, -3 * lattice.lattice.bits);
   const auto isSurface = [&](std::span<const FaceSide> sides) {
     return sides.size() == 1 || std::ranges::any_of(frame_.labels, [&](const LabelCost& label) {
              const std::vector<std::int32_t>& labels = lattice.values[label.field];
@@ -175,9 +172,20 @@ void FusionCost::addPlanes(const LatticeMesh& lattice) {
     const Vector3 p = mesh_.position(face[0]);
     const Vector3 n = cross(mesh_.position(face[1]) - p, mesh_.position(face[2]) - p);
     Symmetric3 a;
-    a.addOuter(n, scale * (isSurface(sides) ? frame_.boundaryFactor * frame_.boundaryFactor : 1));
+    a.addOuter(n, frame_.planeScale *
+                      (isSurface(sides) ? frame_.boundaryFactor * frame_.boundaryFactor : 1));
     addSlope(face, {}, 0, a, Vertices{});
   });
+}
+
+// The boundary's weight for a squared distance. Without fields a triangle's own weight is that for
+// its area, so that of a mean triangle counts.
+double FusionCost::volumeWeight(double area, std::size_t triangles) const {
+  assert(triangles > 0);
+  const double length = std::sqrt(area) / frame_.diagonal;
+  if (components_ > 0) return kVolumeFactor * length * frame_.boundaryWeight / frame_.diagonal;
+  return kVolumeFactor * length * 4 * frame_.planeScale * frame_.boundaryFactor *
+         frame_.boundaryFactor * area / static_cast<double>(triangles);
 }
 
 // Adds v's quadric, moved from its own place and values to the sum's (Eq. 4).

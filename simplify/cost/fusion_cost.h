@@ -33,6 +33,10 @@ struct PreyQuadric {
 /// it.
 inline constexpr double kWallLayer = 3e-5;
 
+/// The factor on the volume that a fusion adds or takes, beside the boundary's distance. Smaller
+/// stars weigh less, by the root of their area over the diagonal's square.
+inline constexpr double kVolumeFactor = 600;
+
 class FusionCost {
  public:
   /// `workers` share the work and change nothing of its outcome. REQUIRES: `mesh` outlives this and
@@ -44,6 +48,9 @@ class FusionCost {
   FusionCost(const FusionMesh& mesh, const CostFrame& frame, std::span<const double> quadrics);
 
   [[nodiscard]] const CostFrame& frame() const { return frame_; }
+  /// The weight of the squared volume that a fusion adds or takes, over the area of the star's
+  /// boundary (ALGORITHM.md, "Volume"). REQUIRES: a triangle at least.
+  [[nodiscard]] double volumeWeight(double area, std::size_t triangles) const;
   /// All that v stands for, as the other constructor takes it.
   [[nodiscard]] std::span<const double> quadric(VertexId v) const {
     return std::span(quadrics_).subspan(at(v), stride_);

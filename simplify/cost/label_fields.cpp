@@ -13,7 +13,7 @@
 
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/face_groups.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "simplify/mesh/tet_mesh.h"
 
 namespace qtet {
@@ -30,9 +30,9 @@ constexpr std::array<std::string_view, 8> kProcessNames{
     "procid", "processid", "vtkprocessid", "processorid",
     "rank",   "mpirank",   "partition",    "celldecomposition"};
 
-bool isAmong(std::span<const std::string_view> names, std::string_view name) {
+bool isAmong(std::span<const std::string_view> names, const FieldName& name) {
   std::string lower;
-  for (const char c : nameWithoutStep(name).value_or(name))
+  for (const char c : name.withoutTime())
     lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return std::ranges::find(names, lower) != names.end();
 }
@@ -49,17 +49,18 @@ void forEachFaceInside(const LatticeMesh& mesh, const Visit& visit) {
 std::vector<std::size_t> wholeSeries(const LatticeMesh& mesh, std::vector<std::size_t> labels) {
   std::map<std::string_view, bool> series;  // whether all can be
   for (const std::size_t f : labels)
-    if (const auto name = nameWithoutStep(mesh.fields[f].name)) series.emplace(*name, true);
+    if (const auto name = mesh.fields[f].name.instant()) series.emplace(name->series, true);
   std::set<std::size_t> out(labels.begin(), labels.end());
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    const auto at = series.find(nameWithoutStep(mesh.fields[f].name).value_or(""));
+    const FieldName& name = mesh.fields[f].name;
+    const auto at = name.isInstant() ? series.find(name.withoutTime()) : series.end();
     if (at == series.end() || !isCellField(mesh.fields[f])) continue;
     at->second &= isOneInteger(mesh.fields[f]);
     out.insert(f);
   }
   std::erase_if(out, [&](std::size_t f) {
-    const auto name = nameWithoutStep(mesh.fields[f].name);
-    return name && !series.at(*name);
+    const auto name = mesh.fields[f].name.instant();
+    return name && !series.at(name->series);
   });
   return {out.begin(), out.end()};
 }
@@ -84,7 +85,7 @@ bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
 std::vector<std::size_t> labelsOf(const LatticeMesh& mesh) {
   std::vector<std::size_t> labels, asked;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    const std::string& name = mesh.fields[f].name;
+    const FieldName& name = mesh.fields[f].name;
     if (!canBeLabel(mesh, f) || isAmong(kProcessNames, name)) continue;
     const bool isKnown = isAmong(kLabelNames, name) || !mesh.fields[f].labelNames.empty();
     (isKnown ? labels : asked).push_back(f);

@@ -131,6 +131,16 @@ void FusionPointFinder::offer(const LatticePoint& p, bool isOutside, double dear
   choices_.push_back({p, cost, dearness * cost, isOutside});
 }
 
+// The square of slope . d + change.
+void FusionPointFinder::addVolume(const FusionCheck& test, Quadric& quadric) const {
+  const VolumeChange volume = test.volumeChange();
+  if (!(volume.area > 0)) return;
+  const double weight = cost_.volumeWeight(volume.area, volume.triangles) / volume.area;
+  quadric.a.addOuter(volume.slope, weight);
+  quadric.b = quadric.b + weight * volume.change * volume.slope;
+  quadric.c += weight * volume.change * volume.change;
+}
+
 // Points that take few bits come first, so that a free point which falls on one of them is that
 // one.
 void FusionPointFinder::offerCheap(const Prey& prey, const FusionCheck& test) {
@@ -170,10 +180,11 @@ void FusionPointFinder::offerFree(const FusionCheck& test) {
 std::optional<double> FusionPointFinder::price(const Prey& prey, const FusionCheck& test) {
   prey_ = prey;
   choices_.clear();
-  const PreyQuadric of = growth(prey);
-  quadric_ = of.quadric;
+  PreyQuadric of = growth(prey);
   origin_ = mesh_.position(prey.vertex[0]);
   deciding_ = deciding(prey);
+  if (deciding_.boundary) addVolume(test, of.quadric);
+  quadric_ = of.quadric;
   const Ideal ideal = idealOf(prey, deciding_, of);
   ideal_ = ideal.offset;
   minFree_ = options_.rule == PlacementRule::kVertex ? std::numeric_limits<double>::infinity()

@@ -78,6 +78,7 @@ class FusionPointFinder {
   [[nodiscard]] Deciding deciding(const Prey& prey) const;
   [[nodiscard]] Ideal idealOf(const Prey& prey, const Deciding& deciding,
                               const PreyQuadric& of) const;
+  void addVolume(const FusionCheck& test, Quadric& quadric) const;
   void offer(const LatticePoint& p, bool isOutside, double dearness = 1);
   void offerCheap(const Prey& prey, const FusionCheck& test);
   void offerFree(const FusionCheck& test);

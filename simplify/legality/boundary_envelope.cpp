@@ -85,6 +85,24 @@ bool BoundaryEnvelope::turnsTooFar(const Face& face, const LatticePoint& p) cons
          (along <= 0 || along * along <= least * least * dot(normal, normal) * squared);
 }
 
+// Each triangle spans a tetrahedron with the first prey vertex. Triangles that go lose theirs. The
+// others change theirs, as one of their corners comes to d.
+VolumeChange BoundaryEnvelope::volumeChange() const {
+  VolumeChange out{{}, 0, 0, faces_.size()};
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const Face& face = faces_[i];
+    const auto& cell = mesh_.cell(face.ghost);
+    const Vector3& normal = mesh_.plane(face.ghost).normal;
+    out.area += 0.5 * std::sqrt(dot(normal, normal));
+    out.change -= planes_[i / 2].height[i % 2] / 6;
+    if (!face.stays) continue;
+    const Vector3 next = mesh_.position(cell[(face.moving + 1) % 3]) - origin_,
+                  last = mesh_.position(cell[(face.moving + 2) % 3]) - origin_;
+    out.slope = out.slope + 1 / 6.0 * cross(next, last);
+  }
+  return out;
+}
+
 bool BoundaryEnvelope::turnsTooFar(const LatticePoint& p) const {
   return normalCosine_ >= 0 && std::ranges::any_of(faces_.all(), [&](const Face& face) {
            return face.stays && turnsTooFar(face, p);

@@ -15,6 +15,14 @@
 
 namespace qtet {
 
+/// The solid gains slope . d + change of volume if the prey goes to d, seen from its first vertex.
+struct VolumeChange {
+  Vector3 slope{};
+  double change = 0;
+  double area = 0;            ///< of the star's boundary as it is
+  std::size_t triangles = 0;  ///< of it
+};
+
 class BoundaryEnvelope {
  public:
   /// FusionLimits::normalCosine.
@@ -34,6 +42,8 @@ class BoundaryEnvelope {
   /// than allowed. It presumes that nothing of it does yet.
   [[nodiscard]] bool staysNear(const AllowedSpace& allowed, const LatticePoint& p,
                                DistanceCells& known) const;
+  /// REQUIRES: gather.
+  [[nodiscard]] VolumeChange volumeChange() const;
   /// Whether with the prey at p a triangle turns further than it may.
   [[nodiscard]] bool turnsTooFar(const LatticePoint& p) const;
 

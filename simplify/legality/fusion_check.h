@@ -65,6 +65,8 @@ class FusionCheck {
   [[nodiscard]] bool flipsAt(const LatticePoint& p, std::uint32_t moving) const {
     return flips_.flipsAt(prey_, p, moving);
   }
+  /// REQUIRES gatherBoundary.
+  [[nodiscard]] VolumeChange volumeChange() const { return envelope_.volumeChange(); }
   /// Whether with the prey at p the solid gains nothing that lies further outside the original one
   /// than the tolerance. REQUIRES gatherBoundary, mayLeave, p on the lattice.
   [[nodiscard]] bool staysNear(const LatticePoint& p) const {

@@ -55,21 +55,18 @@ class Lookout {
   [[nodiscard]] std::vector<float> take() { return std::move(out_); }
 
  private:
-  // The nearest triangle on each side.
+  // The nearest triangle outwards. One that touches this one lies at 0, or as near as doubles tell.
   void look(std::uint32_t triangle, const Vector3& from, const Vector3& along) {
-    std::array<double, 2> nearest{1, 1};
-    std::array<std::uint32_t, 2> hit{triangle, triangle};
-    tree_.crossing(from - along, from + along,
+    double nearest = 1;
+    std::uint32_t hit = triangle;
+    tree_.crossing(from - kEdge * along, from + along,
                    [&](std::uint32_t other, const std::array<Vector3, 3>& corners) {
                      if (other == triangle) return;
                      const double at = passingAt(from, along, corners);
-                     const std::size_t side = at < 0 ? 1 : 0;
-                     if (std::abs(at) < nearest[side])
-                       nearest[side] = std::abs(at), hit[side] = other;
+                     if (at >= -kEdge && at < nearest) nearest = std::max(at, 0.0), hit = other;
                    });
-    for (std::size_t side = 0; side < 2; ++side)
-      for (const std::uint32_t t : {triangle, hit[side]})
-        out_[t] = std::min(out_[t], floatBelow(nearest[side] * most_));
+    for (const std::uint32_t t : {triangle, hit})
+      out_[t] = std::min(out_[t], floatBelow(nearest * most_));
   }
 
   const TriangleTree& tree_;

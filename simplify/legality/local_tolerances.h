@@ -1,5 +1,5 @@
-// How far a solid may grow at each triangle of its surface, so that no two sheets of it swallow
-// what lies between them (ALGORITHM.md, "The envelope's tolerance").
+// How far a solid may grow at each triangle of its surface, so that no two sheets of it swallow the
+// gap between them (ALGORITHM.md, "The envelope's tolerance").
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace qtet {
 
-/// By triangle of the tree, at most `most`. Also at most a quarter of the way along its normal to
-/// the next triangle, inwards or outwards. The one met is bound alike. 0 at degenerate ones. In
-/// lattice steps. REQUIRES: the tree is over the triangles 0, 1, 2 ...
+/// By triangle of the tree, at most `most`. Also at most a quarter of the way along its normal,
+/// outwards, to the next triangle. The one met is bound alike. 0 at degenerate ones. In lattice
+/// steps. REQUIRES: the tree is over the triangles 0, 1, 2 ...
 [[nodiscard]] std::vector<float> localTolerances(const TriangleTree& tree, double most);
 
 }  // namespace qtet

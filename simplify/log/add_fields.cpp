@@ -51,7 +51,7 @@ std::vector<std::size_t> decodingOrderOf(const std::vector<FieldInfo>& before,
   for (const Item& item : items) all.push_back(item.info);
   std::vector<std::size_t> out(items.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
-  for (const Series& series : seriesOf(std::span<const FieldInfo>(all))) {
+  for (const Series& series : seriesOf(all)) {
     std::vector<std::size_t> places, ordered;  // of the series' items
     for (const InstantStep& step : decodingOrder(series.fields.size()))
       if (const std::size_t f = series.fields[step.instant]; f >= before.size())
@@ -100,7 +100,7 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
   for (std::size_t f = 0; f < manifest_.fields.size(); ++f) {
     depths_.push_back(depthOf(log_.fields()[f].prediction, depths_));
     const FieldInfo info = fieldInfoOf(manifest_.fields[f]);
-    const auto name = instantName(info.name);
+    const auto name = info.name.instant();
     if (!name) continue;
     const bool stays = std::ranges::find(added_.kept, f) != added_.kept.end();
     if (stays || options_.scalesOfOthers) keepScale(info, stays);
@@ -133,8 +133,8 @@ Status FieldAdder::matchTo(const TetMesh& mesh) {
 }
 
 /// The series of an instant; nullptr of another field.
-FieldAdder::SeriesState* FieldAdder::seriesOf(std::string_view association, std::string_view name) {
-  const auto instant = instantName(name);
+FieldAdder::SeriesState* FieldAdder::seriesOf(std::string_view association, const FieldName& name) {
+  const auto instant = name.instant();
   return instant ? &series_[{std::string(association), std::string(instant->series)}] : nullptr;
 }
 
@@ -165,7 +165,7 @@ void FieldAdder::keepInstant(const FieldInfo& info, double time, std::size_t num
 const FieldAdder::Instant* FieldAdder::parentOf(const FieldInfo& info) {
   SeriesState* const series = seriesOf(info.association, info.name);
   if (series == nullptr) return nullptr;
-  const double time = instantName(info.name)->time;
+  const double time = info.name.instant()->time;
   const auto behind = std::ranges::lower_bound(series->instants, time, {}, &Instant::time);
   const auto rest = std::ranges::subrange(series->instants.begin(), behind);
   for (const Instant& instant : std::views::reverse(rest))
@@ -277,7 +277,7 @@ std::map<const FieldAdder::SeriesState*, std::optional<FieldInfo>> FieldAdder::c
 
 /// A label of the log, or one that was added.
 bool FieldAdder::isKnownLabel(const FieldInfo& info) const {
-  return isOneInteger(info) && labels_.contains(nameWithoutStep(info.name).value_or(info.name));
+  return isOneInteger(info) && labels_.contains(info.name.withoutTime());
 }
 
 /// A known label, or one by labelsOf.
@@ -456,7 +456,7 @@ Status FieldAdder::takeBack(std::span<const Instant> instants, std::vector<Item>
 Status FieldAdder::takeUnfinished(std::vector<Item>& items) {
   std::map<SeriesKey, std::size_t> come;
   for (const Item& item : items) {
-    const auto name = instantName(item.info.name);
+    const auto name = item.info.name.instant();
     if (!name) continue;
     const SeriesKey key{item.info.association, std::string(name->series)};
     SeriesState& series = series_[key];
@@ -487,10 +487,10 @@ void FieldAdder::complete(std::vector<Item>& items, Numbers& numbers) {
     if (item.wasThere) added_.again.push_back(added_.fields.size());
     added_.fields.push_back({manifestFieldOf(item.info), {}, std::move(item.errors), {}});
     if (item.isLabel) {
-      labels_.emplace(nameWithoutStep(item.info.name).value_or(item.info.name));
+      labels_.emplace(item.info.name.withoutTime());
       added_.fields.back().labelNames = item.info.labelNames;
     }
-    const auto name = instantName(item.info.name);
+    const auto name = item.info.name.instant();
     if (!name) continue;
     keepScale(item.info, true);
     keepInstant(item.info, name->time, number);

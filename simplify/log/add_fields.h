@@ -123,7 +123,7 @@ class FieldAdder {
   void complete(std::vector<Item>& items, Numbers& numbers);
   [[nodiscard]] Status encode(const Numbers& numbers, std::span<const LiftingRules> rules);
   [[nodiscard]] Status code(std::vector<Item> items);
-  [[nodiscard]] SeriesState* seriesOf(std::string_view association, std::string_view name);
+  [[nodiscard]] SeriesState* seriesOf(std::string_view association, const FieldName& name);
   void keepScale(FieldInfo info, bool stays);
   void keepInstant(const FieldInfo& info, double time, std::size_t number);
   [[nodiscard]] static const FieldInfo* scaleOf(const SeriesState& series);

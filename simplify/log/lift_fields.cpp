@@ -214,7 +214,7 @@ class Lifter {
     std::vector<LevelStep> out(levels_.size());
     const std::vector<double> errors = errorsInSteps(errors_, f - options_.firstField, stepsIn(f));
     if (errors.empty()) return out;
-    const bool isInstant = instantName(history_.fields[f].name).has_value();
+    const bool isInstant = history_.fields[f].name.isInstant();
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double cells = isInstant ? 0 : cells_[levels_[i]];
       const double times = cells < kQuarter ? 1 : cells < kMiddle ? 2 : 4;

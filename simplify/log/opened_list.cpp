@@ -51,7 +51,7 @@ Result<SegmentList> openList(const fs::path& path) {
 std::vector<double> instantTimes(const Manifest& manifest) {
   std::vector<double> out;
   for (const ManifestField& field : manifest.fields)
-    if (const auto name = instantName(field.name)) out.push_back(name->time);
+    if (const auto name = field.name.instant()) out.push_back(name->time);
   std::ranges::sort(out);
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;

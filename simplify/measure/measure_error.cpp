@@ -9,10 +9,12 @@
 #include "codec/coding/error_figure.h"
 #include "codec/coding/level_columns.h"
 #include "proto/field_key.h"
+#include "proto/series.h"
 #include "simplify/measure/label_volumes.h"
 #include "simplify/measure/measure_boundary.h"
 #include "simplify/measure/measure_fields.h"
 #include "simplify/mesh/stopping.h"
+#include "simplify/mesh/tet_mesh.h"
 #include "simplify/mesh/workers.h"
 
 namespace qtet {
@@ -187,9 +189,14 @@ class LevelBounds {
  public:
   LevelBounds(const FusionHistory& history, const MeasureOptions& options,
               std::vector<FieldBound> fields, LevelError least)
-      : options_(options), fields_(std::move(fields)), least_(std::move(least)) {
-    for (const FieldInfo& field : history.fields)
-      if (!isCellField(field)) components_ += field.components;
+      : options_(options), fields_(std::move(fields)), least_(std::move(least)), finest_(history) {
+    const std::vector<bool> isLater =
+        laterInstants(seriesOf(history.fields), history.fields.size());
+    for (std::size_t f = 0; f < history.fields.size(); ++f) {
+      const FieldInfo& field = history.fields[f];
+      if (!isCellField(field) && !isLater[f]) components_ += field.components;
+      if (isFloatType(field.type)) floats_.push_back(f);
+    }
   }
 
   /// Whether a level with this error may be the base mesh, instead of the finer one of this size.
@@ -217,9 +224,11 @@ class LevelBounds {
     const auto isAbove = [share](std::size_t count, std::size_t most) {
       return share * static_cast<double>(count) > static_cast<double>(most);
     };
-    return isAbove(size.tetrahedra, rule.maxCells) ||
-           isAbove(baseBytesOf(size.vertices, components_), rule.maxBytes) ||
+    const std::size_t bytes = baseBytesOf(size.vertices, components_);
+    return isAbove(size.tetrahedra, rule.maxCells) || isAbove(bytes, rule.maxBytes) ||
            (isNear(error, share * rule.error) &&
+            (isAbove(bytes, rule.maxFieldBytes) || isAbove(size.tetrahedra, mostForFields(rule)) ||
+             areFieldsNear(error, share * 2 * rule.error)) &&
             std::max(error.volumeLost, error.volumeGained) <= share * 2 * rule.error &&
             level.labelVolumes <= share * rule.labelError &&
             std::ranges::all_of(options_.labels, [&](std::uint32_t label) {
@@ -227,9 +236,20 @@ class LevelBounds {
             }));
   }
 
+  [[nodiscard]] std::size_t mostForFields(const BaseRule& rule) const {
+    return static_cast<std::size_t>(rule.maxFieldShare * static_cast<double>(finest_.tetrahedra));
+  }
+  [[nodiscard]] bool areFieldsNear(const LevelError& error, double bound) const {
+    return std::ranges::all_of(floats_, [&](std::size_t f) {
+      return error.fields[f].rms <= std::max(bound, least_.fields[f].rms);
+    });
+  }
+
   const MeasureOptions& options_;
   std::vector<FieldBound> fields_;
   LevelError least_;
+  LevelSize finest_;
+  std::vector<std::size_t> floats_;  // fields
   std::size_t components_ = 0;
 };
 

@@ -43,12 +43,16 @@ inline constexpr double kBaseError = 0.01;
 inline constexpr double kMaxBaseLabelError = 0.1;
 /// Bytes of a base mesh at most, which a line of 1 Mbit/s brings in half a second.
 inline constexpr std::size_t kMaxBaseBytes = 64'000;
+/// Bytes of a base mesh at most that is larger for its fields alone. Noise is never near.
+inline constexpr std::size_t kMaxBaseFieldBytes = 24'000;
+/// The same as a share of the cells: more would leave little to refine.
+inline constexpr double kMaxBaseFieldShare = 0.25;
 
 /// Where the base mesh is when its size is not given: the coarsest level of which it and all finer
 /// ones are near the original.
 struct BaseRule {
   /// The largest LevelError::boundaryDistance(). Twice that is the bound of the volume lost, and of
-  /// the volume gained.
+  /// the volume gained. It is that of the rms of each field of floats too, at any instant.
   double error = kBaseError;
   /// A larger level is no base mesh, however far from the original the coarser ones are.
   std::size_t maxCells = std::numeric_limits<std::size_t>::max();
@@ -56,10 +60,14 @@ struct BaseRule {
   /// The largest share of the volume that has another label (FieldError), and the largest
   /// LabelVolumes::worst().
   double labelError = kMaxBaseLabelError;
+  /// A level above these is no base mesh for fields alone. The share is of the finest one's cells.
+  std::size_t maxFieldBytes = kMaxBaseFieldBytes;
+  double maxFieldShare = kMaxBaseFieldShare;
 };
 
 /// The bytes that a base mesh takes in a log, to some 20 % (measured on nine meshes with fields of
-/// 12 bits). `components` are those of all point fields.
+/// 12 bits). `components` are those of point fields that a viewer fetches first. A series counts
+/// with one instant.
 [[nodiscard]] std::size_t baseBytesOf(std::size_t vertices, std::size_t components);
 
 struct MeasureOptions {

@@ -48,7 +48,7 @@ std::vector<std::size_t> usualInstants(const LatticeMesh& mesh, const Series& se
 std::vector<Extent> shownExtents(const LatticeMesh& mesh) {
   std::vector<Extent> out;
   for (const FieldInfo& info : mesh.fields) out.push_back({info.range});
-  for (const Series& series : seriesOf(std::span(mesh.fields))) {
+  for (const Series& series : seriesOf(mesh.fields)) {
     Extent all{mesh.fields[series.fields.front()].range, true};
     for (const std::size_t f : usualInstants(mesh, series)) {
       all.range[0] = std::min(all.range[0], mesh.fields[f].range[0]);
@@ -288,7 +288,7 @@ class Scene {
 
 /// Those that an opening can name: of a series one instant alone.
 std::vector<std::size_t> openingFields(const LatticeMesh& mesh) {
-  const std::vector<bool> isLater = laterInstants(std::span(mesh.fields));
+  const std::vector<bool> isLater = laterInstants(seriesOf(mesh.fields), mesh.fields.size());
   std::vector<std::size_t> out;
   for (std::size_t f = 0; f < mesh.fields.size() && f <= kMaxOpeningField; ++f)
     if (!isLater[f]) out.push_back(f);
@@ -326,7 +326,7 @@ std::optional<Opening> openingOf(const LatticeMesh& mesh, const std::optional<Fo
 }
 
 std::optional<double> openingTime(const LatticeMesh& mesh, const std::optional<Focus>& focus) {
-  const std::vector<Series> all = seriesOf(std::span(mesh.fields));
+  const std::vector<Series> all = seriesOf(mesh.fields);
   if (all.empty()) return std::nullopt;
   const Scene scene(mesh, focus);
   const std::vector<double> times = timesOf(all);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "codec/mesh/predicates.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 
 namespace qtet {
 namespace {
@@ -62,7 +62,7 @@ std::vector<std::size_t> displacementFields(std::span<const FieldInfo> fields) {
   std::vector<Instant> found;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (isCellField(fields[f]) || fields[f].components != 3) continue;
-    const auto instant = instantName(fields[f].name);
+    const auto instant = fields[f].name.instant();
     if (instant ? instant->series == kDisplacement : fields[f].name == kDisplacement)
       found.push_back({instant ? instant->time : 0, f});
   }

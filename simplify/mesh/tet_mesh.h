@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/mesh/mesh.h"
+#include "proto/field_name.h"
 
 namespace qtet {
 
@@ -16,7 +17,7 @@ using Position = std::array<double, 3>;
 /// components numbers a point, or a tetrahedron for a cell field, in their order, each
 /// representable in `type`.
 struct MeshField {
-  std::string name;
+  FieldName name;
   std::uint32_t components = 1;
   /// Float32, float64, int8, uint8 ... int64, uint64 (up to 2^53 in magnitude).
   std::string type = "float32";

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/mesh/vector3.h"
@@ -89,8 +89,7 @@ std::vector<std::string> labelWarnings(const Manifest& manifest) {
   const std::optional<LevelError>& base = manifest.levels.front().error;
   for (std::size_t f = 0; base && f < manifest.fields.size(); ++f) {
     if (labelNamesOf(manifest, f) == nullptr || base->fields[f].rms <= kLabelErrorWarned) continue;
-    const std::string_view name = manifest.fields[f].name;
-    std::size_t& of = worst.emplace(nameWithoutStep(name).value_or(name), f).first->second;
+    std::size_t& of = worst.emplace(manifest.fields[f].name.withoutTime(), f).first->second;
     if (base->fields[f].rms > base->fields[of].rms) of = f;
   }
   std::vector<std::string> out;

@@ -91,9 +91,8 @@ struct Run {
 /// of no field).
 Status takeUnits(const std::vector<MeshField>& fields, Run& run) {
   const auto isThere = [&](std::string_view name) {
-    return std::ranges::any_of(fields, [&](const MeshField& field) {
-      return nameWithoutStep(field.name).value_or(field.name) == name;
-    });
+    return std::ranges::any_of(
+        fields, [&](const MeshField& field) { return field.name.withoutTime() == name; });
   };
   run.units = run.options.units;
   for (const auto& [name, unit] : run.options.units) {
@@ -177,17 +176,18 @@ constexpr double kFusingShare = 0.8;
 /// The history, with predictions of instants from others in the order of seriesOrder.
 Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
-  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
+  Result<FusionOptions> options = fusionOptionsFor(
+      run.options, quantised, run.opening ? run.opening->field : 0, run.report.notes);
   if (!options) return std::unexpected(options.error());
-  const bool hasSeries = !seriesOf(std::span<const FieldInfo>(quantised.mesh.fields)).empty();
+  const bool hasSeries = !seriesOf(quantised.mesh.fields).empty();
   options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
   options->stop = run.options.stop;
   if (run.options.algorithm != Algorithm::kPaper &&
       !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
     run.report.boundaryWeight = options->cost.boundaryWeight;
   for (const LabelCost& label : options->cost.labels) {
-    const std::string& name = quantised.mesh.fields[label.field].name;
-    const std::string series(nameWithoutStep(name).value_or(name));
+    const FieldName& name = quantised.mesh.fields[label.field].name;
+    const std::string series(name.withoutTime());
     run.labelFields.push_back(static_cast<std::uint32_t>(label.field));
     run.labels[series].merge(
         namesOfValues(quantised.mesh.fields[label.field], quantised.mesh.values[label.field]));

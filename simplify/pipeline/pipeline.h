@@ -38,7 +38,8 @@ struct PipelineOptions {
   QuantiseOptions quantise{};
   /// Fields by index, progress and stop are the pipeline's own affair. Measuring takes its threads.
   FusionOptions fusion{};
-  /// Point fields by name (proto/field_key.h) and what they count; 1 where none is given.
+  /// Point fields by name (proto/field_key.h) and what they count; others 1. Empty: as
+  /// fusion_choice.h says.
   std::vector<std::pair<std::string, double>> fieldWeights{};
   /// Cell fields of integers by name, and what their interfaces count. A field named here is a
   /// label (label_fields.h) unless it counts 0; without, labelWeightBeside.

@@ -10,7 +10,7 @@
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_edit.h"
 #include "codec/refine/log_file.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/log/add_fields.h"
 #include "simplify/series/series.h"
@@ -21,9 +21,9 @@ namespace {
 
 /// The time that the log opens at, if that is not its series' first.
 std::optional<double> laterOpening(const Manifest& manifest) {
-  for (const Series& series : seriesOf(std::span(manifest.fields))) {
-    const std::size_t shown = *std::ranges::min_element(series.fields);
-    if (shown != series.fields.front()) return instantName(manifest.fields[shown].name)->time;
+  for (const Series& series : manifest.series) {
+    const auto shown = std::ranges::min_element(series.fields) - series.fields.begin();
+    if (shown != 0) return series.times[static_cast<std::size_t>(shown)];
   }
   return std::nullopt;
 }
@@ -32,7 +32,7 @@ std::optional<double> laterOpening(const Manifest& manifest) {
 std::vector<std::uint32_t> fieldsThatStay(const Manifest& manifest, std::optional<double> time) {
   std::vector<std::uint32_t> out;
   for (std::uint32_t f = 0; f < manifest.fields.size(); ++f) {
-    const auto instant = instantName(manifest.fields[f].name);
+    const auto instant = manifest.fields[f].name.instant();
     if (!instant || instant->time == time) out.push_back(f);
   }
   return out;
@@ -97,7 +97,7 @@ Status addAll(std::size_t steps, const InstantsReader& read, const PipelineOptio
     Result<TetMesh> mesh = readSteps(read, begin, std::min(end, steps));
     if (!mesh) return std::unexpected(mesh.error());
     std::erase_if(mesh->fields, [&](const MeshField& field) {
-      const auto instant = instantName(field.name);
+      const auto instant = field.name.instant();
       return !instant || instant->time == known;
     });
     if (const auto cleaned = cleanMesh(*mesh, options.stop); !cleaned)

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/number_text.h"
 #include "proto/series.h"
 #include "simplify/clean/clean_mesh.h"
@@ -27,13 +27,13 @@ namespace {
 /// do).
 Status nameInstants(TetMesh& mesh, const std::string& file, const std::optional<double>& time) {
   for (MeshField& field : mesh.fields) {
-    const bool isNamed = instantName(field.name).has_value();
+    const bool isNamed = field.name.isInstant();
     if (isNamed && time)
       return fail(ErrorCode::kBadInput,
                   file + " has times of its own (" + field.name + "); leave --times out");
     if (!isNamed && !time)
       return fail(ErrorCode::kBadInput, file + " knows no time; give it with --times");
-    if (!isNamed) field.name += "@" + shortestText(*time);
+    if (!isNamed) field.name = field.name.at(shortestText(*time));
   }
   return {};
 }
@@ -59,7 +59,7 @@ class Windows {
     const bool isSame = mesh.points == pending_.points && mesh.tetrahedra == pending_.tetrahedra;
     if (!isSame)
       if (Status s = flush(); !s) return s;
-    for (const MeshField& field : mesh.fields) steps_.insert(instantName(field.name)->time);
+    for (const MeshField& field : mesh.fields) steps_.insert(field.name.instant()->time);
     if (pending_.fields.empty()) {
       pending_ = std::move(mesh);
     } else {
@@ -101,7 +101,7 @@ class Adding {
         windows_(log.file, request.adding) {
     reading_.namesTime = true;
     reading_.moves = std::ranges::any_of(log.manifest.fields, [](const ManifestField& field) {
-      const auto name = instantName(field.name);
+      const auto name = field.name.instant();
       return name && name->series == kDisplacement;
     });
   }
@@ -201,11 +201,11 @@ class Adding {
     std::set<double> skipped, come;
     std::erase_if(mesh.fields, [&](const MeshField& field) {
       if (!known_.knowsSeriesOf(field) && mayLeave()) {
-        others.emplace(instantName(field.name)->series);
+        others.emplace(field.name.instant()->series);
         return true;
       }
       const bool isThere = known_.has(field);
-      (isThere ? skipped : come).insert(instantName(field.name)->time);
+      (isThere ? skipped : come).insert(field.name.instant()->time);
       return isThere;
     });
     for (const double time : come) skipped.erase(time);
@@ -217,7 +217,7 @@ class Adding {
                       "; name others with --fields");
     others_.merge(others);
     std::ranges::sort(mesh.fields, {}, [](const MeshField& field) {
-      return std::tuple(instantName(field.name)->time, field.association, field.name);
+      return std::tuple(field.name.instant()->time, field.association, field.name);
     });
     for (MeshField& field : mesh.fields)
       if (Status s = known_.add(field, file); !s) return s;

@@ -7,7 +7,6 @@
 #include "codec/log/log_index.h"
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
-#include "proto/field_key.h"
 #include "proto/level_error_json.h"
 #include "simplify/produce/written_log.h"
 

@@ -6,12 +6,9 @@
 #include "simplify/read/options/time_steps.h"
 
 namespace qtet {
-Result<std::vector<InstantFile>> instantFiles(const std::vector<ManifestField>& fields,
-                                              const std::vector<std::uint32_t>& wanted,
-                                              const std::string& asked,
+Result<std::vector<InstantFile>> instantFiles(const Instants& instants, const std::string& asked,
                                               const std::filesystem::path& log,
                                               std::vector<std::string>& notes) {
-  const Instants instants(fields, wanted);
   const std::vector<double>& times = instants.times();
   const Result<std::vector<std::size_t>> steps = chosenSteps(times, asked, log, notes);
   if (!steps) return std::unexpected(steps.error());
@@ -21,10 +18,7 @@ Result<std::vector<InstantFile>> instantFiles(const std::vector<ManifestField>& 
   return out;
 }
 
-std::vector<InstantFile> segmentFiles(const std::vector<ManifestField>& fields,
-                                      const std::vector<std::uint32_t>& wanted,
-                                      const std::vector<double>& times) {
-  const Instants instants(fields, wanted, 1);
+std::vector<InstantFile> segmentFiles(const Instants& instants, const std::vector<double>& times) {
   std::vector<InstantFile> out;
   for (const double time : times) {
     const auto found = placeOfTime(instants.times(), time);

@@ -14,16 +14,16 @@
 
 namespace qtet {
 
-/// A file for each time that `asked` means (chosenSteps) of the series among `wanted`, ascending
-/// numbers. Its fields are those of Instants::fileAt. Errors and notes: chosenSteps's.
-[[nodiscard]] Result<std::vector<InstantFile>> instantFiles(
-    const std::vector<ManifestField>& fields, const std::vector<std::uint32_t>& wanted,
-    const std::string& asked, const std::filesystem::path& log, std::vector<std::string>& notes);
+/// A file for each time that `asked` means (chosenSteps). Its fields are those of
+/// Instants::fileAt. Errors and notes: chosenSteps's.
+[[nodiscard]] Result<std::vector<InstantFile>> instantFiles(const Instants& instants,
+                                                            const std::string& asked,
+                                                            const std::filesystem::path& log,
+                                                            std::vector<std::string>& notes);
 
 /// The same of a segment of a list, for each of some of its times. An instant of the log is that of
 /// a time as placeOfTime says.
-[[nodiscard]] std::vector<InstantFile> segmentFiles(const std::vector<ManifestField>& fields,
-                                                    const std::vector<std::uint32_t>& wanted,
+[[nodiscard]] std::vector<InstantFile> segmentFiles(const Instants& instants,
                                                     const std::vector<double>& times);
 
 /// A ParaView collection (.pvd) of files by time.

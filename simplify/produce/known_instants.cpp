@@ -14,7 +14,7 @@ namespace qtet {
 
 KnownInstants::KnownInstants(const Manifest& manifest) {
   for (const ManifestField& field : manifest.fields)
-    if (const auto name = instantName(field.name)) {
+    if (const auto name = field.name.instant()) {
       OneSeries& series = series_[{field.association, std::string(name->series)}];
       series.components = field.components, series.type = field.type;
       series.times.insert(name->time);
@@ -30,7 +30,7 @@ bool KnownInstants::hasTime(const std::set<double>& times, double time) {
 }
 
 const KnownInstants::OneSeries* KnownInstants::seriesOf(const MeshField& field) const {
-  const auto name = instantName(field.name);
+  const auto name = field.name.instant();
   assert(name);
   const auto at = series_.find({field.association, std::string(name->series)});
   return at == series_.end() ? nullptr : &at->second;
@@ -38,11 +38,11 @@ const KnownInstants::OneSeries* KnownInstants::seriesOf(const MeshField& field) 
 
 bool KnownInstants::has(const MeshField& field) const {
   const OneSeries* const series = seriesOf(field);
-  return series != nullptr && hasTime(series->times, instantName(field.name)->time);
+  return series != nullptr && hasTime(series->times, field.name.instant()->time);
 }
 
 Status KnownInstants::add(MeshField& field, const std::string& file) {
-  const auto name = instantName(field.name);
+  const auto name = field.name.instant();
   assert(name);
   OneSeries& series = series_[{field.association, std::string(name->series)}];
   if (series.times.empty()) series.components = field.components, series.type = field.type;

@@ -3,7 +3,6 @@
 #include <iomanip>
 #include <sstream>
 
-#include "proto/field_key.h"
 #include "simplify/produce/closing_report.h"
 #include "simplify/words/columns.h"
 #include "simplify/words/error_table.h"

@@ -8,7 +8,7 @@
 
 #include "codec/files/atomic_file.h"
 #include "codec/files/temporary_folder.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/number_text.h"
 #include "proto/text_bytes.h"
 #include "proto/utf8.h"
@@ -117,8 +117,8 @@ class UnpublishedLogs {
 };
 
 bool hasInstants(const TetMesh& mesh) {
-  return std::ranges::any_of(
-      mesh.fields, [](const MeshField& field) { return instantName(field.name).has_value(); });
+  return std::ranges::any_of(mesh.fields,
+                             [](const MeshField& field) { return field.name.isInstant(); });
 }
 
 /// Checks before the work whether the log of an input without known times will have instants.

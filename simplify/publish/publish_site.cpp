@@ -5,7 +5,6 @@
 
 #include "codec/picture/poster.h"
 #include "codec/picture/poster_page.h"
-#include "proto/field_key.h"
 #include "proto/version.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/log/opened_log.h"

@@ -64,7 +64,8 @@ Status noteStatedArrays(const std::filesystem::path& path, MeshFormat format, co
     const bool isNoted = std::ranges::any_of(report.notes, [&](const std::string& note) {
       return note.find(" field " + name + " ") != std::string::npos;
     });
-    if (!isNoted && std::ranges::find(cells.fields, name, &MeshField::name) == cells.fields.end() &&
+    const auto isIt = [&](const MeshField& field) { return field.name == name; };
+    if (!isNoted && std::ranges::none_of(cells.fields, isIt) &&
         std::ranges::find(cells.otherFields, name) == cells.otherFields.end() &&
         std::ranges::find(report.ignoredFields, name) == report.ignoredFields.end())
       lost.push_back(name);

@@ -175,7 +175,7 @@ void mend(TetMesh& mesh, ReadReport& report) {
 void leaveOutIds(CellMesh& cells, std::vector<std::string>& notes) {
   std::string left;
   std::erase_if(cells.fields, [&](const MeshField& field) {
-    const std::string_view name = nameWithoutStep(field.name).value_or(field.name);
+    const std::string_view name = field.name.withoutTime();
     if (isCellField(field) || std::ranges::find(kGlobalIdNames, name) == std::end(kGlobalIdNames))
       return false;
     left = name;

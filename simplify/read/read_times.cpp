@@ -52,7 +52,7 @@ Result<ReadMesh> readTimes(const std::filesystem::path& path, const ReadOptions&
   Result<ReadMesh> out = readMesh(path, some);
   if (out && isOneMore)
     std::erase_if(out->mesh.fields, [&](const MeshField& field) {
-      const auto name = instantName(field.name);
+      const auto name = field.name.instant();
       return name && name->time == *rest;
     });
   return out;

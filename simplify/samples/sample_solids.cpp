@@ -145,7 +145,7 @@ TetMesh beamSeries(std::uint32_t instants) {
   std::vector<std::vector<BeamColumn>> bent;
   for (std::uint32_t i = 0; i < instants; ++i) {
     for (MeshField field : {scalars("VonMises"), vectors("Displacement")}) {
-      field.name += "@" + std::to_string(i);
+      field.name = field.name.at(std::to_string(i));
       fields.push_back(std::move(field));
     }
     shares.push_back(swingAt(static_cast<double>(i) / (instants - 1)));

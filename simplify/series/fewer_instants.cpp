@@ -25,7 +25,7 @@ std::vector<std::size_t> halvings(std::size_t instants) {
 std::vector<std::vector<std::uint32_t>> fewerInstants(const Manifest& manifest,
                                                       std::span<const FieldShape> fields) {
   std::vector<std::size_t> halvingsOf(manifest.fields.size());
-  for (const Series& series : seriesOf(std::span(manifest.fields))) {
+  for (const Series& series : manifest.series) {
     const std::vector<std::size_t> ofInstants = halvings(series.fields.size());
     for (std::size_t i = 0; i < ofInstants.size(); ++i)
       halvingsOf[series.fields[i]] = ofInstants[i];

@@ -40,7 +40,8 @@ std::vector<std::size_t> seriesOrder(std::span<const MeshField> fields,
                                      std::optional<double> opening) {
   std::vector<std::size_t> numbers(fields.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  for (const Series& series : seriesOf(fields)) {
+  const std::vector<Series> all = seriesOf(fields);
+  for (const Series& series : all) {
     std::vector<std::size_t> ordered;
     for (const InstantStep& step : decodingOrder(series.fields.size()))
       ordered.push_back(series.fields[step.instant]);
@@ -52,7 +53,7 @@ std::vector<std::size_t> seriesOrder(std::span<const MeshField> fields,
     for (std::size_t i = 0; i < places.size(); ++i) numbers[places[i]] = ordered[i];
   }
   // of the places of a series the first one has its head
-  const std::vector<bool> isLater = laterInstants(fields);
+  const std::vector<bool> isLater = laterInstants(all, fields.size());
   std::vector<std::size_t> out;
   for (const bool later : {false, true})
     for (std::size_t f = 0; f < fields.size(); ++f)

@@ -170,7 +170,7 @@ class Chooser {
 Result<std::size_t> predictInTime(FusionHistory& history, const std::stop_token& stop,
                                   const std::function<void(double)>& progress,
                                   std::span<const std::size_t> rows) {
-  const std::vector<Series> all = seriesOf(std::span<const FieldInfo>(history.fields));
+  const std::vector<Series> all = seriesOf(history.fields);
   std::size_t instants = 0, done = 0;
   for (const Series& series : all) instants += series.fields.size();
   for (const Series& series : all) {

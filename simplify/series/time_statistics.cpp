@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/limits.h"
 #include "proto/series.h"
 
@@ -17,9 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kSuffixes{"_average", "_minimum", "_maximum", "_stddev"};
 
 /// The series' name of an instant, and the name of any other field.
-std::string_view shownName(const MeshField& field) {
-  return nameWithoutStep(field.name).value_or(field.name);
-}
+std::string_view shownName(const MeshField& field) { return field.name.withoutTime(); }
 
 Status checkName(const std::string& name, const std::string& association,
                  std::span<const MeshField> fields) {
@@ -80,7 +78,7 @@ Status checkTimeStatistics(std::span<const MeshField> fields, std::size_t count)
 Status TimeStatistics::add(std::span<const MeshField> fields) {
   std::vector<std::pair<double, std::size_t>> byTime;
   for (std::size_t f = 0; f < fields.size(); ++f)
-    if (const auto name = instantName(fields[f].name)) byTime.emplace_back(name->time, f);
+    if (const auto name = fields[f].name.instant()) byTime.emplace_back(name->time, f);
   std::ranges::sort(byTime);
   for (const auto& [time, f] : byTime)
     if (Status added = addInstant(fields[f]); !added) return added;
@@ -88,7 +86,7 @@ Status TimeStatistics::add(std::span<const MeshField> fields) {
 }
 
 Status TimeStatistics::addInstant(const MeshField& field) {
-  const InstantName name = *instantName(field.name);
+  const InstantName name = *field.name.instant();
   auto sums = std::ranges::find_if(series_, [&](const Sums& known) {
     return known.kind.name == name.series && known.kind.association == field.association &&
            known.kind.components == field.components && known.kind.type == field.type;

@@ -48,8 +48,8 @@ void addFusionOptions(po::options_description& options) {
       "40,000 for the shape first; without, a weight from 0.05 to 200 by how "
       "smooth the fields and the boundary are, which the report tells")(
       "field-weight", po::value<std::vector<std::string>>(),
-      "NAME=W: what the field's error over its range counts, 1 without; 0 leaves it out; may be "
-      "given for several fields")(
+      "NAME=W: what the field's error over its range counts, 1 for others; 0 leaves it out; may be "
+      "given for several fields; without, the field that a viewer opens with counts 2")(
       "label-weight", po::value<std::vector<std::string>>(),
       "NAME=W: what the interfaces of a cell field of integers, such as materials, count beside "
       "the "

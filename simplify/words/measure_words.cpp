@@ -38,8 +38,8 @@ void addMeasureOptions(po::options_description& options) {
       "of each boundary)")(
       "base-error", po::value<double>(),
       "the base mesh is the coarsest level whose boundary is within this fraction of the diagonal "
-      "and whose volume is within twice this fraction; 0.01 without, and 30,000 tetrahedra or 64 "
-      "kB at most")(
+      "and whose volume and fields are within twice this fraction, fields up to 24 kB; 0.01 "
+      "without, and 30,000 tetrahedra or 64 kB at most")(
       "max-boundary-error", po::value<double>(),
       "stop before the boundary is further than this from the original's, either way, as a "
       "fraction of the diagonal")(

@@ -280,6 +280,24 @@ class Runner:
         self.cache.put(path.stem, "original", "facts", stamp, known)
         return known
 
+    def base_mesh(self, path):
+        """What a log by the tool's defaults opens with, by its own measuring."""
+        stamp = [path.stat().st_size, self.tool_stamp]
+        known = self.cache.get(path.stem, "defaults", "base", stamp)
+        if known:
+            return known
+        with tempfile.TemporaryDirectory(prefix="qtet-results-") as folder:
+            log = pathlib.Path(folder) / "whole.qtet"
+            run([self.args.tool, "simplify", path, "-o", log, "--quiet"])
+            info = json.loads(run([self.args.tool, "info", log, "--json"]))
+        known = {
+            "base": info["levels"][0],
+            "bytes": info["bytes"],
+            "fields": [field["name"] for field in info["fields"]],
+        }
+        self.cache.put(path.stem, "defaults", "base", stamp, known)
+        return known
+
     def judged(self, path, simplified, field, tolerance):
         judge = json.loads(
             run(
@@ -436,7 +454,39 @@ def against_vtk(args, facts, results):
     return lines
 
 
-def document(args, facts, results):
+def base_meshes(bases):
+    """Rows of base_mesh, by data set."""
+    lines = [
+        "| mesh | log, bytes | base: cells | bytes | Hausdorff % | volume lost % | gained % |"
+        " rms of each field % |",
+        "|" + "---|" * 8,
+    ]
+    for path, known in bases.items():
+        if isinstance(known, Failure):
+            lines.append(f"| {path.stem} | {known} |" + " |" * 6)
+            continue
+        base, error = known["base"], known["base"]["error"]
+        sides = [error["boundary"][side]["max"] for side in ("toLevel", "toOriginal")]
+        rms = [
+            f"{name} {100 * next(iter(field.values())):.2g}"
+            for name, field in zip(known["fields"], error["fields"])
+        ]
+        cells = [
+            path.stem,
+            figure(known["bytes"], ",d"),
+            figure(base["tetrahedra"], ",d"),
+            figure(base["bytes"], ",d"),
+            *(
+                figure(100 * value, ".2f")
+                for value in (max(sides), error["volumeLost"], error["volumeGained"])
+            ),
+            ", ".join(rms),
+        ]
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
+def document(args, facts, results, bases):
     how = (
         "one log a setting, its finest level within each reduction"
         if args.levels
@@ -469,6 +519,14 @@ def document(args, facts, results):
         "rms over that of VTK's better mesh; empty where VTK has no valid mesh of as many cells:",
         "",
         *against_vtk(args, facts, results),
+        "",
+    ]
+    lines += [
+        "The base mesh by the tool's defaults, which a viewer shows first. Its errors are the known"
+        " ones of the log; the distance is a bound. A label's error is the share of the volume that"
+        " has another one.",
+        "",
+        *base_meshes(bases),
         "",
     ]
     for path in args.sets:
@@ -569,7 +627,7 @@ def arguments():
 def main():
     args = arguments()
     runner = Runner(args)
-    facts, jobs = {}, {}
+    facts, jobs, bases = {}, {}, {}
     with concurrent.futures.ThreadPoolExecutor(max_workers=max(1, args.jobs)) as pool:
         for path in args.sets:
             try:
@@ -581,7 +639,12 @@ def main():
             for setting in args.settings:
                 jobs[path, setting[0]] = pool.submit(runner.setting_on, path, setting, facts[path])
         results = {key: job.result() for key, job in jobs.items()}
-    write_whole(args.out, document(args, facts, results))
+    for path in args.sets:
+        try:
+            bases[path] = runner.base_mesh(path)
+        except Failure as failure:
+            bases[path] = failure
+    write_whole(args.out, document(args, facts, results, bases))
     print(args.out)
 
 

@@ -14,7 +14,13 @@ import unittest
 RESULTS = pathlib.Path(__file__).with_name("results.py")
 
 TOOL = """
-    if sys.argv[1] == "extract":
+    if sys.argv[1] == "info":
+        print(json.dumps({"bytes": 5000, "fields": [{"name": "Heat"}, {"name": "Kind"}],
+                          "levels": [{"tetrahedra": 60, "bytes": 700, "error": {
+                              "boundary": {"toLevel": {"max": 0.01}, "toOriginal": {"max": 0.02}},
+                              "volumeLost": 0.001, "volumeGained": 0,
+                              "fields": [{"rms": 0.012}, {"wrong": 0.3}]}}]}))
+    elif sys.argv[1] == "extract":
         pathlib.Path(sys.argv[sys.argv.index("-o") + 1]).write_text("mesh")
     elif "--placement" in sys.argv:
         sys.exit("qtet: the hull is too heavy\\nqtet: see 'qtet simplify --help'")
@@ -99,6 +105,7 @@ class Results(unittest.TestCase):
             text,
         )
         self.assertIn("| mesh | qtet, 90 % |\n|---|---|\n| part | 1.00 |", text)
+        self.assertIn("| part | 5,000 | 60 | 700 | 2.00 | 0.10 | 0.00 | Heat 1.2, Kind 30 |", text)
 
     def test_what_is_known_is_not_run_again_until_the_tool_changes(self):
         self.run_results("--settings", "1,4", "--reductions", "50,90")

@@ -277,7 +277,7 @@ async function pointsAndProbes({server, browser}) {
   await page.mouse.click(560, 400);
   await page.locator('qtet-viewer .result').waitFor();
   const said = await viewer.text('.result');
-  const [, cell, density] = /Cell ([\d\u202f]+).*Density\s+([\d.]+)/s.exec(said) ?? [];
+  const [, density, cell] = /Density\s+([\d.]+).*Cell\s*([\d\u202f]+)/s.exec(said) ?? [];
   assert.ok(
     Number(cell?.replaceAll('\u202f', '')) < 212544 && Number(density) > 0.5 && Number(density) < 4,
     said,

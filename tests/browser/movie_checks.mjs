@@ -158,4 +158,25 @@ async function cancelsAMovieAndTellsWhatFails(context) {
   return `${pngs.length - 1} instants were loaded`;
 }
 
-export const movieChecks = {makesAMovieOfASeries, cancelsAMovieAndTellsWhatFails};
+/** A movie has the part that plays. */
+async function filmsThePartThatPlays(context) {
+  const viewer = await opened(context, 'time-range=1,2', kSmallDesktop);
+  const [counts, size] = await viewer.page.evaluate(async () => {
+    const seen = [];
+    const movie = await window.qtetViewer.movie({
+      width: 160,
+      height: 120,
+      progress: (done, count) => seen.push(`${done} of ${count}`),
+    });
+    return [seen, movie.size];
+  });
+  assert.deepEqual(counts, ['0 of 2', '1 of 2', '2 of 2']);
+  assert.ok(size > 500, `${size} bytes`);
+  assert.deepEqual(viewer.problems, []);
+}
+
+export const movieChecks = {
+  makesAMovieOfASeries,
+  cancelsAMovieAndTellsWhatFails,
+  filmsThePartThatPlays,
+};

@@ -123,7 +123,9 @@ const savedPictures = (viewer) =>
   viewer.page.evaluate(async () => {
     const {meshView} = window.qtetViewer;
     const insets = {left: 0, right: 0, top: 0, bottom: 0};
-    const [{bitmap}] = await meshView.render({width: 600, height: 400, insets, pixelRatio: 1});
+    const {
+      tiles: [{bitmap}],
+    } = await meshView.render({width: 600, height: 400, insets, pixelRatio: 1});
     const canvas = new OffscreenCanvas(600, 400);
     canvas.getContext('2d').drawImage(bitmap, 0, 0);
     const files = [await window.qtetViewer.picture(), await canvas.convertToBlob()];
@@ -217,7 +219,8 @@ async function showsTheValueAtThePointer(context) {
   const viewer = await opened(context, 'mesh=fin&field=Density&clip=none');
   const {page} = viewer;
   const label = page.locator('qtet-viewer .hover');
-  const hide = () => page.addStyleTag({content: 'qtet-viewer::part(hint) { display: none }'});
+  const content = 'qtet-viewer::part(hint), qtet-viewer::part(marks) { display: none }';
+  const hide = () => page.addStyleTag({content});
   const before = await viewer.screenshot('hover-before');
   const camera = await cameraOf(viewer);
   await page.mouse.move(500, 340);

@@ -7,6 +7,7 @@ import {mkdirSync} from 'node:fs';
 import {parseArgs} from 'node:util';
 import {Browser} from './browser.mjs';
 import {processorSeconds} from './browser_processes.mjs';
+import {axesChecks} from './axes_checks.mjs';
 import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
 import {colorChecks} from './color_checks.mjs';
@@ -14,6 +15,7 @@ import {dropChecks} from './drop_checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
 import {galleryChecks} from './gallery_checks.mjs';
+import {groundChecks} from './ground_checks.mjs';
 import {histogramChecks} from './histogram_checks.mjs';
 import {legendChecks} from './legend_checks.mjs';
 import {lineChecks} from './line_checks.mjs';
@@ -21,6 +23,7 @@ import {monkeyChecks} from './monkey_checks.mjs';
 import {movieChecks} from './movie_checks.mjs';
 import {pageChecks} from './page_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
+import {pinChecks} from './pin_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
 import {posterChecks} from './poster_checks.mjs';
 import {publishChecks} from './publish_checks.mjs';
@@ -56,7 +59,7 @@ const lists = {
   transport: {...transportChecks, ...movieChecks, ...segmentChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
-  edge: {...edgeChecks, ...warpChecks},
+  edge: {...edgeChecks, ...warpChecks, ...axesChecks, ...groundChecks, ...pinChecks},
   legend: {...legendChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,

@@ -232,7 +232,7 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.manifest-field-twice.qtet",
         manifested([](Manifest& m) { m.fields[1].name = m.fields[0].name; }));
   write(folder / "bad-value.manifest-no-name.qtet",
-        manifested([](Manifest& m) { m.fields[0].name.clear(); }));
+        manifested([](Manifest& m) { m.fields[0].name = ""; }));
   write(folder / "bad-value.manifest-count.qtet",
         manifested([](Manifest& m) { m.levels[1].vertices = kMaxElements + 1; }));
   write(folder / "bad-value.manifest-empty-focus.qtet",

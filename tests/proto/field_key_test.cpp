@@ -8,7 +8,8 @@ namespace qtet {
 namespace {
 
 struct Named {
-  std::string association, name;
+  std::string association;
+  FieldName name;
 };
 
 using Places = std::vector<std::uint32_t>;
@@ -51,14 +52,6 @@ TEST(FieldKey, whereOneIsMeantPointsComeFirstAndNoStepIsGuessed) {
   EXPECT_EQ(fieldOfKey(kFields, "P@0.5"), 4u);
   EXPECT_EQ(fieldOfKey(kFields, "cell:P@0.5"), 5u);
   EXPECT_EQ(fieldOfKey(kFields, "none"), std::nullopt);
-}
-
-TEST(FieldKey, aStepEndsInANumber) {
-  EXPECT_EQ(nameWithoutStep("T@0.5"), "T");
-  EXPECT_EQ(nameWithoutStep("T@-1e-07"), "T");
-  EXPECT_EQ(nameWithoutStep("a@b@3"), "a@b");
-  for (const char* name : {"T", "T@", "T@x", "T@1x", "@1", ""})
-    EXPECT_EQ(nameWithoutStep(name), std::nullopt) << name;
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TEST(Instants, aFileHasTheInstantsOfItsTimeAndTheFieldsWithoutTime) {
   fields[0].name = "T@1", fields[1].name = "p", fields[2].name = "T@0";
   fields[3].name = "u@0", fields[4].name = "u@1";
   const std::vector<std::uint32_t> wanted = {0, 1, 2, 4};
-  const Instants instants(fields, wanted);
+  const Instants instants(fields, wanted, seriesOf(fields));
   EXPECT_EQ(instants.times(), (std::vector<double>{0, 1}));
   const InstantFile file = instants.fileAt(1);
   ASSERT_EQ(file.fields.size(), 3u);
@@ -44,7 +44,7 @@ TEST(Instants, aNameThatIsTakenLeavesTheInstantItsOwn) {
   std::vector<ManifestField> fields(3);
   fields[0].name = "T@1", fields[1].name = "T@2", fields[2].name = "T";
   const std::vector<std::uint32_t> wanted = {0, 1, 2};
-  const InstantFile file = Instants(fields, wanted).fileAt(2);
+  const InstantFile file = Instants(fields, wanted, seriesOf(fields)).fileAt(2);
   ASSERT_EQ(file.fields.size(), 2u);
   EXPECT_EQ(file.fields[0].name, "T@2");
   EXPECT_EQ(file.fields[1].name, "T");

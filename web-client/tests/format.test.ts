@@ -26,7 +26,7 @@ test('bytesHaveThreeDigitsAndNeverFour', () => {
 });
 
 test('theErrorOfTheLastLevelIsRoundedUp', () => {
-  const field = {name: 'T@0.5', unit: 'K'} as FieldInfo;
+  const field = {name: 'T@0.5', instant: {name: 'T'}, unit: 'K'} as FieldInfo;
   const within = (error: number): string => plain(formatWithin(field, error));
   expect(within(0.0412)).toBe('T is within 0.042 K at the last level');
   expect(within(0.0996)).toBe('T is within 0.1 K at the last level');

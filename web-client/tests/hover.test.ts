@@ -15,6 +15,7 @@ const kFields = [field('p', 1), field('v', 3)];
 const pickOf = (...fields: [number, number[]][]): Pick => ({
   cell: 0,
   corners: [0, 1, 2, 3],
+  places: [],
   position: [0, 0, 0],
   lattice: [0, 0, 0],
   rest: null,

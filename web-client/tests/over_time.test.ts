@@ -398,14 +398,18 @@ describe('a plot over time from a server', () => {
 
 test('theServerOfALogIsKnownByItsAddress', async () => {
   const kDigest = 'ab'.repeat(32);
-  const urlOf = async (log: string, digest = '', name = 'T@0'): Promise<string | null> => {
+  const urlOf = async (log: string, digest = ''): Promise<string | null> => {
     const urls: [string, string | null][] = [];
     const its = seriesServer(log, digest, 'secret', (url, {headers}) => {
       urls.push([url, new Headers(headers).get('authorization')]);
       return Promise.resolve(answerOf(0, [[1], [2]]));
     });
-    const info = {...field(name), association: 'cell' as const};
-    await its?.values({point: [1, 0, -2], field: info, level: 0}, new AbortController().signal);
+    const fields = ['T@0', 'T@1'].map((name) => ({...field(name), association: 'cell' as const}));
+    markSeries(fields);
+    await its?.values(
+      {point: [1, 0, -2], field: fields[0]!, level: 0},
+      new AbortController().signal,
+    );
     expect(urls.map(([, authorization]) => authorization)).toEqual(its ? ['Bearer secret'] : []);
     return urls[0]?.[0] ?? null;
   };

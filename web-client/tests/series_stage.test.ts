@@ -6,6 +6,7 @@ import {markSeries, shownInstant} from '../core/protocol/series';
 import type {Snapshot, StreamState} from '../core/session/worker_messages';
 import type {View} from '../webgl/view';
 import {settingsFor, ShownMesh} from '../viewer/page/shown_mesh';
+import type {Settings} from '../viewer/settings/settings';
 import {SeriesStage} from '../viewer/picture/series_stage';
 
 function field(name: string): FieldInfo {
@@ -14,7 +15,13 @@ function field(name: string): FieldInfo {
 
 const figures = (bytes: number): Statistics => ({bytes, bytesNeeded: 100}) as Statistics;
 
-let host: {view: View | null; mesh: ShownMesh; stream: {state: StreamState}; apply(): void};
+let host: {
+  view: View | null;
+  mesh: ShownMesh;
+  settings: Settings;
+  stream: {state: StreamState};
+  apply(): void;
+};
 let ends: AbortController;
 
 beforeEach(() => {
@@ -25,7 +32,13 @@ beforeEach(() => {
   markSeries(fields);
   mesh.manifest = {fields} as Manifest;
   const apply = (): void => void settingsFor(host.mesh, (name) => (name === 'time' ? '2' : null));
-  host = {view: {} as View, mesh, stream: {state: 'complete'}, apply};
+  host = {
+    view: {} as View,
+    mesh,
+    settings: {timePart: null} as Settings,
+    stream: {state: 'complete'},
+    apply,
+  };
   ends = new AbortController();
   apply();
   mesh.here = [0, 2];
@@ -63,6 +76,14 @@ async function showing(i: number, ms = 100): Promise<string> {
 test('instantsGoByTimeAndOnRequestOnlyThoseThatAreLoaded', () => {
   expect(stageOf().instants).toEqual([2, 3, 0]);
   expect(stageOf(true).instants).toEqual([2, 0]);
+});
+
+test('aMovieHasThePartThatPlays', () => {
+  host.settings.timePart = [0.9, 5]; // as the time bar, the instants nearest to both ends
+  expect(stageOf().instants).toEqual([3, 0]);
+  expect(stageOf(true).instants).toEqual([0]);
+  host.settings.timePart = [0, 0.2];
+  expect(stageOf().instants).toEqual([2]);
 });
 
 test('aFieldWithoutInstantsHasNoMovie', () => {

@@ -107,12 +107,26 @@ describe('settings', () => {
       warp: null,
       warpScale: null,
       restEdges: false,
+      axes: false,
+      ground: null,
+      lengthUnit: null,
       time: null,
       timePart: null,
       timeLoops: true,
       volume: null,
       hasFirstOpacities: false,
     });
+  });
+  test('aGroundIsANameOrAColourOfSixDigits', () => {
+    for (const right of ['light', 'dark', 'white', '3c3c3c'])
+      expect(of({ground: right}).ground).toBe(right);
+    for (const wrong of ['#3c3c3c', '3c3c3', '3c3c3c3', 'toString', ''])
+      expect(of({ground: wrong}).ground).toBeNull();
+  });
+  test('aUnitOfLengthHasSixteenLetters', () => {
+    expect(of({'length-unit': 'm'.repeat(16)}).lengthUnit).toBe('m'.repeat(16));
+    expect(of({'length-unit': 'm'.repeat(17)}).lengthUnit).toBe('m'.repeat(16));
+    expect(of({'length-unit': ' '}).lengthUnit).toBeNull();
   });
   test('aVolumeIsOpacitiesOrTheFirstOnesAndNothingElse', () => {
     expect(of({volume: '0,0.5,1'}).volume).toEqual([0, 0.5, 1]);

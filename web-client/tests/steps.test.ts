@@ -67,6 +67,12 @@ test('theStatusLineNamesEachSettingOnce', () => {
       ['range', '0,1'],
     ]),
   ).toBe('clip, range');
+  expect(
+    titleOf([
+      ['points', null],
+      ['length-unit', 'mm'],
+    ]),
+  ).toBe('kept points, unit of length');
 });
 
 test('theKeysAreThoseOfBothSystems', () => {

@@ -41,7 +41,7 @@ function meshCamera(): MeshCamera {
   const canvas = new WorkerCanvas({} as OffscreenCanvas);
   canvas.resize({width: 1280, height: 800, pixelRatio: 1});
   const camera = new MeshCamera(canvas, () => undefined);
-  camera.setInsets(kInsets);
+  camera.setRoom({insets: kInsets});
   camera.resize(1280, 800);
   camera.growTo({bounds: [0, 0, 0, 200, 100, 50]});
   return camera;
@@ -119,8 +119,8 @@ test.each([false, true])('aCoveredPictureGoesToTheFreeArea (moved: %s)', (isMove
     return transformed(camera.sightOf(its).toCanvas, [200, 100, 0]).slice(0, 2);
   };
   const before = seenBy(camera.orbit.lens).map((share) => expect.closeTo(share) as number);
-  expect(camera.setCovered(kCovered)).toBe(true);
-  expect(camera.setCovered({...kCovered})).toBe(false);
+  expect(camera.setRoom({covered: kCovered})).toBe(true);
+  expect(camera.setRoom({covered: {...kCovered}})).toBe(false);
   camera.resize(1280, 800);
   const {lens, target} = camera.orbit;
   const [x, y] = transformed(product(lens.toCube, lens.toEye), target);
@@ -129,14 +129,14 @@ test.each([false, true])('aCoveredPictureGoesToTheFreeArea (moved: %s)', (isMove
   expect(camera.orbit.state).toEqual(state);
   expect(corners(camera, kWhole)).toEqual(saved);
   expect(seenBy(camera.uncovered())).toEqual(before);
-  expect(camera.setCovered(null)).toBe(true);
+  expect(camera.setRoom({covered: null})).toBe(true);
   camera.resize(1280, 800);
   expect(seenBy(lens)).toEqual(before);
 });
 
 test('aMoveInACoveredPictureFollowsThePointer', () => {
   const camera = meshCamera();
-  camera.setCovered(kCovered);
+  camera.setRoom({covered: kCovered});
   camera.resize(1280, 800);
   const {lens, target} = camera.orbit;
   const placeOf = (): Vector => transformed(product(lens.toCube, lens.toEye), target);
@@ -146,4 +146,46 @@ test('aMoveInACoveredPictureFollowsThePointer', () => {
   const after = placeOf();
   expect(after[0] - before[0]).toBeCloseTo((2 * 0.1 * 800) / 1280);
   expect(after[1] - before[1]).toBeCloseTo(2 * 0.05);
+});
+
+describe('room for numbers', () => {
+  const cameraOf = (width: number, height: number, room: [number, number]): MeshCamera => {
+    const camera = meshCamera();
+    camera.setRoom({
+      insets: {left: 0, right: 0, top: 0.6, bottom: 0.6},
+      boxed: [room[0] / width, room[1] / height],
+    });
+    camera.resize(width, height);
+    return camera;
+  };
+
+  test.each([
+    [320, 240],
+    [100, 40],
+    [1, 1],
+  ])('leavesSomeToTheMeshOnAPageOf %d x %d', (width, height) => {
+    const camera = cameraOf(width, height, [52, 36]);
+    const {lens} = camera.orbit;
+    camera.orbit.setDepths();
+    const {toCanvas} = camera.sightOf(lens);
+    for (let i = 0; i < 8; ++i) {
+      const at = transformed(toCanvas, [i & 1 ? 200 : 0, i & 2 ? 100 : 0, i & 4 ? 50 : 0]);
+      for (const share of at) expect(Math.abs(share)).toBeLessThan(1); // before the eye, too
+    }
+    camera.setRoom({covered: {left: 0, right: 0, top: 0.6, bottom: 0.6}});
+    camera.resize(width, height);
+    expect(lens.part!.fullHeight).toBeGreaterThan(0);
+    expect(lens.part!.fullHeight).toBeLessThanOrEqual(height);
+  });
+
+  test.each([false, true])('leavesSomeToTheMeshOfAFlatPicture (moved: %s)', (isMoved) => {
+    const camera = meshCamera();
+    if (isMoved) camera.orbit.orbit(0.3, 0.1);
+    const {fullWidth, fullHeight} = camera.lensFor(
+      {...kFrame, width: 7680, height: 200, boxed: [0.02, 0.6]},
+      {x: 0, y: 0, width: 7680, height: 200},
+    ).part!;
+    expect(fullWidth).toBeGreaterThan(0);
+    expect(fullHeight).toBeGreaterThan(0);
+  });
 });

@@ -30,6 +30,7 @@ export const kCards = `
   </div>
   <div class="buttons">
     <button type="button" class="copy-result">Copy</button>
+    <button type="button" class="keep-point" hidden>Keep</button>
     <button type="button" class="over-time" hidden>Over time</button>
     <button type="button" class="save-table" hidden>Save as CSV</button>
   </div>

@@ -3,7 +3,7 @@
 import {errorText} from '../core/protocol/errors';
 import type {View} from '../webgl/view';
 import {beginsLog} from '../core/protocol/magic';
-import type {StreamState} from '../core/session/worker_messages';
+import type {Snapshot, StreamState} from '../core/session/worker_messages';
 import styles from './controls.css?inline';
 import {kCards, kCube, kDialogs} from './controls_template';
 import {kControls, kPanelKinds} from './sections';
@@ -214,6 +214,12 @@ export class Later {
     } catch (thrown) {
       host.failed('dropped-colors', errorText(thrown));
     }
+  }
+
+  /** As Panels.showPicture. */
+  showPicture(snapshot: Snapshot, frameMs: number): void {
+    this.panels.showPicture(snapshot, frameMs);
+    this.hover.showPicture();
   }
 
   /** Must be called after every frame. */

@@ -32,6 +32,10 @@
 //   threshold    "FIELD=LOW,HIGH".
 //   volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen
 //                through instead of the surface; "auto" suits the mesh.
+//   axes         "on" draws a box with numbers round the mesh.
+//   length-unit  that of coordinates, "mm"; by default that of displacements, if the log knows it.
+//   ground       light, dark, white, or a colour, "3c3c3c"; by default the page's.
+//   points       up to eight places of the mesh at rest with their values, "1,2,0.5 3,2,0".
 //   quality      full (default), "error:0.01" or "1%", "cells:N", "bytes:N": how far to refine.
 //   projection   "parallel".
 //   camera       six numbers, as the property `cameraState` gives them.

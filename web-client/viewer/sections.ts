@@ -1,12 +1,15 @@
 // The sections of the panel, and the panels in them. Another panel takes a file and a line here.
 
 import {filePanel} from './drop/file_panel';
+import {axesPanel} from './panels/axes_panel';
 import {clipPanel} from './panels/clip_panel';
 import {colorPanel, stepsPanel} from './panels/color_panel';
+import {groundPanel} from './panels/ground_panel';
 import {histogramPanel} from './panels/histogram_panel';
 import {kToolMarkup} from './panels/inspect';
 import {levelPanel} from './panels/level_panel';
 import type {PanelKind} from './panels/panel';
+import {pinsPanel} from './panels/pins';
 import {statisticsPanel} from './panels/statistics_panel';
 import {surfacePanel} from './panels/surface_panel';
 import {valuePanels} from './panels/value_panel';
@@ -31,9 +34,9 @@ const kSections: readonly Section[] = [
     title: 'Inside',
     panels: [clipPanel, ...valuePanels(true), volumePanel, ...valuePanels(false)],
   },
-  {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}]},
+  {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}, pinsPanel]},
   {name: 'level', title: 'Level of detail', isFolded: true, panels: [levelPanel]},
-  {name: 'view', title: 'View', isFolded: true, panels: [viewPanel]},
+  {name: 'view', title: 'View', isFolded: true, panels: [viewPanel, axesPanel, groundPanel]},
   {name: 'file', title: 'File', isFolded: true, panels: [filePanel]},
   {name: 'statistics', title: 'Statistics', isFolded: true, panels: [statisticsPanel]},
 ];

@@ -10,6 +10,7 @@ import type {Direction} from '../webgl/directions';
 import type {View} from '../webgl/view';
 import {Graphics, type ViewStart} from './graphics';
 import {CameraWatch} from './page/camera_watch';
+import {find} from './page/find';
 import {isOnDark, watchGround} from './page/ground';
 import {Hurry} from './page/hurry';
 import {Notices} from './page/notices';
@@ -135,7 +136,7 @@ export class Viewing implements LaterHost {
     this.later?.panels.update(this.settings, mesh);
     this.later?.time.update(this.settings, mesh);
     this.startPlaying();
-    view?.setLook({...this.settings, onDark: isOnDark(page.element)});
+    view?.setLook({...this.settings, onDark: isOnDark(find(page.root, '.scene'))});
     view?.setParallel(this.settings.parallel);
     view?.setPlaying(this.playsEveryMs);
     if (!this.isPlaying) this.hurry.end();
@@ -164,7 +165,7 @@ export class Viewing implements LaterHost {
   // ---- ActionsHost, PanelsHost
 
   async picture(): Promise<Blob | null> {
-    const ground = getComputedStyle(this.page.element).getPropertyValue('--ground');
+    const ground = getComputedStyle(this.page.element).getPropertyValue('--ground-now');
     return this.view?.picture(ground) ?? null;
   }
 
@@ -298,7 +299,7 @@ export class Viewing implements LaterHost {
       },
       change,
     );
-    this.later?.panels.showPicture(snapshot, view.pose.frameMs);
+    this.later?.showPicture(snapshot, view.pose.frameMs);
     this.later?.time.follow();
   }
 
@@ -310,7 +311,7 @@ export class Viewing implements LaterHost {
     this.later ??= new Later(this.page, this, this.shell);
     this.apply();
     const {snapshot} = this.mesh;
-    if (snapshot && this.view) this.later.panels.showPicture(snapshot, this.view.pose.frameMs);
+    if (snapshot && this.view) this.later.showPicture(snapshot, this.view.pose.frameMs);
   }
 
   /** Keeps the camera. The mesh comes again from the worker that decodes. */

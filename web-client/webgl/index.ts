@@ -4,5 +4,5 @@ export type {CameraState} from './camera';
 export {kDirections, type Direction} from './directions';
 export {MeshView} from './mesh_view';
 export type {Pose} from './pose';
-export type {Frame, Insets, Look, Tile, View, ViewListeners} from './view';
+export type {Boxed, Frame, Insets, Look, Rendered, Tile, View, ViewListeners} from './view';
 export {openView} from './worker_view';

@@ -1,5 +1,6 @@
 // The camera of one mesh: where the mesh lies, and from where it is seen.
 
+import {isEqual} from '../core/protocol/equal';
 import {moved, type LatticeChange, type Vector} from '../core/protocol/geometry';
 import type {Snapshot} from '../core/session/worker_messages';
 import {kFill, OrbitCamera, type CameraState, type Framing} from './camera';
@@ -19,7 +20,7 @@ import {OrbitControls} from './orbit_controls';
 import {cornersOf, farthestOf, outlineOf, outlineOfLines} from './outline';
 import {checkedCamera, type Pose} from './pose';
 import type {Part} from './tiles';
-import type {Frame, Insets} from './view';
+import type {Boxed, Frame, Insets} from './view';
 import type {ViewCanvas} from './worker_canvas';
 
 /** A camera's lines of sight, in lattice coordinates. */
@@ -31,7 +32,17 @@ export interface Sight {
   diagonal: number;
 }
 
+/** As View.setInsets, setCovered and setBoxed. */
+interface Room {
+  insets: Insets;
+  covered: Insets | null;
+  boxed: Boxed | null;
+}
+
 type Seen = Pick<Snapshot, 'bounds' | 'surface' | 'warp'>;
+
+/** Cards that cover more of a small page cover the mesh. */
+const kLeastFree = 0.1;
 
 const kNoReach = {bounds: [] as number[], scale: 0, isAtRestToo: false};
 
@@ -51,9 +62,11 @@ export class MeshCamera {
   private reach = kNoReach;
   /** Lattice points that the mesh lies between. */
   private outline: Vector[] = [];
-  private insets: Insets = {left: 0, right: 0, top: 0, bottom: 0};
-  /** As View.setCovered. */
-  private covered: Insets | null = null;
+  private room: Room = {
+    insets: {left: 0, right: 0, top: 0, bottom: 0},
+    covered: null,
+    boxed: null,
+  };
   /** The canvas's. */
   private size = {width: 1, height: 1};
   /** The mesh has followed another one. It may have another size, and the camera stays in place. */
@@ -128,24 +141,17 @@ export class MeshCamera {
     this.isSuccessor = false;
   }
 
-  /** Returns false if they are the same as before. */
-  setInsets(insets: Insets): boolean {
-    if (areSame(insets, this.insets)) return false;
-    this.insets = insets;
-    return true;
-  }
-
-  /** As View.setCovered. Returns false if they are the same as before. */
-  setCovered(covered: Insets | null): boolean {
-    if (covered && this.covered ? areSame(covered, this.covered) : covered === this.covered)
-      return false;
-    this.covered = covered;
+  /** Returns false if it is the same as before. */
+  setRoom(part: Partial<Room>): boolean {
+    const next = {...this.room, ...part};
+    if (isEqual(next, this.room)) return false;
+    this.room = next;
     return true;
   }
 
   /** Cards cover the picture for a while. */
   get isCovered(): boolean {
-    return this.covered !== null;
+    return this.room.covered !== null;
   }
 
   /** Shifts the picture's centre into the middle of the free area of a canvas of this size. */
@@ -153,13 +159,13 @@ export class MeshCamera {
     this.size = {width, height};
     this.placePicture();
     this.refit();
-    if (this.covered) this.placePicture();
+    if (this.room.covered) this.placePicture();
   }
 
   /** The canvas's camera as if no card covered it for a while. */
   uncovered(): Lens {
     const lens = this.orbit.lens.clone();
-    this.place(lens, this.insets);
+    this.place(lens, this.room.insets);
     return lens;
   }
 
@@ -196,19 +202,19 @@ export class MeshCamera {
    * A camera for a part of another picture, as View.render says. A moved camera stays, and its
    * picture is enlarged. REQUIRES: hasMesh.
    */
-  lensFor({width, height, insets}: Frame, part: Part): Lens {
+  lensFor({width, height, insets, boxed = null}: Frame, part: Part): Lens {
     const {orbit, size} = this;
     const lens = orbit.fitted ? orbit.lens.clone() : this.uncovered();
-    const [freeWidth, freeHeight] = freeOf(insets);
+    const [freeWidth, freeHeight] = freeOf(insets, boxed);
     const middle = middleOf(insets, width, height);
     let scale = 1;
     let full = {width, height};
     let from = [width / 2, height / 2];
     if (orbit.fitted) {
-      const {distance, target} = this.framing(insets, width / height);
+      const {distance, target} = this.framing({insets, boxed}, width / height);
       lens.eye = sum(scaled(orbit.direction, distance), target);
     } else {
-      const area = this.shownArea(lens);
+      const area = this.shownArea(lens, boxed);
       scale = Math.min((width * freeWidth) / area.width, (height * freeHeight) / area.height);
       full = {width: scale * size.width, height: scale * size.height};
       from = [area.x + lens.part!.x, area.y + lens.part!.y];
@@ -230,15 +236,18 @@ export class MeshCamera {
    * the mesh's if all of it lies between the insets, else all between them. REQUIRES: `lens` is
    * uncovered().
    */
-  private shownArea(lens: Lens): {x: number; y: number; width: number; height: number} {
-    const {insets, size} = this;
-    const {width, height} = size;
+  private shownArea(
+    lens: Lens,
+    boxed: Boxed | null,
+  ): {x: number; y: number; width: number; height: number} {
+    const {width, height} = this.size;
+    const {insets} = this.room;
     const [freeWidth, freeHeight] = freeOf(insets);
     const [x, y] = middleOf(insets, width, height);
     const free = {x, y, width: freeWidth * width, height: freeHeight * height};
     this.orbit.setDepths(lens);
     const {toCanvas} = this.sightOf(lens);
-    const places = this.outline.map((point) => transformed(toCanvas, point));
+    const places = this.framed(boxed).map((point) => transformed(toCanvas, point));
     const isSeen = places.every(
       ([across, up, depth]) =>
         Math.abs(((across + 1) / 2) * width - x) <= free.width / 2 &&
@@ -287,6 +296,7 @@ export class MeshCamera {
       camera: state,
       fitted,
       outline: fitted ? this.outline : [],
+      reach: this.hasMesh ? this.reach.bounds : [],
       direction: scaled(lens.axes[2], -1),
       frameMs,
     };
@@ -302,7 +312,8 @@ export class MeshCamera {
   }
 
   private placePicture(): void {
-    const {covered, insets, orbit} = this;
+    const {orbit} = this;
+    const {covered, insets} = this.room;
     this.place(orbit.lens, insets);
     if (covered) this.place(orbit.lens, covered, this.shrunkBy(covered));
   }
@@ -328,10 +339,11 @@ export class MeshCamera {
     if (!this.hasMesh) return 1;
     this.orbit.setDepths();
     const {toCanvas} = this.sightOf(this.orbit.lens);
-    const places = this.outline.map((point) => transformed(toCanvas, point));
+    const {boxed, insets} = this.room;
+    const places = this.framed(boxed).map((point) => transformed(toCanvas, point));
     const isInFront = places.every(([, , depth]) => Math.abs(depth) <= 1);
-    const before = freeOf(this.insets);
-    const shares = freeOf(covered).map((free, axis) => {
+    const before = freeOf(insets, boxed);
+    const shares = freeOf(covered, boxed).map((free, axis) => {
       const along = places.map((place) => place[axis]!);
       const span = isInFront ? (Math.max(...along) - Math.min(...along)) / 2 : Infinity;
       return (kFill * free) / Math.min(span, kFill * before[axis]!);
@@ -361,21 +373,39 @@ export class MeshCamera {
    * Frames the mesh itself, not its box: a box leaves its corners empty. `aspect` may be that of
    * another picture than the canvas.
    */
-  private framing(insets = this.insets, aspect = this.orbit.lens.aspect): Framing {
-    const isWhole = !this.focus || this.orbit.isStandard || this.reach.scale !== 0;
+  private framing(
+    {insets, boxed}: Pick<Room, 'insets' | 'boxed'> = this.room,
+    aspect = this.orbit.lens.aspect,
+  ): Framing {
+    const isWhole =
+      !this.focus || boxed !== null || this.orbit.isStandard || this.reach.scale !== 0;
     const seen = isWhole ? null : seenPart(this.focus!, this.bounds, this.orbit.direction);
-    const points = (seen ? cornersOf(seen) : this.outline).map((corner) => this.placed(corner));
+    const points = (seen ? cornersOf(seen) : this.framed(boxed)).map((corner) =>
+      this.placed(corner),
+    );
     const wider = aspect / this.orbit.lens.aspect;
-    const [freeWidth, freeHeight] = freeOf(insets);
+    const [freeWidth, freeHeight] = freeOf(insets, boxed);
     return this.orbit.framing(points, freeWidth * wider, freeHeight);
+  }
+
+  /** Lattice points that are fitted together. */
+  private framed(boxed: Boxed | null): Vector[] {
+    return boxed ? cornersOf(this.reach.bounds) : this.outline;
   }
 }
 
-/** The shares of the width and of the height that are free. */
-const freeOf = ({left, right, top, bottom}: Insets): [number, number] => [
-  1 - left - right,
-  1 - top - bottom,
-];
+/** The shares of the width and of the height that are free: never none, however small a page is. */
+const freeOf = (
+  {left, right, top, bottom}: Insets,
+  boxed: Boxed | null = null,
+): [number, number] => {
+  const [across, down] = boxed ?? [0, 0];
+  const besides = (covered: number, room: number): number => {
+    const free = Math.max(kLeastFree, 1 - covered);
+    return free - Math.min(2 * room, free / 2);
+  };
+  return [besides(left + right, across), besides(top + bottom, down)];
+};
 
 /** The middle of the free area, in pixels. */
 const middleOf = (
@@ -385,9 +415,6 @@ const middleOf = (
 ): [number, number] => [((1 + left - right) / 2) * width, ((1 + top - bottom) / 2) * height];
 
 const endsOf = (places: number[]): [number, number] => [Math.min(...places), Math.max(...places)];
-
-const areSame = (a: Insets, b: Insets): boolean =>
-  (Object.keys(a) as (keyof Insets)[]).every((side) => a[side] === b[side]);
 
 /** The bounds round both; the first may be empty. */
 function union(a: readonly number[], b: readonly number[]): number[] {

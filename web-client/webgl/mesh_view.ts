@@ -15,7 +15,7 @@ import {MeshCamera} from './mesh_camera';
 import {MeshParts} from './mesh_parts';
 import {project, rayAt, type Pose} from './pose';
 import {partsOf, tileOf} from './tiles';
-import type {Frame, Insets, Look, Tile, View, ViewListeners} from './view';
+import type {Boxed, Frame, Insets, Look, Rendered, Tile, View, ViewListeners} from './view';
 import type {VolumeLook, VolumeView} from './volume_view';
 import {pixelRatioOf, surfaceOf, watchSize, type ViewCanvas} from './worker_canvas';
 
@@ -117,11 +117,15 @@ export class MeshView implements View {
   }
 
   setInsets(insets: Insets): void {
-    if (this.camera.setInsets(insets)) this.resize(); // which clears the canvas
+    if (this.camera.setRoom({insets})) this.resize(); // which clears the canvas
   }
 
   setCovered(insets: Insets | null): void {
-    if (this.camera.setCovered(insets)) this.resize();
+    if (this.camera.setRoom({covered: insets})) this.resize();
+  }
+
+  setBoxed(boxed: Boxed | null): void {
+    if (this.camera.setRoom({boxed})) this.resize();
   }
 
   setFocus(focus: number[] | null): void {
@@ -215,11 +219,11 @@ export class MeshView implements View {
     return copy.convertToBlob({type: 'image/png'});
   }
 
-  async render(frame: Frame): Promise<Tile[]> {
+  async render(frame: Frame): Promise<Rendered> {
     while (this.inTiles) await this.inTiles;
-    if (!this.camera.hasMesh) return [];
-    const tiles = this.drawTiles(frame);
-    this.inTiles = tiles.then(
+    if (!this.camera.hasMesh) return {tiles: [], toCanvas: this.pose.toCanvas};
+    const picture = this.drawTiles(frame);
+    this.inTiles = picture.then(
       () => undefined,
       () => undefined,
     );
@@ -227,7 +231,7 @@ export class MeshView implements View {
       this.inTiles = null;
       this.invalidate(false);
     });
-    return tiles;
+    return picture;
   }
 
   dispose(): void {
@@ -308,11 +312,13 @@ export class MeshView implements View {
     return {parts, eyeOfParts: camera.eyeOf(lens), target, ...camera.sightOf(lens)};
   }
 
-  private async drawTiles(frame: Frame): Promise<Tile[]> {
+  private async drawTiles(frame: Frame): Promise<Rendered> {
     const tiles: Tile[] = [];
     const {width, height, pixelRatio} = frame;
     const whole = this.camera.lensFor(frame, {x: 0, y: 0, width, height});
-    this.parts.fadeLines(this.camera.sightOf(whole).toCanvas, {
+    this.orbit.setDepths(whole);
+    const {toCanvas} = this.camera.sightOf(whole);
+    this.parts.fadeLines(toCanvas, {
       clientWidth: width / pixelRatio,
       clientHeight: height / pixelRatio,
     });
@@ -320,7 +326,7 @@ export class MeshView implements View {
       const lens = this.camera.lensFor(frame, part);
       tiles.push(await tileOf(this.graphics, part, (target) => this.drawTile(lens, target, frame)));
     }
-    return tiles;
+    return {tiles, toCanvas};
   }
 
   private async drawTile(lens: Lens, target: Target, frame: Frame): Promise<void> {

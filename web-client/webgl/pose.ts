@@ -18,6 +18,11 @@ export interface Pose {
   fitted: boolean;
   /** Lattice points between which lies all that was seen of a fitted mesh; else none. */
   outline: readonly Vector[];
+  /**
+   * Bounds of all that was seen under the present warp, in lattice coordinates; empty: there is no
+   * mesh.
+   */
+  reach: readonly number[];
   /** The direction of the camera, as a unit normal in lattice coordinates. */
   direction: Vector;
   /** The time of the last frame on the thread that draws. */

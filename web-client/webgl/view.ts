@@ -8,6 +8,7 @@ import type {CoarseCells} from '../core/picture/volume';
 import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import type {Direction} from './directions';
+import type {Matrix} from './matrix';
 import type {Pose, Size} from './pose';
 
 /** The shares of the canvas that panels cover, each in [0, 1). The mesh is centred in the rest. */
@@ -17,6 +18,12 @@ export interface Insets {
   top: number;
   bottom: number;
 }
+
+/**
+ * The fitted mesh's whole box is in the picture. These shares of the canvas's width and height stay
+ * free on each side of it.
+ */
+export type Boxed = readonly [number, number];
 
 /** A picture that is drawn apart from the canvas. */
 export interface Frame {
@@ -29,6 +36,8 @@ export interface Frame {
   pixelRatio: number;
   /** It will lie on a dark ground: lines beside the mesh are light. */
   onDark?: boolean;
+  /** As View.setBoxed. */
+  boxed?: Boxed | null;
 }
 
 /** A part of such a picture, without ground. `x` and `y` are those of its upper left corner. */
@@ -36,6 +45,13 @@ export interface Tile {
   x: number;
   y: number;
   bitmap: ImageBitmap;
+}
+
+export interface Rendered {
+  /** None: there is no mesh. */
+  tiles: Tile[];
+  /** Pose.toCanvas of the whole picture. */
+  toCanvas: Matrix;
 }
 
 export interface Look {
@@ -96,6 +112,8 @@ export interface View {
    * camera and saved pictures stay as they are. Null: the picture goes back.
    */
   setCovered(insets: Insets | null): void;
+  /** Numbers round the mesh's box get this room. Null: the mesh itself is fitted. */
+  setBoxed(boxed: Boxed | null): void;
   /**
    * The place that the first view of the next mesh looks at: bounds in lattice coordinates; null:
    * all of it.
@@ -129,6 +147,6 @@ export interface View {
    * The mesh of now in a picture of another size, fitted between its insets. A mesh that is not
    * wholly seen between those of the canvas is not fitted: all that lies there is shown.
    */
-  render(frame: Frame): Promise<Tile[]>;
+  render(frame: Frame): Promise<Rendered>;
   dispose(): void;
 }

@@ -6,7 +6,7 @@ import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import type {CanvasEvent, CanvasSize} from './worker_canvas';
 import type {Pose} from './pose';
-import type {Frame, Tile, View} from './view';
+import type {Frame, Rendered, View} from './view';
 
 /** Methods of View without a result. */
 export type Command =
@@ -15,6 +15,7 @@ export type Command =
   | 'setRange'
   | 'setInsets'
   | 'setCovered'
+  | 'setBoxed'
   | 'setFocus'
   | 'pan'
   | 'centre'
@@ -50,6 +51,6 @@ export type FromView =
   | {type: 'works'; working: boolean}
   | {type: 'lost'; lost: boolean}
   | {type: 'coarse'; id: number; have: number}
-  | {type: 'pictured'; id: number; picture: Blob | Tile[]}
+  | {type: 'pictured'; id: number; picture: Blob | Rendered}
   /** With `id` this picture cannot be taken; without it the view cannot start. */
   | {type: 'failed'; message: string; id?: number};

@@ -31,7 +31,7 @@ async function answer(
 ): Promise<void> {
   try {
     const picture = await taking;
-    const bitmaps = Array.isArray(picture) ? picture.map(({bitmap}) => bitmap) : [];
+    const bitmaps = 'tiles' in picture ? picture.tiles.map(({bitmap}) => bitmap) : [];
     post({type: 'pictured', id, picture}, bitmaps);
   } catch (thrown) {
     post({type: 'failed', id, message: errorText(thrown)});

@@ -11,7 +11,7 @@ import {watchDensity} from './density';
 import {checkedDirection, type Direction} from './directions';
 import type {CanvasEvent, CanvasSize} from './worker_canvas';
 import {checkedCamera, project, rayAt, type Pose} from './pose';
-import type {Frame, Insets, Look, Tile, View, ViewListeners} from './view';
+import type {Boxed, Frame, Insets, Look, Rendered, View, ViewListeners} from './view';
 import type {Command, FromView, ToView, Wanted} from './view_messages';
 
 /**
@@ -169,6 +169,9 @@ class WorkerView implements View {
   setCovered(insets: Insets | null): void {
     this.command('setCovered', insets);
   }
+  setBoxed(boxed: Boxed | null): void {
+    this.command('setBoxed', boxed);
+  }
   setFocus(focus: number[] | null): void {
     this.command('setFocus', focus);
   }
@@ -204,7 +207,7 @@ class WorkerView implements View {
   picture(background: string): Promise<Blob> {
     return this.take({type: 'picture', background});
   }
-  render(frame: Frame): Promise<Tile[]> {
+  render(frame: Frame): Promise<Rendered> {
     return this.take({type: 'render', frame});
   }
 

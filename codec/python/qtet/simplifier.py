@@ -427,7 +427,8 @@ def simplify(
     source      what the log calls its input
     target_ratio          of the base mesh's tetrahedra to the input's; without, base_error chooses
     base_cells            tetrahedra of the base mesh, instead of a ratio
-    base_error            how far the base mesh's boundary may be, over the diagonal; 0.01
+    base_error            how far the base mesh's boundary may be, over the diagonal; 0.01. Volume
+                          and fields may be twice that
     boundary_weight       what the boundary's place counts beside the fields; chosen by the mesh
     shape_weight          what badly shaped cells cost; 0.5
     envelope_tolerance    how far the boundary may leave the solid, over the box's diagonal; 0.005
@@ -443,7 +444,8 @@ def simplify(
     errors                {name: how far a value of the last level may be from the input's}: 0.5 in
                           the field's unit, "0.5K", or "0.1%" of its range; the step and the bits
                           follow. "all": every float field that is not named
-    field_weights         {name: what a point field counts, 1 otherwise}
+    field_weights         {name: what a point field counts, 1 otherwise}; without, the first one
+                          that a viewer shows counts 2
     label_weights         {name: what the interfaces of a cell field of integers count, such as
                           materials; 0 leaves them out}
     regions               the name of a cell field whose values keep their topology

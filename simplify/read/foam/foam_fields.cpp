@@ -6,7 +6,7 @@
 #include <limits>
 #include <string_view>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "simplify/mesh/vector3.h"
 #include "simplify/split/each_face.h"
 
@@ -18,8 +18,8 @@ constexpr std::string_view kPointKey = "point:", kCellKey = "cell:";
 /// Whether KEY:NAME, or that of one of its steps, is among the names.
 bool isAskedAs(std::string_view key, const FieldNames& names, const std::string& name) {
   const std::string wanted = std::string(key) + name;
-  return names && std::ranges::any_of(*names, [&](const std::string& asked) {
-           return asked == wanted || nameWithoutStep(asked) == wanted;
+  return names && std::ranges::any_of(*names, [&](const FieldName& asked) {
+           return asked == wanted || asked.withoutTime() == wanted;
          });
 }
 

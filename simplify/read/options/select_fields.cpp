@@ -33,7 +33,7 @@ constexpr std::string_view kVtkOriginals[] = {"vtkOriginalPointIds", "vtkOrigina
 
 bool numbersThings(const MeshField& field) {
   if (isFloatType(field.type) || field.components != 1 || !field.labelNames.empty()) return false;
-  const std::string_view name = nameWithoutStep(field.name).value_or(field.name);
+  const std::string_view name = field.name.withoutTime();
   if (std::ranges::find(kVtkOriginals, name) != std::end(kVtkOriginals)) return true;
   if (field.values.size() < kFewestNumbers) return false;
   std::vector<double> sorted = field.values;
@@ -57,11 +57,10 @@ bool allWithin(const Threshold& threshold, const MeshField& field, const CellMes
 
 }  // namespace
 
-bool isMeant(const FieldNames& names, const std::string& association, const std::string& name) {
-  const std::string_view stem = nameWithoutStep(name).value_or(name);
-  return !names || std::ranges::any_of(*names, [&](const std::string& asked) {
-    return isCalled(association, name, asked) || isCalled(association, stem, asked) ||
-           isCalled(association, name, nameWithoutStep(asked).value_or(asked));
+bool isMeant(const FieldNames& names, const std::string& association, const FieldName& name) {
+  return !names || std::ranges::any_of(*names, [&](const FieldName& asked) {
+    return isCalled(association, name, asked) || isCalled(association, name.withoutTime(), asked) ||
+           isCalled(association, name, asked.withoutTime());
   });
 }
 

@@ -13,7 +13,7 @@ namespace qtet {
 /// known. It goes by field_key.h; a series is also meant where one of its steps is asked for
 /// (NAME@TIME of NAME).
 [[nodiscard]] bool isMeant(const FieldNames& names, const std::string& association,
-                           const std::string& name);
+                           const FieldName& name);
 
 /// Leaves the fields asked for, in the order asked, each once. Errors: not-found (no field of that
 /// name; the message lists what there is), limit-exceeded (more than kMaxFields).

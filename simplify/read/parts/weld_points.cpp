@@ -8,7 +8,7 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 
 namespace qtet {
 namespace {
@@ -40,7 +40,7 @@ class KeptPoints {
     first_.reserve(points_.size());
     if (motion.empty()) return;
     for (const MeshField& field : mesh.fields)
-      if (!isCellField(field) && nameWithoutStep(field.name) == motion)
+      if (!isCellField(field) && field.name.isInstant() && field.name.withoutTime() == motion)
         displacements_.push_back(&field);
   }
 

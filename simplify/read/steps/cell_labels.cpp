@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/limits.h"
 #include "simplify/read/options/select_fields.h"
 
@@ -20,9 +20,9 @@ namespace {
 constexpr std::array<std::string_view, 4> kBlockFields{"blockid", "blockids", "elementblockids",
                                                        "objectid"};
 
-bool isBlockName(std::string_view name) {
+bool isBlockName(const FieldName& name) {
   std::string lower;
-  for (const char c : nameWithoutStep(name).value_or(name))
+  for (const char c : name.withoutTime())
     lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return std::ranges::find(kBlockFields, lower) != kBlockFields.end();
 }
@@ -121,7 +121,7 @@ bool isInFile(const CellLabel& blocks, CellMesh& mesh) {
 }
 
 bool isCellFieldCalled(const MeshField& field, std::string_view name) {
-  return isCellField(field) && nameWithoutStep(field.name).value_or(field.name) == name;
+  return isCellField(field) && field.name.withoutTime() == name;
 }
 
 }  // namespace
@@ -188,7 +188,7 @@ void addLabelFields(const FieldNames& wanted, CellMesh& mesh, ReadReport& report
 void eraseLabelFields(const ReadReport& report, std::vector<MeshField>& fields) {
   std::erase_if(fields, [&](const MeshField& field) {
     return isCellField(field) &&
-           std::ranges::find(report.labels, field.name) != report.labels.end();
+           std::ranges::find(report.labels, field.name.text()) != report.labels.end();
   });
 }
 

@@ -26,7 +26,7 @@ namespace {
 
 template <class Io, class Field>
 void transferField(Io& io, Field& field) {
-  io.list(field.name), io.one(field.components), io.list(field.type);
+  io.name(field.name), io.one(field.components), io.list(field.type);
   io.list(field.values), io.list(field.association), io.names(field.labelNames);
 }
 
@@ -68,6 +68,7 @@ class Sender {
     one(std::uint64_t{values.size()});
     put(std::as_bytes(std::span(values)));
   }
+  void name(const FieldName& name) { list(name.text()); }
   template <class T, class Each>
   void each(const std::vector<T>& values, const Each& each) {
     one(std::uint64_t{values.size()});
@@ -117,6 +118,11 @@ class Receiver {
     if (failed_) return;
     values.resize(size);
     take(size * sizeof(T), values.data());
+  }
+  void name(FieldName& name) {
+    std::string text;
+    list(text);
+    name = std::move(text);
   }
   template <class T, class Each>
   void each(std::vector<T>& values, const Each& each) {

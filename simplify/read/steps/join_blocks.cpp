@@ -360,7 +360,7 @@ Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem:
       return fail(added.error().code,
                   path.string() + ": at time " + step.time + " " + added.error().message);
     for (MeshField& field : own) {
-      field.name += "@" + step.time;
+      field.name = field.name.at(step.time);
       fields.push_back(std::move(field));
     }
     if (&step != &steps.front()) step.cells = {};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "codec/coding/float_rounding.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 
 namespace qtet {
 namespace {
@@ -14,8 +14,8 @@ namespace {
 bool isSameNumber(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 bool hasField(const CellMesh& mesh, std::string_view name) {
-  const auto isCalledSo = [&](const std::string& own) {
-    return own == name || nameWithoutStep(own) == name;
+  const auto isCalledSo = [&](const FieldName& own) {
+    return own == name || own.withoutTime() == name;
   };
   return std::ranges::any_of(mesh.fields, isCalledSo, &MeshField::name) ||
          std::ranges::any_of(mesh.otherFields, isCalledSo);

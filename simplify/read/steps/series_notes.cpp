@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/number_text.h"
 #include "simplify/read/options/bad_file.h"
 #include "simplify/read/options/time_text.h"
@@ -93,7 +93,7 @@ Status addInstants(const std::vector<MeshField>& fields, const std::filesystem::
   // of all steps together, so that an error names all times
   std::map<std::pair<std::string, std::string>, std::map<std::uint32_t, InstantsReport>> found;
   for (const MeshField& field : fields) {
-    const auto name = instantName(field.name);
+    const auto name = field.name.instant();
     if (!name || isTooWide(field)) continue;
     InstantsReport& instants =
         found[{field.association, std::string(name->series)}][field.components];
@@ -109,7 +109,7 @@ Status addInstants(const std::vector<MeshField>& fields, const std::filesystem::
 
 void setTypes(const SeriesReport& series, std::vector<MeshField>& fields) {
   for (MeshField& field : fields) {
-    const auto name = instantName(field.name);
+    const auto name = field.name.instant();
     if (!name || isTooWide(field)) continue;
     const auto known = series.fields.find({field.association, std::string(name->series)});
     if (known != series.fields.end()) field.type = known->second.type;

@@ -410,7 +410,8 @@ class Gmsh {
           std::ranges::none_of(*steps, [&](std::size_t step) { return times[step] == times_[f]; }))
         continue;
       kept.push_back(out_.fields[f]);
-      if (series && steps->size() > 1) kept.back().name += "@" + shortestText(times_[f]);
+      if (series && steps->size() > 1)
+        kept.back().name = kept.back().name.at(shortestText(times_[f]));
     }
     out_.fields = std::move(kept);
     return {};

@@ -6,7 +6,7 @@
 
 #include "codec/log/log_levels.h"
 #include "codec/log/log_manifest.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/rounding_error.h"
 #include "tests/codec/api/c_log.h"
 
@@ -97,7 +97,8 @@ TEST(QtetC, aSeriesHasItsTimesAndTheirFields) {
       qtet_field_info field{};
       ASSERT_EQ(qtet_log_get_field(log.get(), fields[i], sizeof field, &field), QTET_OK);
       EXPECT_EQ(field.association, info.association);
-      const auto instant = instantName(field.name);
+      const FieldName name(field.name);
+      const auto instant = name.instant();
       ASSERT_TRUE(instant) << field.name;
       EXPECT_EQ(instant->series, info.name);
       EXPECT_EQ(instant->time, times[i]);

@@ -110,7 +110,7 @@ TEST(DecodeVerified, forgetsFieldsThatNobodyAsksFor) {
   LatticeMesh mesh = testing::soundMesh(8, 1);
   for (int copy = 0; copy < 40; ++copy)
     mesh.fields.push_back(mesh.fields[1]), mesh.values.push_back(mesh.values[1]),
-        mesh.fields.back().name += std::to_string(copy);
+        mesh.fields.back().name = mesh.fields.back().name + std::to_string(copy);
   const auto encoded = encodeLog(simplify(mesh, {}).value(), {});
   ASSERT_TRUE(encoded) << encoded.error().text();
   const LogFile log = LogFile::fromBytes(encoded->bytes).value();

@@ -228,8 +228,7 @@ TEST(LogManifest, whatIsOutOfRangeIsRefused) {
                 [](Manifest& m) { m.fields[0].bits = kMaxFieldBits + 1; });
   expectRefused(ErrorCode::kBadValue, "unknown type",
                 [](Manifest& m) { m.fields[0].type = "complex"; });
-  expectRefused(ErrorCode::kBadValue, "without a name",
-                [](Manifest& m) { m.fields[1].name.clear(); });
+  expectRefused(ErrorCode::kBadValue, "without a name", [](Manifest& m) { m.fields[1].name = ""; });
   expectRefused(ErrorCode::kBadValue, "level 7",
                 [](Manifest& m) { m.levels[7].tetrahedra = kMaxElements + 1; });
   expectRefused(ErrorCode::kBadValue, "level 8",

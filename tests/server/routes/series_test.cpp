@@ -54,7 +54,7 @@ TEST_F(SeriesServer, theValuesAtAVertexAreThoseOfTheLevelsMesh) {
   const Json json = Json::parse(answer.body);
   ASSERT_EQ(json["values"].size(), 5u);
   for (std::size_t f = 0; f < 5; ++f) {
-    const auto instant = static_cast<std::size_t>(2 * instantName(mesh.fields[f].name)->time);
+    const auto instant = static_cast<std::size_t>(2 * mesh.fields[f].name.instant()->time);
     EXPECT_NEAR(json["values"][instant][0].number(), mesh.fields[f].value(0, mesh.values[f][v]),
                 1e-3);
   }

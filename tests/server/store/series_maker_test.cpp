@@ -57,7 +57,7 @@ class SeriesTest : public ::testing::Test {
   [[nodiscard]] std::vector<std::uint32_t> fields(std::string_view begin) const {
     std::vector<std::uint32_t> out;
     for (std::uint32_t f = 0; f < served_->manifest.fields.size(); ++f)
-      if (served_->manifest.fields[f].name.starts_with(begin)) out.push_back(f);
+      if (served_->manifest.fields[f].name.text().starts_with(begin)) out.push_back(f);
     return out;
   }
   [[nodiscard]] LevelRequest request(std::string_view begin, std::uint32_t level,
@@ -100,7 +100,7 @@ TEST_F(SeriesTest, pointValuesAreThoseBetweenTheCornersAtEveryLevel) {
     for (std::size_t i = 0; i < kInstants; ++i) {
       EXPECT_EQ(json["times"][i].number(), 0.5 * static_cast<double>(i));
       const auto field = std::ranges::find_if(mesh.fields, [&](const FieldInfo& info) {
-        return instantName(info.name)->time == 0.5 * static_cast<double>(i);
+        return info.name.instant()->time == 0.5 * static_cast<double>(i);
       });
       const auto& integers = mesh.values[static_cast<std::size_t>(field - mesh.fields.begin())];
       double expected = 0;

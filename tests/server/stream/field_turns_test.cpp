@@ -41,7 +41,7 @@ struct Log {
       prediction.parents[prediction.count++] = {parent, 8};
     }
   }
-  [[nodiscard]] std::vector<Series> series() const { return seriesOf(std::span(manifest.fields)); }
+  [[nodiscard]] std::vector<Series> series() const { return seriesOf(manifest.fields); }
   [[nodiscard]] std::expected<FieldTurns, std::string> found(
       const std::vector<std::string>& names, const std::optional<StreamTime>& time) const {
     const std::vector<Series> all = series();

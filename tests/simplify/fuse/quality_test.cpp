@@ -25,6 +25,7 @@ struct Figures {
   double field, wall, hausdorff;
   double thinAngle;  ///< a thousandth of all angles between faces is smaller
   std::uint32_t levels;
+  double volume;  ///< per cent of the original's
 };
 
 struct Floor {
@@ -62,6 +63,14 @@ TEST(PlainError, isWhatAMeshWasChangedBy) {
               1e-9);
 }
 
+double sixVolumes(const LatticeMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c, d] : mesh.tetrahedra)
+    sum += static_cast<double>(
+        volume6(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]));
+  return sum;
+}
+
 Figures figuresOf(const Floor& floor) {
   Result<TetMesh> mesh = makeSample(floor.sample);
   EXPECT_TRUE(mesh && cleanMesh(*mesh));
@@ -74,8 +83,9 @@ Figures figuresOf(const Floor& floor) {
       *options.targetRatio * static_cast<double>(quantised->mesh.tetrahedra.size());
   EXPECT_LE(static_cast<double>(level.tetrahedra.size()), std::ceil(target));
   const testing::PlainError error = testing::plainError(quantised->mesh, level, kSamples);
-  return {100 * error.field, 100 * error.wall, 100 * error.hausdorff,
-          testing::angleAt(level, 0.001), history->levels};
+  return {100 * error.field,     100 * error.wall,
+          100 * error.hausdorff, testing::angleAt(level, 0.001),
+          history->levels,       100 * sixVolumes(level) / sixVolumes(quantised->mesh)};
 }
 
 TEST_P(Quality, isNoWorseThanCommitted) {
@@ -87,17 +97,19 @@ TEST_P(Quality, isNoWorseThanCommitted) {
   EXPECT_GE(static_cast<double>(now.levels), then.levels / kMargin)
       << "a level fuses what waits for cheaper fusions, or could";
   EXPECT_LE(static_cast<double>(now.levels), kMargin * then.levels) << "each takes a frame";
+  EXPECT_NEAR(now.volume, then.volume, (kMargin - 1) * (100 - then.volume) + 0.01);
 }
 
 // A boundary that is where it was to a lattice step: 0.0009 % of the box's diagonal.
-INSTANTIATE_TEST_SUITE_P(Samples, Quality,
-                         ::testing::Values(Floor{"box", 50, {0.2198, 0.2896, 0.0009, 18.49, 9}},
-                                           Floor{"box", 90, {1.4344, 1.6315, 0.0027, 8.44, 28}},
-                                           Floor{"box", 99, {5.3749, 6.8398, 12.519, 4.30, 50}},
-                                           Floor{"fin", 50, {0.03294, 0.03268, 0.0110, 2.59, 17}},
-                                           Floor{"fin", 90, {0.30422, 0.51252, 0.1483, 1.36, 48}},
-                                           Floor{"fin", 99, {1.45529, 3.23954, 0.8126, 0.478, 86}}),
-                         [](const auto& floor) { return ::testing::PrintToString(floor.param); });
+INSTANTIATE_TEST_SUITE_P(
+    Samples, Quality,
+    ::testing::Values(Floor{"box", 50, {0.2199, 0.2896, 0.0009, 18.49, 9, 100}},
+                      Floor{"box", 90, {1.4344, 1.6315, 0.0009, 8.44, 28, 100}},
+                      Floor{"box", 99, {5.1926, 5.6793, 0.3316, 8.46, 47, 99.896}},
+                      Floor{"fin", 50, {0.03124, 0.03147, 0.0109, 2.55, 17, 100}},
+                      Floor{"fin", 90, {0.30122, 0.39687, 0.1019, 1.356, 48, 99.994}},
+                      Floor{"fin", 99, {1.52169, 3.15888, 0.4574, 0.685, 86, 99.866}}),
+    [](const auto& floor) { return ::testing::PrintToString(floor.param); });
 
 }  // namespace
 }  // namespace qtet

@@ -106,6 +106,47 @@ TEST(BoundaryEnvelope, ofEquallyFarFacesTheFirstOneCounts) {
   EXPECT_GT(toSide[1], 100u) << "the order of the faces does not show";
 }
 
+/// Six times the signed volume between the triangles and the place 0, with the prey at d.
+double volume6(const FusionMesh& mesh, const std::vector<Triangle>& faces, const Prey& prey,
+               const Vector3* d) {
+  double out = 0;
+  for (const Triangle& t : faces) {
+    std::array<Vector3, 3> at{};
+    int moved = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const bool isPrey = std::ranges::find(prey.vertices(), t[i]) != prey.vertices().end();
+      moved += isPrey;
+      at[i] = isPrey && d ? *d : mesh.position(t[i]);
+    }
+    if (!d || moved == 1) out += dot(at[0], cross(at[1], at[2]));
+  }
+  return out;
+}
+
+TEST(BoundaryEnvelope, volumeChangesAsTheTrianglesSay) {
+  const LatticeMesh lattice =
+      testing::gridMesh(4, 5, [](int i, int j, int k) { return (i + j + k) % 4 != 0; });
+  const FusionMesh mesh(lattice);
+  BoundaryEnvelope envelope(mesh, -1);
+  const Vector3 d{3, -2, 5};
+  std::size_t changed = 0;
+  for (const Tetrahedron& t : lattice.tetrahedra)
+    for (std::uint8_t k = 2; k <= 4; ++k) {
+      const Prey prey{k, t};
+      envelope.gather(prey);
+      const VolumeChange found = envelope.volumeChange();
+      const std::vector<Triangle> faces = facesRound(mesh, prey);
+      EXPECT_EQ(found.triangles, faces.size());
+      const Vector3 there = mesh.position(prey.vertex[0]) + d;
+      // the star's outer edges are the same before and after, so no place matters
+      const double expected =
+          (volume6(mesh, faces, prey, &there) - volume6(mesh, faces, prey, nullptr)) / 6;
+      EXPECT_NEAR(dot(found.slope, d) + found.change, expected, 1e-6 * (1 + std::abs(expected)));
+      changed += expected != 0;
+    }
+  EXPECT_GT(changed, 100u);
+}
+
 TEST(BoundaryEnvelope, projectsAsThePlainOneDoes) {
   const LatticeMesh lattice =
       testing::gridMesh(4, 5, [](int i, int j, int k) { return (i + j + k) % 4 != 0; });

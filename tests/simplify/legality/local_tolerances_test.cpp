@@ -28,12 +28,27 @@ std::array<LatticePoint, 3> level(std::int32_t corner, std::int32_t size, std::i
           LatticePoint{corner, corner + size, height}};
 }
 
-TEST(LocalTolerances, areAQuarterOfTheWayToTheNextSheetOnEitherSide) {
+TEST(LocalTolerances, areAQuarterOfTheWayOutwardsToTheNextSheet) {
   const auto found = tolerancesOf({level(0, 90, 100), level(0, 90, 140), level(0, 90, 400)}, 50);
   EXPECT_FLOAT_EQ(found[0], 10);
   EXPECT_FLOAT_EQ(found[1], 10) << "the other one is above";
   EXPECT_LE(found[0], 10.0f);
   EXPECT_FLOAT_EQ(found[2], 50) << "260 steps are more than it could use up";
+}
+
+TEST(LocalTolerances, noWallLimitsThemInwards) {
+  auto under = level(0, 90, 100);
+  std::swap(under[1], under[2]);  // it looks down
+  const auto found = tolerancesOf({under, level(0, 90, 140)}, 50);
+  EXPECT_FLOAT_EQ(found[0], 50);
+  EXPECT_FLOAT_EQ(found[1], 50);
+}
+
+TEST(LocalTolerances, sheetsThatTouchHaveNone) {
+  auto above = level(0, 90, 100);
+  std::swap(above[1], above[2]);
+  for (const float tolerance : tolerancesOf({level(0, 90, 100), above}, 50))
+    EXPECT_FLOAT_EQ(tolerance, 0);
 }
 
 TEST(LocalTolerances, areAtMostTheGivenOne) {
@@ -45,7 +60,9 @@ TEST(LocalTolerances, areAtMostTheGivenOne) {
 }
 
 TEST(LocalTolerances, aLargeTriangleKnowsOfASmallOneInFrontOfIt) {
-  const auto found = tolerancesOf({level(0, 3000, 100), level(700, 4, 140)}, 50);
+  auto small = level(700, 4, 140);
+  std::swap(small[1], small[2]);  // it looks down
+  const auto found = tolerancesOf({level(0, 3000, 100), small}, 50);
   EXPECT_FLOAT_EQ(found[0], 10);
   EXPECT_FLOAT_EQ(found[1], 10);
 }

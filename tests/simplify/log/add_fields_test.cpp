@@ -106,10 +106,15 @@ TEST(LogHistory, hasTheValuesOfALogWhoseLastChunkBringsNone) {
   LatticeMesh mesh = testing::gridMesh(3, 1);
   mesh.fields.pop_back(), mesh.values.pop_back();
   testing::addCellFields(mesh);
-  LogWriterOptions options;
-  options.chunkBytes = 40;
   const FusionHistory made = simplify(mesh, {}).value();
-  const LogFile file = LogFile::fromBytes(encodeLog(made, options).value().bytes).value();
+  const auto inChunksOf = [&](std::uint32_t bytes) {
+    LogWriterOptions options;
+    options.chunkBytes = bytes;
+    return LogFile::fromBytes(encodeLog(made, options).value().bytes).value();
+  };
+  std::uint32_t bytes = 20;
+  while (bytes < 200 && inChunksOf(bytes).chunks().back().records > 0) ++bytes;
+  const LogFile file = inChunksOf(bytes);
   ASSERT_EQ(file.chunks().back().records, 0u);
   const LogHistory history = historyOf(file).value();
   const auto values = historyValues(file, history, 0);

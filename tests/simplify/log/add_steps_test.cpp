@@ -45,9 +45,7 @@ class AddSteps : public ::testing::Test {
     bytes_ = encodeLog(history, writer).value().bytes;
   }
 
-  [[nodiscard]] double timeOf(std::size_t f) const {
-    return instantName(mesh_.fields[f].name)->time;
-  }
+  [[nodiscard]] double timeOf(std::size_t f) const { return mesh_.fields[f].name.instant()->time; }
   /// The instants of T from `first` to before `end` on points, in the lattice's own numbering.
   [[nodiscard]] TetMesh steps(std::size_t first, std::size_t end, double factor = 1) const {
     TetMesh out;
@@ -62,7 +60,7 @@ class AddSteps : public ::testing::Test {
       for (const std::int32_t value : mesh_.values[f])
         field.values.push_back(factor * info.value(0, value));
     }
-    std::ranges::sort(out.fields, {}, [](const MeshField& f) { return instantName(f.name)->time; });
+    std::ranges::sort(out.fields, {}, [](const MeshField& f) { return f.name.instant()->time; });
     return out;
   }
   [[nodiscard]] LogFile log() const { return LogFile::fromBytes(bytes_).value(); }

@@ -10,7 +10,7 @@
 
 #include "codec/log/log_manifest.h"
 #include "codec/refine/log_file.h"
-#include "proto/field_key.h"
+#include "proto/field_name.h"
 #include "proto/limits.h"
 #include "proto/number_text.h"
 #include "proto/rounding_error.h"
@@ -107,9 +107,9 @@ TEST_F(SeriesPipeline, aRunThatBeginsAtRestOpensWhereThereIsMostToSee) {
   const PipelineReport atOnce = simplifyToLog(read(all).value(), {}).value().report,
                        inWindows = make().value().report;
   for (const PipelineReport* report : {&atOnce, &inWindows}) {
-    const double time = instantName(report->manifest.fields[0].name)->time;
+    const double time = report->manifest.fields[0].name.instant()->time;
     EXPECT_GT(time, 0.25);
-    EXPECT_EQ(instantName(report->manifest.fields[1].name)->time, time);
+    EXPECT_EQ(report->manifest.fields[1].name.instant()->time, time);
     EXPECT_EQ(report->manifest.fields.size(), 2 * kSteps);
     EXPECT_EQ(report->index.laterFields, 2 * (kSteps - 1));
     EXPECT_TRUE(report->index.fields[0].prediction.isNone());
@@ -174,8 +174,8 @@ TEST_F(SeriesPipeline, aDivergedInstantHasItsOwnScaleAndIsToldOnce) {
     jump_ = jump, factor_ = 1e6;
     const PipelineOutput made = make().value();
     const std::string time = shortestText(0.1 * static_cast<double>(jump));
-    const auto far =
-        std::ranges::find(made.report.manifest.fields, "T@" + time, &ManifestField::name);
+    const auto far = std::ranges::find(made.report.manifest.fields, FieldName("T@" + time),
+                                       &ManifestField::name);
     EXPECT_GT(far->step, 1e3 * made.report.manifest.fields[0].step);
     ASSERT_EQ(made.report.warnings.size(), 1u);
     EXPECT_NE(made.report.warnings[0].find("its values at time " + time + " span"),
@@ -195,7 +195,7 @@ std::map<std::string, Finest> staticFieldsOf(const PipelineOutput& made) {
   const LatticeMesh mesh = meshAtLevel(log, log.chunks().back().lastLevel, std::nullopt).value();
   std::map<std::string, Finest> out;
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    if (instantName(mesh.fields[f].name)) continue;
+    if (mesh.fields[f].name.instant()) continue;
     Finest& field = out[mesh.fields[f].name];
     field.info = mesh.fields[f];
     if (isCellField(field.info)) {

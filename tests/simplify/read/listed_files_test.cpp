@@ -49,7 +49,7 @@ class ListedFilesTest : public ::testing::Test {
     if (!read) return read.error().message;
     std::string out;
     for (const MeshField& field : read->mesh.fields)
-      out += (out.empty() ? "" : " ") + field.name.substr(2) + ":" +
+      out += (out.empty() ? "" : " ") + field.name.text().substr(2) + ":" +
              shortestText(field.values.front());
     return out;
   }

@@ -31,7 +31,7 @@ fs::path given(const std::string& name) {
 }
 
 const MeshField* field(const ReadMesh& read, const std::string& name) {
-  const auto at = std::ranges::find(read.mesh.fields, name, &MeshField::name);
+  const auto at = std::ranges::find(read.mesh.fields, FieldName(name), &MeshField::name);
   return at == read.mesh.fields.end() ? nullptr : &*at;
 }
 

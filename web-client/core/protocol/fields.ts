@@ -4,6 +4,10 @@
 export interface Instant {
   /** The series' key. No other series and no field outside of this one has it. */
   series: string;
+  /** The series' name: the field's without its time. */
+  name: string;
+  /** The series' fields, by time. */
+  fields: readonly number[];
   time: number;
   /** The time as the field's name has it. */
   text: string;

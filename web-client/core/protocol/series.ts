@@ -34,6 +34,8 @@ export function instantName(name: string): ({series: string} & Time) | null {
   return Number.isFinite(time) && !isTooSmall ? {series: name.slice(0, at), time, text} : null;
 }
 
+type Member = NonNullable<ReturnType<typeof instantName>> & {field: number};
+
 /**
  * Marks the instants of all series of `least` and more, the one of each with the lowest number as
  * shown. They get one range: that of the whole series. May be called again for more fields.
@@ -43,26 +45,29 @@ export function markSeries(fields: FieldInfo[], least = 2): void {
     if (info.instant) info.range = info.instant.own.range;
     delete info.instant;
   }
-  /** By kind and time: the field. */
-  const kinds = new Map<string, Map<number, number>>();
+  /** By kind and time. */
+  const kinds = new Map<string, Map<number, Member>>();
   fields.forEach(({name, association, components, type}, field) => {
     const instant = instantName(name);
     if (!instant) return;
     const kind = JSON.stringify([instant.series, association, components, type]);
-    const times = kinds.get(kind) ?? new Map<number, number>();
+    const times = kinds.get(kind) ?? new Map<number, Member>();
     kinds.set(kind, times);
-    if (!times.has(instant.time)) times.set(instant.time, field);
+    if (!times.has(instant.time)) times.set(instant.time, {field, ...instant});
   });
   const keys = fieldKeys(fields);
   const series = [...kinds.values()]
     .filter(({size}) => size >= least)
     .map((times) => [...times.values()])
-    .sort(([a], [b]) => (isOfCells(fields[a!]!) ? 1 : 0) - (isOfCells(fields[b!]!) ? 1 : 0));
-  const instants = new Set(series.flat());
+    .sort(
+      ([a], [b]) => (isOfCells(fields[a!.field]!) ? 1 : 0) - (isOfCells(fields[b!.field]!) ? 1 : 0),
+    );
+  const instants = new Set(series.flat().map(({field}) => field));
   const taken = new Set(keys.filter((_, field) => !instants.has(field)));
   for (const members of series) {
-    const infos = members.map((field) => fields[field]!);
-    const key = freeKey(infos[0]!, keys[members[0]!]!, taken);
+    const infos = members.map(({field}) => fields[field]!);
+    const {series: name, field: first} = members[0]!;
+    const key = freeKey(name, infos[0]!, keys[first]!, taken);
     taken.add(key);
     const range = union(infos.map((info) => info.range));
     const own = infos.map((info) => info.minimum.map((_, c) => rangeOf(info, c)));
@@ -70,9 +75,11 @@ export function markSeries(fields: FieldInfo[], least = 2): void {
     const alone = infos.map((info, i) => ({range: info.range, ranges: own[i]!}));
     const areUsual = usualOf(infos.map((info) => info.range));
     const usual = together(alone.filter((_, i) => areUsual[i]));
+    const byTime = [...members].sort((a, b) => a.time - b.time).map(({field}) => field);
     infos.forEach((info, i) => {
-      const {time, text} = instantName(info.name)!;
-      info.instant = {series: key, time, text, isShown: false, ranges, own: alone[i]!};
+      const {time, text} = members[i]!;
+      const place = {series: key, name, fields: byTime, time, text};
+      info.instant = {...place, isShown: false, ranges, own: alone[i]!};
       if (areUsual.includes(false)) info.instant.alike = areUsual[i] ? usual : alone[i]!;
       info.range = range;
     });
@@ -83,9 +90,13 @@ export function markSeries(fields: FieldInfo[], least = 2): void {
 const isOfCells = ({association}: FieldInfo): boolean => association === 'cell';
 
 /** The key of the series that begins with `first`: NAME or cell:NAME, else that of `first`. */
-function freeKey(first: FieldInfo, firstKey: string, taken: ReadonlySet<string>): string {
-  const {series} = instantName(first.name)!;
-  const choices = isOfCells(first) ? [series, `cell:${series}`] : [series];
+function freeKey(
+  name: string,
+  first: FieldInfo,
+  firstKey: string,
+  taken: ReadonlySet<string>,
+): string {
+  const choices = isOfCells(first) ? [name, `cell:${name}`] : [name];
   return choices.find((key) => !taken.has(key)) ?? firstKey;
 }
 
@@ -188,11 +199,8 @@ export function fieldOfSeries(fields: readonly FieldInfo[], key: string): number
 }
 
 /** The fields that are the instants of the series with this key, by time. */
-export function instantsOf(fields: readonly FieldInfo[], key: string): number[] {
-  const timeOf = (field: number): number => fields[field]!.instant!.time;
-  return fields
-    .flatMap(({instant}, field) => (instant?.series === key ? [field] : []))
-    .sort((a, b) => timeOf(a) - timeOf(b));
+export function instantsOf(fields: readonly FieldInfo[], key: string): readonly number[] {
+  return fields.find(({instant}) => instant?.series === key)?.instant?.fields ?? [];
 }
 
 /** The instant that is shown of the field's series; a field of none is itself. */

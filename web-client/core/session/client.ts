@@ -104,6 +104,10 @@ export class Client {
   line(from: Vector, to: Vector): Promise<LineValues[]> {
     return this.ask({type: 'line', from, to});
   }
+  /** Inspector.at: what lies at a lattice place of the mesh at rest. */
+  at(place: Vector): Promise<Pick | null> {
+    return this.ask({type: 'at', place});
+  }
   /** Inspector.values: by field its values at a lattice place. */
   values(place: Vector, fields: readonly number[]): Promise<number[][]> {
     return this.ask({type: 'values', place, fields});

@@ -34,6 +34,8 @@ export interface Pick {
   cell: number;
   /** Its vertices. */
   corners: number[];
+  /** Their places on the lattice, as they are drawn. */
+  places: Vector[];
   /** In the mesh's own coordinates; `lattice` is the same place on the lattice. */
   position: Vector;
   lattice: Vector;
@@ -62,8 +64,9 @@ export interface LineValues {
 }
 
 export class Inspector {
-  /** The cell of the last place that `values` was asked about, in which mesh. */
-  private found: {key: string; manifest: Manifest | null; cell: number} | null = null;
+  /** The cells of places that were asked about, in which mesh. */
+  private found: {chunks: number; manifest: Manifest | null; cells: Map<string, number>} | null =
+    null;
 
   constructor(private readonly assembler: Assembler) {}
 
@@ -116,6 +119,16 @@ export class Inspector {
     });
   }
 
+  /** The cell at a lattice place of the mesh at rest, and where that is drawn; null: no mesh. */
+  at(place: Vector, {warp}: Display): Pick | null {
+    const rest = meshArrays(this.assembler);
+    const mesh = meshArrays(this.assembler, warp);
+    const cell = rest ? this.cellOf(rest, place) : -1;
+    if (!rest || !mesh || cell < 0) return null;
+    const shares = this.sharesIn(rest, cell, place);
+    return this.pickAt(mesh, cell, placeIn(mesh, cell, shares), warp !== null);
+  }
+
   /**
    * By field its values at a lattice place of the mesh at rest, one a component. There are none if
    * the field is not here for all of the mesh. A place beside the mesh has those of the cell next
@@ -125,9 +138,7 @@ export class Inspector {
     const mesh = meshArrays(this.assembler);
     const cell = mesh ? this.cellOf(mesh, place) : -1;
     if (!mesh || cell < 0) return fields.map(() => []);
-    const inside = barycentric(mesh, cell, place).map((share) => Math.max(0, share));
-    const sum = inside.reduce((a, b) => a + b);
-    const shares = inside.map((share) => share / sum);
+    const shares = this.sharesIn(mesh, cell, place);
     const whole = new Set(this.assembler.wholeFields);
     return fields.map((field) =>
       whole.has(field) ? (this.valuesOf(mesh, cell, shares, field) ?? []) : [],
@@ -137,10 +148,20 @@ export class Inspector {
   /** Looks through all cells once for a place and a mesh. */
   private cellOf(cells: Cells, place: Vector): number {
     const {codec, manifest} = this.assembler;
-    const key = JSON.stringify([place, codec.chunksApplied]);
-    if (this.found?.key !== key || this.found.manifest !== manifest)
-      this.found = {key, manifest, cell: cellAt(cells, place)};
-    return this.found.cell;
+    const chunks = codec.chunksApplied;
+    if (this.found?.chunks !== chunks || this.found.manifest !== manifest)
+      this.found = {chunks, manifest, cells: new Map()};
+    const known = this.found.cells;
+    const key = place.join();
+    if (!known.has(key)) known.set(key, cellAt(cells, place));
+    return known.get(key)!;
+  }
+
+  /** Shares of the corners of a cell. A place beside the cell has those of a place in it. */
+  private sharesIn(mesh: Cells, cell: number, place: Vector): number[] {
+    const inside = barycentric(mesh, cell, place).map((share) => Math.max(0, share));
+    const sum = inside.reduce((a, b) => a + b);
+    return inside.map((share) => share / sum);
   }
 
   /** Counts the values of the coloured field; null while there are none. */
@@ -162,6 +183,9 @@ export class Inspector {
     return {
       cell,
       corners: cornersOf(cells, cell),
+      places: cornersOf(cells, cell).map(
+        (corner) => [...cells.points.subarray(3 * corner, 3 * corner + 3)] as Vector,
+      ),
       lattice,
       position: this.positionOf(lattice),
       rest: rest && {lattice: rest, position: this.positionOf(rest)},
@@ -172,11 +196,7 @@ export class Inspector {
   /** Where a place of a moved cell was before. */
   private restOf(cells: Cells, cell: number, place: Vector): Vector {
     const points = this.assembler.codec.points();
-    const shares = barycentric(cells, cell, place);
-    const corners = cornersOf(cells, cell);
-    return [0, 1, 2].map((axis) =>
-      corners.reduce((sum, corner, i) => sum + shares[i]! * points[3 * corner + axis]!, 0),
-    ) as Vector;
+    return placeIn({...cells, points}, cell, barycentric(cells, cell, place));
   }
 
   /** In the mesh's own coordinates. */
@@ -210,6 +230,14 @@ export class Inspector {
 const cornersOf = ({tetrahedra}: Cells, cell: number): number[] => [
   ...tetrahedra.subarray(4 * cell, 4 * cell + 4),
 ];
+
+/** The place of the shares of a cell's corners. */
+function placeIn(cells: Cells, cell: number, shares: readonly number[]): Vector {
+  const corners = cornersOf(cells, cell);
+  return [0, 1, 2].map((axis) =>
+    corners.reduce((sum, corner, i) => sum + shares[i]! * cells.points[3 * corner + axis]!, 0),
+  ) as Vector;
+}
 
 function rayBetween(from: Vector, to: Vector): Ray {
   return {origin: from, direction: to.map((x, axis) => x - from[axis]!) as Vector};

@@ -130,6 +130,7 @@ function obey(
     case 'pick':
     case 'probe':
     case 'line':
+    case 'at':
     case 'values':
     case 'histogram':
       return void its
@@ -150,7 +151,7 @@ function obey(
 function answered(
   inspector: Inspector,
   display: Display,
-  question: Extract<Question, {type: 'pick' | 'probe' | 'line' | 'values' | 'histogram'}>,
+  question: Extract<Question, {type: 'pick' | 'probe' | 'line' | 'at' | 'values' | 'histogram'}>,
 ): Answer {
   switch (question.type) {
     case 'pick':
@@ -159,6 +160,8 @@ function answered(
       return inspector.probe(question.from, question.to, display);
     case 'line':
       return inspector.line(question.from, question.to, display);
+    case 'at':
+      return inspector.at(question.place, display);
     case 'values':
       return inspector.values(question.place, question.fields);
     case 'histogram':

@@ -61,6 +61,8 @@ export type Question =
   | {type: 'pick'; ray: Ray}
   | {type: 'probe'; from: Vector; to: Vector}
   | {type: 'line'; from: Vector; to: Vector}
+  /** Asks for the cell at a lattice place of the mesh at rest. */
+  | {type: 'at'; place: Vector}
   /** Asks for fields at a lattice place. */
   | {type: 'values'; place: Vector; fields: readonly number[]}
   /** Counts the values of the coloured field. */

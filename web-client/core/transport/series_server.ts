@@ -4,7 +4,6 @@
 import {QtetError} from '../protocol/errors';
 import type {FieldInfo} from '../protocol/fields';
 import type {Vector} from '../protocol/geometry';
-import {instantName} from '../protocol/series';
 import {fetchChecked, type Fetch} from './ranged_file';
 import {statedBytes} from './stated_size';
 import {fetchWith} from './token';
@@ -86,9 +85,10 @@ export function seriesServer(
   return new SeriesServer(`${found[1]!}${mesh}/series`, fetchWith(token, fetch) ?? fetch);
 }
 
-function keyOf({association, name}: FieldInfo): string {
-  const series = instantName(name)!.series;
-  return association === 'cell' ? `cell:${series}` : series;
+/** REQUIRES: an instant. */
+function keyOf({association, instant}: FieldInfo): string {
+  const {name} = instant!;
+  return association === 'cell' ? `cell:${name}` : name;
 }
 
 /** The time in ms for a header Retry-After: seconds or a date. */

@@ -114,12 +114,14 @@ export class Actions {
 
   private toggle(what: Parameters<KeyActions['toggle']>[0]): void {
     const {page} = this;
-    const {parallel, edges, planes, hasFirstCut} = this.host.settings;
+    const {axes, parallel, edges, planes, hasFirstCut} = this.host.settings;
     switch (what) {
       case 'parallel':
         return page.write('projection', parallel ? null : 'parallel');
       case 'edges':
         return page.write('edges', edges ? 'off' : null);
+      case 'axes':
+        return page.write('axes', axes ? null : 'on');
       case 'clip':
         return page.write('clip', planes.length > 0 ? clipText([], hasFirstCut) : 'x:0.5');
       case 'pause':

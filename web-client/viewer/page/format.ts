@@ -2,7 +2,6 @@
 // too early.
 
 import type {FieldInfo} from '../../core/protocol/fields';
-import {instantName} from '../../core/protocol/series';
 
 const kCounts = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
 const kByteUnits = ['B', 'kB', 'MB', 'GB', 'TB'];
@@ -42,7 +41,7 @@ export function formatError(error: number): string {
  * of the level on the screen, as sampled; 0 where that is the last one, or not known.
  */
 export function formatWithin(info: FieldInfo, error: number, now = 0): string {
-  const name = instantName(info.name)?.series ?? info.name;
+  const name = info.instant?.name ?? info.name;
   const bound = (of: number): string => {
     const digit = 10 ** (Math.floor(Math.log10(of)) - 1);
     const rounded = `${Number((Math.ceil(of / digit) * digit).toPrecision(2))}`;

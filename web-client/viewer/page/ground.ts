@@ -1,10 +1,11 @@
-// The ground that the canvas lies on: the page's own style decides.
+// The ground that the canvas lies on: the page's own style decides, or the attribute `ground`.
 
 const kDarkScheme = '(prefers-color-scheme: dark)';
-/** The mean channel of a middle grey. */
-const kMiddle = 128;
 
-/** Light ink stands on a dark ground. */
+/** The mean channel of a middle grey. */
+export const kMiddle = 128;
+
+/** Light ink stands on a dark ground. The canvas has the ink of its own ground. */
 export function isOnDark(element: Element): boolean {
   const [red = 0, green = 0, blue = 0] =
     getComputedStyle(element)

@@ -9,6 +9,7 @@ export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['1 … 6', 'from ±x ±y ±z'],
   ['O', 'parallel or perspective'],
   ['E', 'cell edges'],
+  ['A', 'axes with numbers'],
   ['C', 'clip on or off'],
   ['[ ]', 'move the clip plane'],
   ['Space', 'pause, continue; play a series'],
@@ -35,7 +36,7 @@ export interface KeyActions {
   centre(): void;
   zoom(factor: number): void;
   look(direction: number | null): void;
-  toggle(what: 'parallel' | 'edges' | 'clip' | 'pause' | 'fullscreen'): void;
+  toggle(what: 'parallel' | 'edges' | 'axes' | 'clip' | 'pause' | 'fullscreen'): void;
   moveClip(share: number): void;
   stepTime(by: number): void;
   /** The first instant is 0, and the last one -1. */
@@ -63,6 +64,7 @@ export function bindKeys(canvas: HTMLElement, actions: KeyActions): void {
     Home: () => actions.look(null),
     o: () => actions.toggle('parallel'),
     e: () => actions.toggle('edges'),
+    a: () => actions.toggle('axes'),
     c: () => actions.toggle('clip'),
     '[': () => actions.moveClip(-kClipStep),
     ']': () => actions.moveClip(kClipStep),

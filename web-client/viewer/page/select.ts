@@ -1,10 +1,15 @@
 // Fills a native select.
 
+import {isEqual} from '../../core/protocol/equal';
+
 export interface SelectOption {
   value: string;
   title: string;
   group?: string;
 }
+
+/** The options that menus hold. */
+const filled = new WeakMap<HTMLSelectElement, readonly SelectOption[]>();
 
 /** A menu that holds these options already stays untouched, so that an open one does not close. */
 export function fillSelect(
@@ -12,9 +17,8 @@ export function fillSelect(
   options: SelectOption[],
   chosen: string,
 ): void {
-  const signature = JSON.stringify(options);
-  if (select.dataset.options !== signature) {
-    select.dataset.options = signature;
+  if (!isEqual(options, filled.get(select))) {
+    filled.set(select, options);
     select.replaceChildren();
     for (const {value, title, group} of options)
       groupOf(select, group).append(new Option(title, value));

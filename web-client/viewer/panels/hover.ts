@@ -1,4 +1,4 @@
-// The value under a pointer that rests. It is a label at the pointer; nothing else moves.
+// The value under a pointer that rests, as a label at the pointer, and the outline of its cell.
 
 import type {Pick} from '../../core/session/inspector';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
@@ -6,6 +6,7 @@ import type {FieldInfo} from '../../core/protocol/fields';
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
 import {formatIn} from '../page/format';
+import {cellPath} from './cell_outline';
 import {scalarName} from './panel';
 
 /** So long the pointer has to rest. */
@@ -20,8 +21,14 @@ export interface HoverHost {
   readonly shown: {scalar: Scalar; fields: readonly FieldInfo[]} | null;
 }
 
-/** "Velocity, x 1.25", or "No value"; null if the field is not here. */
-export function hoverText(
+/** "Velocity, x 1.25 m/s"; null if the field is not here. */
+export function hoverText(pick: Pick, scalar: Scalar, fields: readonly FieldInfo[]): string | null {
+  const value = valueText(pick, scalar, fields);
+  return value === null ? null : `${scalarName(scalar, fields)} ${value}`;
+}
+
+/** "1.25 m/s", or "no value"; null if the field is not here. */
+export function valueText(
   {fields: values}: Pick,
   scalar: Scalar,
   fields: readonly FieldInfo[],
@@ -37,13 +44,16 @@ export function hoverText(
       : found[component]!;
   const info = fields[scalar.field]!;
   const unit = info.unit === undefined ? '' : `\u00a0${info.unit}`;
-  const text = Number.isNaN(value) ? 'no value' : formatIn(info, value) + unit;
-  return `${scalarName(scalar, fields)} ${text}`;
+  return Number.isNaN(value) ? 'no value' : formatIn(info, value) + unit;
 }
 
 export class Hover {
   private readonly label: HTMLElement;
+  /** The cell at the pointer. */
+  private readonly marks: SVGSVGElement;
   private timer: ReturnType<typeof setTimeout> | undefined;
+  /** Where the pointer rests; null: it does not, or the picture moves. */
+  private at: [number, number] | null = null;
   /** Counts the rests: a late answer belongs to none. */
   private rest = 0;
 
@@ -52,24 +62,40 @@ export class Hover {
     private readonly host: HoverHost,
   ) {
     this.label = find(root, '.hover');
+    this.marks = find<SVGSVGElement>(root, '.marks').cloneNode() as SVGSVGElement;
+    this.marks.setAttribute('part', 'marks');
+    find(root, '.layer').append(this.marks);
     root.addEventListener('pointermove', (event) => this.move(event as PointerEvent));
     for (const type of ['pointerdown', 'wheel', 'keydown', 'pointerout'])
       root.addEventListener(type, () => this.hide(), {passive: true});
   }
 
+  /** The mesh has another value or shape at the pointer: it says them once that rests, too. */
+  showPicture(): void {
+    const {at} = this;
+    this.hide();
+    if (at) this.restAt(at);
+  }
+
   /** Must also be called when the picture moves. */
   hide(): void {
     clearTimeout(this.timer);
+    this.at = null;
     ++this.rest;
     this.label.hidden = true;
+    this.marks.replaceChildren();
   }
 
   private move(event: PointerEvent): void {
     this.hide();
     const onPicture = (event.target as Element).matches('.scene');
     if (!onPicture || event.pointerType === 'touch' || event.buttons !== 0) return;
-    const {offsetX, offsetY} = event;
-    this.timer = setTimeout(() => void this.show(offsetX, offsetY), kRestMs);
+    this.restAt([event.offsetX, event.offsetY]);
+  }
+
+  private restAt(at: [number, number]): void {
+    this.at = at;
+    this.timer = setTimeout(() => void this.show(...at), kRestMs);
   }
 
   private async show(x: number, y: number): Promise<void> {
@@ -79,6 +105,9 @@ export class Hover {
     const pick = await this.host.pick(x, y);
     const text = pick && hoverText(pick, shown.scalar, shown.fields);
     if (!text || rest !== this.rest) return;
+    const cell = document.createElementNS(this.marks.namespaceURI, 'path');
+    cell.setAttribute('d', cellPath(pick.places.map((place) => view.project(place))));
+    this.marks.replaceChildren(cell);
     const {label} = this;
     label.textContent = text;
     label.hidden = false;

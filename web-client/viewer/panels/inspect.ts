@@ -10,8 +10,11 @@ import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
+import {cellPath} from './cell_outline';
+import {hoverText} from './hover';
 import {segments} from './markup';
 import {withUnit} from './panel';
+import {RepeatedQuestion} from './repeated_question';
 import {ResultCard} from './result_card';
 
 export type Tool = 'none' | 'point' | 'line';
@@ -42,6 +45,10 @@ export interface InspectHost extends OverTimeHost {
   readonly view: View | null;
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
+  /** Another point may stay. */
+  readonly hasRoom: boolean;
+  /** A place of the mesh at rest, in its own coordinates. */
+  keep(place: Vector): void;
 }
 
 export class Inspect {
@@ -51,6 +58,13 @@ export class Inspect {
   private readonly card: ResultCard;
   private readonly overTime: OverTime;
   private readonly marks: SVGSVGElement;
+  /** Asks which cell and values a point has now. */
+  private readonly question = new RepeatedQuestion(
+    () => this.askAgain(),
+    (pick) => this.takeAgain(pick),
+  );
+  /** The point in question, on the lattice at rest. */
+  private asked: Vector | null = null;
 
   /** Listens on the root, because another canvas may replace this one. */
   constructor(
@@ -60,6 +74,7 @@ export class Inspect {
     this.card = new ResultCard(root, (text) => host.announce(text), {
       close: () => this.clear(),
       saveTable: () => void this.saveTable(),
+      keep: () => this.keep(),
       overTime: () => void this.overTime.begin(materialPlace(this.points[0]!)),
       exact: () => this.overTime.askExact(),
     });
@@ -119,7 +134,7 @@ export class Inspect {
   }
 
   clear(): void {
-    this.points = [];
+    this.setPoints([]);
     if (this.overTime.isOpen) {
       this.overTime.end();
       this.host.apply();
@@ -139,6 +154,11 @@ export class Inspect {
   refresh(): void {
     const [from, to] = this.points;
     if (this.tool === 'line' && from && to) void this.showLine(from, to);
+  }
+
+  /** The mesh may have another shape, other cells, or other values. */
+  showPicture(): void {
+    this.question.repeat();
   }
 
   /** Brings the plot over time in line with the attributes. */
@@ -162,6 +182,12 @@ export class Inspect {
     const {view} = this.host;
     this.marks.replaceChildren();
     if (!view) return;
+    if (this.tool === 'point')
+      for (const {places} of this.points) {
+        const cell = document.createElementNS(this.marks.namespaceURI, 'path');
+        cell.setAttribute('d', cellPath(places.map((place) => view.project(place))));
+        this.marks.append(cell);
+      }
     const at = this.points.map(({lattice}) => view.project(lattice));
     if (at.length === 2)
       this.marks.append(shape('line', {x1: at[0]!.x, y1: at[0]!.y, x2: at[1]!.x, y2: at[1]!.y}));
@@ -184,8 +210,8 @@ export class Inspect {
       if (this.tool === 'point') this.clear();
       return;
     }
-    this.points =
-      this.tool === 'line' && this.points.length === 1 ? [this.points[0]!, pick] : [pick];
+    const isEnd = this.tool === 'line' && this.points.length === 1;
+    this.setPoints(isEnd ? [this.points[0]!, pick] : [pick]);
     this.place();
     const [from, to] = this.points;
     this.hint(this.tool === 'line' && !to ? 'Now point at the other end.' : '');
@@ -194,7 +220,31 @@ export class Inspect {
     else await this.showLine(from!, to);
   }
 
-  private showPick(pick: Pick): void {
+  private setPoints(points: Pick[]): void {
+    const [pick] = points;
+    this.points = points;
+    this.asked = pick && this.tool === 'point' ? placeInside(pick) : null;
+    this.question.forget();
+  }
+
+  private askAgain(): Promise<Pick | null> | null {
+    const {client} = this.host;
+    return this.asked ? (client?.at(this.asked) ?? null) : null;
+  }
+
+  private takeAgain(pick: Pick | null): void {
+    if (!pick || !this.host.client) return; // the worker has another mesh
+    this.points = [pick];
+    this.place();
+    this.card.write(this.titleOf(pick), this.rowsOf(pick));
+  }
+
+  private titleOf(pick: Pick): string {
+    const {color, mesh} = this.host;
+    return (color && hoverText(pick, color, mesh.manifest!.fields)) ?? 'Point';
+  }
+
+  private rowsOf(pick: Pick): [string, string][] {
     const fields = this.host.mesh.manifest!.fields;
     const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
     if (pick.rest) rows.push(['Position at rest', this.placeText(pick.rest.position)]);
@@ -206,12 +256,26 @@ export class Inspect {
       if (values.length > 1)
         rows.push([withUnit(`${info.name}, magnitude`, info), format(Math.hypot(...values))]);
     }
-    rows.push(['Vertices', pick.corners.map(formatCount).join(', ')]);
+    rows.push(['Cell', formatCount(pick.cell)]);
+    rows.push(['Its corners', pick.corners.map(formatCount).join(', ')]);
+    return rows;
+  }
+
+  private showPick(pick: Pick): void {
     const {isOpen} = this.overTime;
-    this.card.show(`Cell ${formatCount(pick.cell)}`, rows, isOpen);
+    this.card.show(this.titleOf(pick), this.rowsOf(pick), isOpen);
+    this.card.offerKeep(this.host.hasRoom);
     this.card.offerOverTime(this.offersOverTime);
     this.placeCard();
     if (isOpen) void this.overTime.begin(materialPlace(pick));
+  }
+
+  /** It gets a card of its own. */
+  private keep(): void {
+    const [pick] = this.points;
+    if (!pick) return;
+    this.clear();
+    this.host.keep(pick.rest?.position ?? pick.position);
   }
 
   private get offersOverTime(): boolean {
@@ -325,6 +389,18 @@ export class Inspect {
 
 /** A place of the mesh at rest: a point that moves keeps it. */
 const materialPlace = ({lattice, rest}: Pick): Vector => rest?.lattice ?? lattice;
+
+/** So far, as a share of the way to its cell's middle, a place lies inside: no face is shared. */
+const kInside = 1e-6;
+
+/** That place, in the pick's cell and in none beside it, which a clip may have taken away. */
+function placeInside(pick: Pick): Vector {
+  const {lattice, places} = pick;
+  return materialPlace(pick).map((x, axis) => {
+    const middle = places.reduce((sum, place) => sum + place[axis]!, 0) / places.length;
+    return x + kInside * (middle - lattice[axis]!);
+  }) as Vector;
+}
 
 function shape(name: string, attributes: Record<string, number>): SVGElement {
   const element = document.createElementNS('http://www.w3.org/2000/svg', name);

@@ -12,6 +12,7 @@ import type {Scalar} from '../../core/picture/field_scale';
 import {labelColorOf, type ShownLabels} from '../../core/picture/labels';
 import {linearPart, placeOn} from '../../core/picture/log_scale';
 import {labelTicks, logTicks, niceTicks, type Ticks} from '../../core/picture/ticks';
+import {isEqual} from '../../core/protocol/equal';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {setAttribute, setText} from '../page/find';
 import {formatCount, formatFactor, formatIn, formatValue} from '../page/format';
@@ -26,7 +27,7 @@ const kLongLetters = 18;
 
 export class Legend {
   private readonly figure: HTMLElement;
-  private shown = '';
+  private shown: unknown = null;
 
   constructor(root: ParentNode) {
     this.figure = root.querySelector('.legend')!;
@@ -49,8 +50,8 @@ export class Legend {
     setText(name, title);
     setAttribute(name, 'title', title);
     const {map, reversed, beyond} = settings;
-    const requested = JSON.stringify([title, range, map, reversed, beyond, marked, labels]);
-    if (requested === this.shown) return; // every picture asks, but few change it
+    const requested = [title, range, map, reversed, beyond, marked, labels];
+    if (isEqual(requested, this.shown)) return; // every picture asks, but few change it
     this.shown = requested;
     const {ticks, factor} = ticksOf(range);
     this.part('.legend-missing').hidden = !range.hasMissing;

@@ -1,11 +1,13 @@
 // The panels of sections.ts, and what one points with; this updates them together.
 
 import type {Scalar} from '../../core/picture/field_scale';
+import type {Vector} from '../../core/protocol/geometry';
 import {isEqual} from '../../core/protocol/equal';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import {seriesServer} from '../../core/transport/series_server';
 import {bindFolds} from '../page/folds';
 import type {ShownMesh} from '../page/shown_mesh';
+import {kMaxPoints, parsePoints, pointsText} from '../settings/points';
 import {kViewAttributes, shownScalar, type Settings, type ShownRange} from '../settings/settings';
 import {Inspect} from './inspect';
 import {scalarTitle, type Panel, type PanelKind, type PanelTools, type Scene} from './panel';
@@ -28,6 +30,7 @@ export class Panels {
     const {root} = page;
     bindFolds(root);
     this.panels = kinds.flatMap((kind) => kind.make?.(tools) ?? []);
+    const keptPoints = (): Vector[] => parsePoints(page.read('points') ?? '') ?? [];
     this.inspect = new Inspect(root, {
       get client() {
         return host.opening === null ? host.client : null;
@@ -48,6 +51,10 @@ export class Panels {
         const {manifest, firstField} = host.mesh;
         return manifest && shownScalar(page.read('field'), manifest.fields, firstField);
       },
+      get hasRoom() {
+        return keptPoints().length < kMaxPoints;
+      },
+      keep: (place) => page.write('points', pointsText([...keptPoints(), place])),
       apply: () => host.apply(),
       showTime: (text) => page.write('time', text),
       get fieldTitle() {
@@ -91,6 +98,7 @@ export class Panels {
     const plotted = {color, isWhole};
     if (!isEqual(plotted, this.plotted)) this.inspect.refresh();
     this.plotted = plotted;
+    this.inspect.showPicture();
   }
 
   /** Shows the range of the colours. */

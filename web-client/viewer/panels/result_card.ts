@@ -14,6 +14,8 @@ export interface CardActions {
   close(): void;
   /** Saves the plot's values. */
   saveTable(): void;
+  /** The point stays. */
+  keep(): void;
   /** Plots the values over time. */
   overTime(): void;
   /** Gets those exactly. */
@@ -38,6 +40,7 @@ export class ResultCard {
     this.card = find(root, '.result');
     onClick(root, '.copy-result', () => void this.copy());
     onClick(root, '.save-table', () => actions.saveTable());
+    onClick(root, '.keep-point', () => actions.keep());
     onClick(root, '.over-time', () => actions.overTime());
     onClick(this.card, '.exact', () => actions.exact());
     onClick(root, '.close-result', () => actions.close());
@@ -52,10 +55,20 @@ export class ResultCard {
   show(title: string, rows: [string, string][], hasPlot: boolean): void {
     this.endPlot();
     this.offerOverTime(false);
+    this.offerKeep(false);
     this.card.hidden = false;
     find(this.card, '.plot').hidden = !hasPlot;
-    this.text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
-    find(this.card, 'h2').textContent = title;
+    this.write(title, rows);
+    this.announce([title, ...rows.map((row) => row.join(' '))].join('. '));
+  }
+
+  /** Its texts, while a plot stays. */
+  write(title: string, rows: [string, string][]): void {
+    const heading = find(this.card, 'h2');
+    const text = rows.map((row) => row.join('\t').replaceAll('\u2212', '-')).join('\n');
+    if (text === this.text && title === heading.textContent) return; // a selection stays
+    this.text = text;
+    heading.textContent = title;
     find(this.card, 'dl').replaceChildren(
       ...rows.map(([name, value]) => {
         const row = document.createElement('div');
@@ -66,12 +79,16 @@ export class ResultCard {
         return row;
       }),
     );
-    this.announce([title, ...rows.map((row) => row.join(' '))].join('. '));
   }
 
   /** Offers the plot over time, or not. */
   offerOverTime(isOffered: boolean): void {
     find(this.card, '.over-time').hidden = !isOffered;
+  }
+
+  /** Offers to keep the point, or not. */
+  offerKeep(isOffered: boolean): void {
+    find(this.card, '.keep-point').hidden = !isOffered;
   }
 
   /** Offers the exact values, or not. */

@@ -10,7 +10,7 @@ import {setMarkup} from '../page/trusted';
 import {shownScalar, type Settings} from '../settings/settings';
 import {warpField} from '../settings/warp';
 import {TimeClock} from './time_clock';
-import {TimeLine, type TimeLineHost} from './time_line';
+import {partOf, TimeLine, type TimeLineHost} from './time_line';
 
 const kSpeeds = [0.5, 1, 2, 4];
 
@@ -311,10 +311,4 @@ export class TimeBar {
 
 function press(button: HTMLElement, isPressed: boolean): void {
   setAttribute(button, 'aria-pressed', String(isPressed));
-}
-
-/** The instants that are nearest to two times. */
-function partOf(times: TimeLine['times'], part: readonly [number, number]): [number, number] {
-  const [from, to] = part.map((time) => nearestTo(times, time));
-  return [from!, to!];
 }

@@ -1,12 +1,21 @@
 // The instants of the series that are shown: which there are, are here, and are on the screen.
 
 import type {FieldInfo} from '../../core/protocol/fields';
-import {instantsOf, isSameTime, shownInstant} from '../../core/protocol/series';
+import {instantsOf, isSameTime, nearestTo, shownInstant} from '../../core/protocol/series';
 import type {StreamState} from '../../core/session/worker_messages';
 import type {ShownMesh} from '../page/shown_mesh';
 
 /** Instants that are fetched ahead of the one that is shown; the list changes at every half. */
 const kAhead = 32;
+
+/** The instants that are nearest to two times. */
+export function partOf(
+  times: TimeLine['times'],
+  part: readonly [number, number],
+): [number, number] {
+  const [from, to] = part.map((time) => nearestTo(times, time));
+  return [from!, to!];
+}
 
 export interface TimeLineHost {
   readonly mesh: ShownMesh;

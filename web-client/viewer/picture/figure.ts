@@ -2,8 +2,10 @@
 // picture of kUnitPixels and grow with it.
 
 import type {Axes} from '../../webgl/lens';
-import type {Frame, Tile} from '../../webgl/view';
+import type {Frame, Rendered} from '../../webgl/view';
+import {kRulerRoom, kRulerText, rulerOf, type Canvas, type Line} from '../panels/ruler';
 import {drawSwatch, gridOf, kIndent, type Grid, type LabelText} from './label_list';
+import type {Scale} from '../settings/length_unit';
 import {facePlaces, kHalf} from '../panels/orientation_cube';
 
 /** A text of 14 of these pixels is legible on a slide and, with two columns, on paper. */
@@ -18,6 +20,8 @@ const kBarHeight = 12;
 /** Between the bar and the arrow that says that values lie beyond. */
 const kArrowGap = 2;
 const kAxis = 34;
+/** The opacity of lines across the ruler's faces. */
+const kFaint = 0.25;
 /** Texts leave at least this share of the height to the mesh. */
 const kMinFree = 0.4;
 
@@ -63,6 +67,12 @@ export interface LegendTexts {
   missing: string;
 }
 
+/** The box with numbers round the mesh. */
+export interface RulerScale extends Scale {
+  /** In lattice coordinates. */
+  bounds: readonly number[];
+}
+
 /** The look of the page. */
 export interface Looks {
   ink: string;
@@ -72,6 +82,8 @@ export interface Looks {
   back: string;
   font: string;
   axes: Axes;
+  /** Null: there is none. */
+  ruler: RulerScale | null;
 }
 
 /** Reads the legend from the page, so that both say the same. */
@@ -151,6 +163,7 @@ export function frameOf(
   figure: Figure,
   legend: LegendTexts | null,
   canvas: {clientWidth: number; clientHeight: number},
+  hasRuler = false,
 ): Frame {
   const {width, height, title, hasLegend} = figure;
   const above = title ? kTitle * kLine : 0;
@@ -163,13 +176,16 @@ export function frameOf(
     width,
     height,
     insets: {left: 0, right: 0, top: share * top!, bottom: share * bottom!},
+    boxed: hasRuler
+      ? [(kRulerRoom[0] * unitOf(figure)) / width, (kRulerRoom[1] * unitOf(figure)) / height]
+      : null,
     pixelRatio: Math.sqrt((width * height) / (canvas.clientWidth * canvas.clientHeight)),
   };
 }
 
 export function draw(
   figure: Figure,
-  tiles: readonly Tile[],
+  {tiles, toCanvas}: Rendered,
   legend: LegendTexts | null,
   looks: Looks,
 ): OffscreenCanvas {
@@ -177,13 +193,15 @@ export function draw(
   const context = canvas.getContext('2d')!;
   const {title, hasLegend, hasAxes} = figure;
   fillGround(context, figure, looks);
-  for (const {x, y, bitmap} of tiles) context.drawImage(bitmap, x, y);
   const its = figure.ground === 'seen' ? looks : {...looks, ink: kInk, softInk: kSoftInk};
   const scale = unitOf(figure);
-  context.scale(scale, scale);
   const width = figure.width / scale;
   const height = figure.height / scale;
   const pen = new Pen(context, its);
+  context.scale(scale, scale);
+  if (looks.ruler) drawRuler(pen, looks.ruler, {toCanvas, width, height});
+  for (const {x, y, bitmap} of tiles)
+    context.drawImage(bitmap, x / scale, y / scale, bitmap.width / scale, bitmap.height / scale);
   if (title) pen.write(title, kTitle, width / 2, kGap + kTitle, {align: 'center', bold: true});
   if (hasLegend && legend) drawLegend(pen, legend, figure, height);
   if (hasAxes) drawAxes(pen, kGap + kAxis + kText / 2, height - kGap - kAxis - kText / 2);
@@ -231,6 +249,27 @@ function fillGround(
   context.fillStyle = gradient;
   context.fillRect(-9, -9, 18, 18);
   context.restore();
+}
+
+/** Behind the mesh. */
+function drawRuler(pen: Pen, {bounds, ...scale}: RulerScale, canvas: Canvas): void {
+  const {context, looks} = pen;
+  const {box, grid, ticks, numbers, names} = rulerOf(bounds, scale, canvas);
+  const stroke = (lines: readonly Line[], alpha: number): void => {
+    context.globalAlpha = alpha;
+    context.beginPath();
+    for (const [x1, y1, x2, y2] of lines) {
+      context.moveTo(x1, y1);
+      context.lineTo(x2, y2);
+    }
+    context.stroke();
+  };
+  context.strokeStyle = looks.softInk;
+  context.lineWidth = 1;
+  stroke(grid, kFaint);
+  stroke([...box, ...ticks], 1);
+  for (const {text, x, y} of [...numbers, ...names])
+    pen.write(text, kRulerText, x, y + 0.35 * kRulerText, {align: 'center', soft: true});
 }
 
 /** In the middle below the mesh, beside the axes. */

@@ -1,13 +1,12 @@
-// Movies of the shown series: all instants in order, drawn as pictures are.
+// Movies of the shown series: the instants of the part that plays, drawn as pictures are.
 
-import type {View} from '../../webgl/view';
 import {find} from '../page/find';
 import {cutOf, fileNameOf, originOf} from '../panels/origin';
 import type {Page} from '../page/page';
 import {refusalOf, type Figure} from './figure';
 import {film, type Filming, type Sink} from './film';
 import {openSink} from './movie_sinks';
-import {drawPage, pageFrame} from './page_figure';
+import {drawPage, pageFrame, type FigureHost} from './page_figure';
 import {seriesIn, SeriesStage, type StageHost} from './series_stage';
 
 const kFramesPerSecond = 10;
@@ -24,8 +23,7 @@ export interface MovieOptions extends Partial<Figure>, Partial<Filming> {
   onlyLoaded?: boolean;
 }
 
-export interface MovieHost extends StageHost {
-  readonly view: View | null;
+export interface MovieHost extends StageHost, FigureHost {
   readonly later: {readonly time: {isPlaying: boolean}} | null;
 }
 
@@ -108,9 +106,8 @@ export class Movies {
     const {host, page} = this;
     let frame: ReturnType<typeof pageFrame> | undefined;
     return () => {
-      if (!host.view) throw new Error('The graphics have stopped.');
-      frame ??= pageFrame(page, host.view, figure);
-      return drawPage(page, host.view, figure, frame);
+      frame ??= pageFrame(page, host, figure);
+      return drawPage(page, host, figure, frame);
     };
   }
 }

@@ -2,7 +2,6 @@
 // The picture is saved or copied. It holds the view's address.
 
 import {errorText} from '../../core/protocol/errors';
-import type {View} from '../../webgl/view';
 import {find, onClick} from '../page/find';
 import {fileNameOf, textOf, type Origin} from '../panels/origin';
 import type {Page} from '../page/page';
@@ -12,7 +11,7 @@ import {linkTo, publicAddress} from '../settings/share';
 import {refusalOf, type Figure, type Ground} from './figure';
 import {kMovieMarkup, MovieSection} from './movie_section';
 import type {Movies} from './movies';
-import {drawPage} from './page_figure';
+import {drawPage, type FigureHost} from './page_figure';
 import {withTexts} from './png_view';
 
 const kSizes = [
@@ -70,7 +69,7 @@ ${kMovieMarkup}
 </div>`;
 
 export interface PictureHost {
-  readonly view: View | null;
+  readonly figures: FigureHost;
   /** That of a picture of now. */
   readonly origin: Origin;
   openView(file: Blob): void;
@@ -168,10 +167,9 @@ export class PictureDialog {
 
   private async make(figure: Figure): Promise<Blob> {
     const {page} = this;
-    const {origin, view} = this.host;
-    if (!view) throw new Error('the graphics have not started');
+    const {figures, origin} = this.host;
     const address = linkTo(publicAddress(location.href), page.view);
-    const canvas = await drawPage(page, view, figure);
+    const canvas = await drawPage(page, figures, figure);
     return withTexts(await canvas.convertToBlob({type: 'image/png'}), address, {
       Title: figure.title || origin.mesh,
       Description: textOf(origin),

@@ -17,9 +17,7 @@ export class Pictures {
   ) {
     this.movies = new Movies(page, host);
     const dialogHost = {
-      get view() {
-        return host.view;
-      },
+      figures: host,
       get origin() {
         return originOf(
           page.root,

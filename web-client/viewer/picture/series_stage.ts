@@ -1,17 +1,19 @@
-// The instants of the shown series, one after the other, each wholly on the screen. The attribute
-// `time` stays as it is, so that neither the address nor the steps of undo change.
+// The instants of the shown series that play, one after the other, each wholly on the screen. The
+// attribute `time` stays as it is, so that neither the address nor the steps of undo change.
 
 import type {FieldInfo} from '../../core/protocol/fields';
-import {instantsOf} from '../../core/protocol/series';
+import {instantsOf, isSameTime} from '../../core/protocol/series';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import type {View} from '../../webgl/view';
 import type {ShownMesh} from '../page/shown_mesh';
-import {fieldsAhead} from '../panels/time_line';
+import type {Settings} from '../settings/settings';
+import {fieldsAhead, partOf} from '../panels/time_line';
 import type {Stage} from './film';
 
 export interface StageHost {
   readonly view: View | null;
   readonly mesh: ShownMesh;
+  readonly settings: Settings;
   readonly stream: {readonly state: StreamState};
   /** Brings the picture in line with the mesh. */
   apply(): void;
@@ -50,9 +52,22 @@ export class SeriesStage implements Stage {
     if (series === undefined)
       throw new Error('No series is shown. A movie shows the instants of one.');
     this.series = series;
-    const all = instantsOf(fields, series);
+    const all = this.played(instantsOf(fields, series), fields);
     this.instants = onlyLoaded ? all.filter((field) => here.includes(field)) : all;
-    if (this.instants.length === 0) throw new Error('No instant is loaded.');
+    if (this.instants.length === 0)
+      throw new Error(
+        all.length === 0 ? 'The part that plays is in another segment.' : 'No instant is loaded.',
+      );
+  }
+
+  /** Those of the part that plays. */
+  private played(instants: readonly number[], fields: readonly FieldInfo[]): readonly number[] {
+    const {mesh, settings} = this.host;
+    if (!settings.timePart) return instants;
+    const [first, last] = partOf(mesh.times, settings.timePart).map((at) => mesh.times[at]!.time);
+    const isPlayed = (time: number): boolean =>
+      (time > first! && time < last!) || isSameTime(time, first!) || isSameTime(time, last!);
+    return instants.filter((field) => isPlayed(fields[field]!.instant!.time));
   }
 
   async show(i: number, signal: AbortSignal): Promise<void> {

@@ -14,6 +14,7 @@ import {kFull, parseLimit, type Limit} from '../../core/protocol/limit';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {shownInstant} from '../../core/protocol/series';
 import type {CameraState} from '../../webgl/camera';
+import {isGround} from './ground';
 
 const kBeforeLayers = [
   'mesh',
@@ -35,6 +36,10 @@ const kAfterLayers = [
   'warp',
   'warp-scale',
   'rest-edges',
+  'axes',
+  'length-unit',
+  'ground',
+  'points',
   'quality',
   'projection',
   'camera',
@@ -54,6 +59,7 @@ export const kViewAttributes: readonly ViewAttribute[] = [
 
 /** A legend has two lines. */
 const kMaxTitle = 120;
+const kMaxUnit = 16;
 
 export interface Settings {
   /** The title of the shown field; null: its name and its unit. */
@@ -85,6 +91,12 @@ export interface Settings {
   warpScale: number | null;
   /** A warp shows the edges of the mesh at rest, too. */
   restEdges: boolean;
+  /** A box with numbers stands round the mesh. */
+  axes: boolean;
+  /** That of coordinates; null: the log may know it. */
+  lengthUnit: string | null;
+  /** One of kGrounds, or a colour as RRGGBB; null: that of the page. */
+  ground: string | null;
   /** The time that is shown of series; null: that which opens. */
   time: number | null;
   /** The times that playing begins and ends at; null: all instants of a series play. */
@@ -98,7 +110,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
   const mode = get('clip-mode') as ClipMode;
   const opacity = Number(get('opacity') ?? 1);
   return {
-    title: parseTitle(get('field-title')),
+    title: parseText(get('field-title'), kMaxTitle),
     map: isColorMapName(map) ? map : 'viridis',
     reversed: reversed === 'reversed',
     beyond: parseBeyond(get('beyond') ?? '') ?? [null, null],
@@ -118,6 +130,9 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     warp: get('warp'),
     warpScale: parseNumber(get('warp-scale')),
     restEdges: get('rest-edges') === 'on',
+    axes: get('axes') === 'on',
+    ground: parseGround(get('ground')),
+    lengthUnit: parseText(get('length-unit'), kMaxUnit),
     time: parseNumber(get('time')),
     timePart: parsePair(get('time-range')),
     timeLoops: get('time-loop') !== 'off',
@@ -136,9 +151,13 @@ function parsePair(text: string | null): [number, number] | null {
   return isPair ? [low, high] : null;
 }
 
-function parseTitle(text: string | null): string | null {
-  const title = text?.trim().slice(0, kMaxTitle) ?? '';
-  return title === '' ? null : title;
+const parseGround = (text: string | null): string | null =>
+  text !== null && isGround(text) ? text : null;
+
+/** Null instead of an empty text. */
+function parseText(text: string | null, max: number): string | null {
+  const its = text?.trim().slice(0, max) ?? '';
+  return its === '' ? null : its;
 }
 
 function parseCamera(text: string | null): CameraState | null {

@@ -82,6 +82,8 @@ const kTitles: Record<string, string> = {
   'warp-scale': 'deformed shape',
   'rest-edges': 'edges at rest',
   iso: 'isosurfaces',
+  'length-unit': 'unit of length',
+  points: 'kept points',
   quality: 'level of detail',
 };
 

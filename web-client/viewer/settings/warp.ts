@@ -38,8 +38,9 @@ export interface Warpable {
 const isVectors = ({association, components}: FieldInfo): boolean =>
   association === 'point' && components === 3;
 
-const isDisplacement = ({name, instant}: FieldInfo): boolean =>
-  kDisplacement.test(instant?.series ?? name);
+/** Vectors that have such a name, those of points or of cells. */
+export const isDisplacement = ({components, name, instant}: FieldInfo): boolean =>
+  components === 3 && kDisplacement.test(instant?.name ?? name);
 
 /** Among keys of fields that of displacements, which may move the first picture; null: none. */
 export const displacementKey = (keys: readonly string[]): string | null =>

@@ -14,7 +14,9 @@ import {parseLimit} from '../../core/protocol/limit';
 import {fieldKeys} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {kTransportKinds} from '../../core/transport/auto_transport';
+import {isGround, kGrounds} from './ground';
 import {hint} from './nearest';
+import {kMaxPoints, parsePoints} from './points';
 import {kViewAttributes, type ViewAttribute} from './settings';
 import {kNoWarp, warpField} from './warp';
 
@@ -68,12 +70,18 @@ const kRules: Partial<Record<Name, Rule>> = {
   surface: oneOf('on', 'off'),
   'warp-scale': [(text) => parseNumbers(text).length === 1, 'a number; 1 is the true size'],
   'rest-edges': oneOf('on', 'off'),
+  axes: oneOf('on', 'off'),
+  ground: [isGround, `${kGrounds.join(', ')}, or a colour, 3c3c3c`, kGrounds],
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
     kLayers
       .flatMap((layer) => [layer, ...(layer.more ?? [])])
       .map((its): [string, Rule] => [its.name, [(text) => its.isRight(text), its.expected]]),
   ),
+  points: [
+    (text) => parsePoints(text) !== null,
+    `up to ${kMaxPoints} places of three coordinates: 1,2,0.5 3,2,0`,
+  ],
   quality: [
     (text) => parseLimit(text) !== null,
     'full, 1%, error:0.01, cells:20000 or bytes:100000',

@@ -36,7 +36,7 @@ double volumeOf(const std::string& text) {
 }
 
 const MeshField* fieldOf(const CellMesh& mesh, const std::string& name) {
-  const auto at = std::ranges::find(mesh.fields, name, &MeshField::name);
+  const auto at = std::ranges::find(mesh.fields, FieldName(name), &MeshField::name);
   return at == mesh.fields.end() ? nullptr : &*at;
 }
 

@@ -133,7 +133,7 @@ std::string front(Dialect dialect) {
 }
 
 const MeshField* fieldOf(const CellMesh& mesh, const std::string& name) {
-  const auto at = std::ranges::find(mesh.fields, name, &MeshField::name);
+  const auto at = std::ranges::find(mesh.fields, FieldName(name), &MeshField::name);
   return at == mesh.fields.end() ? nullptr : &*at;
 }
 

@@ -182,7 +182,7 @@ TEST(ReadFoam, regionsOfOtherValuesStayApartWhateverIsRead) {
 }
 
 const MeshField* labelOf(const ReadMesh& read, const std::string& name) {
-  const auto at = std::ranges::find(read.mesh.fields, name, &MeshField::name);
+  const auto at = std::ranges::find(read.mesh.fields, FieldName(name), &MeshField::name);
   return at == read.mesh.fields.end() ? nullptr : &*at;
 }
 

@@ -40,7 +40,7 @@ TEST(SeriesNotes, theInstantsOfAFieldHaveOneType) {
   const Result<ReadMesh> read = readAllSteps(path);
   ASSERT_TRUE(read) << read.error().message;
   for (const MeshField& field : read->mesh.fields)
-    EXPECT_EQ(field.type, field.name.starts_with("T") ? "float64" : "int32") << field.name;
+    EXPECT_EQ(field.type, field.name.text().starts_with("T") ? "float64" : "int32") << field.name;
   EXPECT_EQ(read->report.notes,
             (Notes{"point field T changes its type over the steps; float64 holds all its values",
                    "point field n changes its type over the steps; int32 holds all its values"}));
@@ -137,7 +137,7 @@ TEST(SeriesNotes, windowsHaveTheTypesOfTheSampleAndOneReport) {
     const Result<TetMesh> window = readWindow(path, options, times, 0, report);
     ASSERT_TRUE(window) << window.error().message;
     for (const MeshField& field : window->fields) {
-      if (field.name.starts_with("T@")) EXPECT_EQ(field.type, "float64") << field.name;
+      if (field.name.text().starts_with("T@")) EXPECT_EQ(field.type, "float64") << field.name;
     }
     options.moves = !report.motion.empty();
   }

@@ -1,0 +1,148 @@
+// Points that are kept on the mesh, each with a small card.
+
+import assert from 'node:assert/strict';
+import {kCoarsePhone, kDesktop} from './browser.mjs';
+import {serveMesh} from './programs.mjs';
+import {linearBox} from './volume_checks.mjs';
+
+async function opened({server, browser}, query, device) {
+  const viewer = await browser.open(`${server.url}?${query}`, device);
+  await viewer.waitForState('complete');
+  await viewer.waitForPicture();
+  await viewer.settle();
+  return viewer;
+}
+
+/** The cards: text, colour, and the middle of the dot. */
+const pinsOf = (viewer) =>
+  viewer.page.evaluate(() =>
+    [...window.qtetViewer.shadowRoot.querySelectorAll('.pin:not([hidden])')].map((pin) => {
+      const {left, top, width, height} = pin.querySelector('i').getBoundingClientRect();
+      return {
+        text: pin.querySelector('span').textContent,
+        color: getComputedStyle(pin.querySelector('i')).backgroundColor,
+        edge: getComputedStyle(pin.querySelector('span')).borderLeftColor,
+        at: [left + width / 2, top + height / 2],
+      };
+    }),
+  );
+
+const pointsOf = (viewer) => viewer.page.evaluate(() => window.qtetViewer.getAttribute('points'));
+
+/** Points stay where they were kept, follow camera and field, and close one by one. */
+async function keepsSeveralPoints(context) {
+  const viewer = await opened(context, 'mesh=fin&field=Density&clip=y:0.5', kDesktop);
+  const {page} = viewer;
+  await page.getByText('Point', {exact: true}).click();
+  const places = [
+    [560, 380],
+    [640, 420],
+  ];
+  for (const [x, y] of places) {
+    await page.mouse.click(x, y);
+    await page.locator('qtet-viewer .result').waitFor();
+    assert.match(await viewer.text('.result h2'), /^Density [\d.]+$/);
+    await viewer.screenshot('pins-card');
+    await page.getByRole('button', {name: 'Keep', exact: true}).click();
+    await page.locator('qtet-viewer .result').waitFor({state: 'hidden'});
+  }
+  await viewer.settle();
+  const pins = await pinsOf(viewer);
+  assert.equal(pins.length, 2);
+  pins.forEach(({text, color, edge, at}, i) => {
+    assert.match(text, /^[\d.]+$/);
+    assert.equal(color, edge);
+    const away = Math.hypot(at[0] - places[i][0], at[1] - places[i][1]);
+    assert.ok(away < 3, `point ${i} lies ${away} pixels from where it was kept`);
+  });
+  assert.notEqual(pins[0].color, pins[1].color);
+  await viewer.screenshot('pins-desktop-light');
+  await page.evaluate(() => window.qtetViewer.setAttribute('field', 'Pressure'));
+  await viewer.settle();
+  assert.notEqual((await pinsOf(viewer))[0].text, pins[0].text);
+  await page.locator('qtet-viewer .scene').focus();
+  await page.keyboard.press('ArrowLeft');
+  await viewer.settle();
+  assert.notDeepEqual((await pinsOf(viewer))[0].at, pins[0].at);
+  const link = await pointsOf(viewer);
+  await page.waitForURL(/points=/);
+  await page.getByRole('button', {name: 'Remove point 1'}).click();
+  await viewer.settle();
+  assert.equal(await pointsOf(viewer), link.split(' ')[1]);
+  await page.locator('qtet-viewer .scene').focus();
+  await page.keyboard.press('Control+z');
+  await viewer.settle();
+  assert.equal(await pointsOf(viewer), link);
+  assert.deepEqual(viewer.problems, []);
+  await context.browser.closePages();
+  for (const [name, device] of Object.entries({desktop: kDesktop, phone: kCoarsePhone})) {
+    const query = `mesh=fin&field=Density&clip=y:0.5&points=${encodeURIComponent(link)}`;
+    const again = await opened(context, query, {...device, colorScheme: 'dark'});
+    const shown = await pinsOf(again);
+    assert.equal(shown.length, 2);
+    assert.deepEqual(
+      shown.map(({text}) => text),
+      pins.map(({text}) => text),
+    );
+    await again.screenshot(`pins-${name}-dark`);
+    assert.deepEqual(await again.accessibilityViolations(), []);
+    assert.deepEqual(again.problems, []);
+    await context.browser.closePages();
+  }
+}
+
+/** A point belongs to the mesh at rest: a warp moves it, and not its value. */
+async function movesPointsWithAWarp(context) {
+  const Displacement = (x, y, z) => [0.4 * z, 0, 0];
+  const Height = (x, y, z) => z;
+  await serveMesh(context, 'pinned', linearBox(3, {Displacement, Height}));
+  const viewer = await opened(
+    context,
+    'mesh=pinned&field=Height&warp=Displacement&warp-scale=1&points=0.5,0,0.5',
+    kDesktop,
+  );
+  const [pin] = await pinsOf(viewer);
+  const moved = await viewer.page.evaluate(() => {
+    const {meshView, viewing} = window.qtetViewer;
+    const {origin, step} = viewing.mesh.manifest.lattice;
+    return meshView.project([0.7, 0, 0.5].map((x, axis) => (x - origin[axis]) / step));
+  });
+  const away = Math.hypot(pin.at[0] - moved.x, pin.at[1] - moved.y);
+  assert.ok(away < 3, `the point lies ${away} pixels from where it is moved`);
+  assert.ok(Math.abs(Number(pin.text) - 0.5) < 0.01, pin.text);
+  await viewer.screenshot('pins-warped');
+  await followsThePicture(viewer, pin.at);
+  assert.deepEqual(viewer.problems, []);
+}
+
+/** Another picture comes under a pointer that rests, and while a card is open. */
+async function followsThePicture({page}, [x, y]) {
+  const row = (name) =>
+    page.locator('qtet-viewer .result dl div', {hasText: name}).first().locator('dd').innerText();
+  const show = (name, value) =>
+    page.evaluate((words) => window.qtetViewer.setAttribute(...words), [name, value]);
+  const hovered = (text) => page.locator('qtet-viewer .hover', {hasText: text}).waitFor();
+  await page.mouse.move(x - 20, y);
+  await hovered('Height');
+  await show('field', 'Displacement');
+  await hovered('Displacement');
+  await page.getByText('Point', {exact: true}).click();
+  await page.mouse.click(x - 20, y);
+  await page.locator('qtet-viewer .result').waitFor();
+  const [moved, rest] = [await row('Position'), await row('Position at rest')];
+  await show('warp-scale', '0.5');
+  await page.waitForFunction(
+    (before) =>
+      !window.qtetViewer.shadowRoot.querySelector('.result dl').textContent.includes(before),
+    moved,
+  );
+  const [now, atRest] = [await row('Position'), await row('Position at rest')];
+  assert.equal(atRest, rest);
+  const [before, after, still] = [moved, now, rest].map((text) => Number(text.split(',')[0]));
+  assert.ok(Math.abs(after - still - (before - still) / 2) < 0.01, `${moved} ${now} ${rest}`);
+}
+
+export const pinChecks = {
+  pinsKeepSeveralPoints: keepsSeveralPoints,
+  pinsMoveWithAWarp: movesPointsWithAWarp,
+};
