@@ -28,16 +28,16 @@ struct InstantName {
 class FieldName {
  public:
   FieldName() = default;
-  FieldName(std::string text);
-  FieldName(std::string_view text) : FieldName(std::string(text)) {}
-  FieldName(const char* text) : FieldName(std::string(text)) {}
+  FieldName(std::string text);  // NOLINT(google-explicit-constructor): text is a name
+  FieldName(std::string_view text) : FieldName(std::string(text)) {}  // NOLINT(*-explicit-*)
+  FieldName(const char* text) : FieldName(std::string(text)) {}       // NOLINT(*-explicit-*)
 
   [[nodiscard]] const std::string& text() const { return text_; }
-  operator const std::string&() const { return text_; }
-  operator std::string_view() const { return text_; }
+  operator const std::string&() const { return text_; }  // NOLINT(google-explicit-constructor)
+  operator std::string_view() const { return text_; }    // NOLINT(google-explicit-constructor)
   [[nodiscard]] bool empty() const { return text_.empty(); }
   [[nodiscard]] std::size_t size() const { return text_.size(); }
-  [[nodiscard]] const char* c_str() const { return text_.c_str(); }
+  [[nodiscard]] const char* c_str() const { return text_.c_str(); }  // NOLINT(*-naming): std
 
   /// Whether it ends in "@" and a finite number, and begins with something else.
   [[nodiscard]] bool isInstant() const { return seriesBytes_ > 0; }
