@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "tests/simplify/pipeline/field_meshes.h"
 
 namespace qtet {
@@ -40,8 +38,9 @@ TEST(FusionChoice, whatAViewerOpensWithCountsDouble) {
 TEST(FusionChoice, thePipelineAsksForWhatTheLogOpensWith) {
   TetMesh mesh = boxSample();
   mesh.fields.insert(mesh.fields.begin(), mesh.fields[0]);
-  std::ranges::fill(mesh.fields[0].values, 0);
-  mesh.fields[0].name = "Flat", mesh.fields[0].values[0] = 1;
+  mesh.fields[0].name = "Halves";  // two colours
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+    mesh.fields[0].values[i] = mesh.points[i][2] > 0.4 ? 1 : 0;
   PipelineOptions options;
   const auto madeBy = [&] { return simplifyToLog(TetMesh(mesh), options).value(); };
   const PipelineOutput unasked = madeBy();
