@@ -27,15 +27,14 @@ extern "C" {
 
 void* qtet_alloc(std::uint32_t bytes) { return std::malloc(bytes); }
 
-int qtet_simplify_file(const char* name, std::uint32_t cells_of_a_part) {
+int qtet_simplify_file(const char* name, std::uint32_t cellsOfAPart) {
   const std::filesystem::path path = std::filesystem::path("/") / name;
   qtet_page_progress(-1, 0);
   auto read = qtet::readMesh(path, qtet::ReadOptions{});
   if (!read) return failed(read.error());
   qtet::PipelineOptions options;
   options.source = name;
-  if (cells_of_a_part > 0)
-    options.parts = qtet::smallParts(qtet::metisPartitioner(), cells_of_a_part);
+  if (cellsOfAPart > 0) options.parts = qtet::smallParts(qtet::metisPartitioner(), cellsOfAPart);
   options.progress = [](qtet::Stage stage, double fraction) {
     qtet_page_progress(static_cast<std::int32_t>(stage), fraction);
   };

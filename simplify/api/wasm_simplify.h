@@ -12,9 +12,9 @@ void* qtet_alloc(std::uint32_t bytes);
 
 /// Does what `qtet simplify NAME` does without options: the same bytes. `name` (UTF-8,
 /// NUL-terminated) is a file that the page provides as /NAME. The mesh is simplified in parts of
-/// some `cells_of_a_part` cells, 0: in one piece. Returns 0, or 1 + ErrorCode; then qtet_report()
+/// some `cellsOfAPart` cells, 0: in one piece. Returns 0, or 1 + ErrorCode; then qtet_report()
 /// is the error's message with its byte.
-int qtet_simplify_file(const char* name, std::uint32_t cells_of_a_part);
+int qtet_simplify_file(const char* name, std::uint32_t cellsOfAPart);
 
 /// JSON, NUL-terminated: {"notes": [texts], "warnings": [texts], "tetrahedra": number}.
 const char* qtet_report();
