@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "codec/mesh/predicates.h"
 #include "simplify/clean/clean_mesh.h"
 #include "simplify/clean/quantise.h"
 #include "simplify/fuse/qtetfusion.h"
