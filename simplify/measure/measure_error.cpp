@@ -187,9 +187,9 @@ struct LevelSize {
 /// Which errors a level may have. None is below what rounding alone may do.
 class LevelBounds {
  public:
-  LevelBounds(const FusionHistory& history, const MeasureOptions& options,
+  LevelBounds(const FusionHistory& history, const LevelSize& finest, const MeasureOptions& options,
               std::vector<FieldBound> fields, LevelError least)
-      : options_(options), fields_(std::move(fields)), least_(std::move(least)), finest_(history) {
+      : options_(options), fields_(std::move(fields)), least_(std::move(least)), finest_(finest) {
     const std::vector<bool> isLater =
         laterInstants(seriesOf(history.fields), history.fields.size());
     for (std::size_t f = 0; f < history.fields.size(); ++f) {
@@ -287,7 +287,7 @@ Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& optio
   for (; levels.level() < levels.finest(); levels.refine()) throwIfStopped(options.stop);
   ErrorMeter meter(levels, options, samplesFor(options.effort, history));
   LevelSize size(history), base = size;
-  const LevelBounds bounds(history, options, std::move(*fields), meter.rounding());
+  const LevelBounds bounds(history, size, options, std::move(*fields), meter.rounding());
   const LabelVolumes labels(history, options.labels);
   LevelRow row(options, levels.finest());
   LevelErrors out(levels.finest() + std::size_t{1});

@@ -6,12 +6,8 @@ import {join} from 'node:path';
 import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {readPng} from './png.mjs';
 
-async function opened({server, browser}, query, device) {
-  const viewer = await browser.open(`${server.url}?${query}`, device);
-  await viewer.waitForState('complete');
-  await viewer.waitForPicture();
-  return viewer;
-}
+const opened = ({server, browser}, query, device) =>
+  browser.openComplete(`${server.url}?${query}`, device);
 
 /** The texts with their rectangles, and those of the cards. */
 const rulerOf = (viewer) =>

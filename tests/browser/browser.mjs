@@ -76,6 +76,21 @@ export class Browser {
     return viewer;
   }
 
+  /** With all of the mesh that is asked for, drawn. */
+  async openComplete(url, device, before) {
+    const viewer = await this.open(url, device, before);
+    await viewer.waitForState('complete');
+    await viewer.waitForPicture();
+    return viewer;
+  }
+
+  /** The same, and what the page does behind it is done. */
+  async openSettled(url, device, before) {
+    const viewer = await this.openComplete(url, device, before);
+    await viewer.settle();
+    return viewer;
+  }
+
   /**
    * Starts tracing. `end()` returns the tasks on the own thread of the one page with workers, since
    * it was opened: {ms, cpuMs} each.

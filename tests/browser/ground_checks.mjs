@@ -5,13 +5,8 @@ import {readFileSync} from 'node:fs';
 import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {readPng} from './png.mjs';
 
-async function opened({server, browser}, query, device) {
-  const viewer = await browser.open(`${server.url}?${query}`, device);
-  await viewer.waitForState('complete');
-  await viewer.waitForPicture();
-  await viewer.settle();
-  return viewer;
-}
+const opened = ({server, browser}, query, device) =>
+  browser.openSettled(`${server.url}?${query}`, device);
 
 /** The colour beside the mesh, and the brightness of the numbers there. */
 async function groundOf(viewer, name) {

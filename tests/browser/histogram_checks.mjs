@@ -6,12 +6,8 @@ import {differingShare} from './png.mjs';
 import {makeLog, serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
-async function opened({server, browser}, query, device = kDesktop) {
-  const viewer = await browser.open(`${server.url}?${query}`, device);
-  await viewer.waitForState('complete');
-  await viewer.waitForPicture();
-  return viewer;
-}
+const opened = ({server, browser}, query, device) =>
+  browser.openComplete(`${server.url}?${query}`, device);
 
 const handle = (viewer, which) =>
   viewer.page.getByRole('slider', {name: `Value of the ${which} colour`});

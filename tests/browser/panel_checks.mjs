@@ -5,12 +5,8 @@ import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
 
-async function opened({server, browser}, query, device, before) {
-  const viewer = await browser.open(`${server.url}?${query}`, device, before);
-  await viewer.waitForState('complete');
-  await viewer.waitForPicture();
-  return viewer;
-}
+const opened = ({server, browser}, query, device, before) =>
+  browser.openComplete(`${server.url}?${query}`, device, before);
 
 const kActions = ['Reset view', 'Save picture', 'Share', 'Full screen', 'Keys'];
 

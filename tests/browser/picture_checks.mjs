@@ -6,12 +6,8 @@ import {join} from 'node:path';
 import {kCoarsePhone, kSmallDesktop} from './browser.mjs';
 import {coloredShare, readPng} from './png.mjs';
 
-async function opened({server, browser}, query, device) {
-  const viewer = await browser.open(`${server.url}?${query}`, device);
-  await viewer.waitForState('complete');
-  await viewer.waitForPicture();
-  return viewer;
-}
+const opened = ({server, browser}, query, device) =>
+  browser.openComplete(`${server.url}?${query}`, device);
 
 /** Opens the dialog, fills it, and returns the file of the picture. */
 async function picture(viewer, name, {width, height, ground = 'White', title, unit}) {

@@ -5,13 +5,8 @@ import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
-async function opened({server, browser}, query, device) {
-  const viewer = await browser.open(`${server.url}?${query}`, device);
-  await viewer.waitForState('complete');
-  await viewer.waitForPicture();
-  await viewer.settle();
-  return viewer;
-}
+const opened = ({server, browser}, query, device) =>
+  browser.openSettled(`${server.url}?${query}`, device);
 
 /** The cards: text, colour, and the middle of the dot. */
 const pinsOf = (viewer) =>

@@ -1,10 +1,11 @@
 // The menu of the ground behind the mesh: the page's, one with a name, or a colour of its own.
 // style.css shows those with a name, so that the first picture has them.
 
+import {parseHex} from '../../core/picture/color_map_text';
 import {find} from '../page/find';
 import {kMiddle} from '../page/ground';
 import type {Page} from '../page/page';
-import {isHexColor, kGrounds} from '../settings/ground';
+import {kGrounds} from '../settings/ground';
 import type {Settings} from '../settings/settings';
 import type {Panel, PanelKind} from './panel';
 
@@ -40,7 +41,7 @@ class GroundPanel implements Panel {
   }
 
   update({ground}: Settings): void {
-    const isOwn = ground !== null && isHexColor(ground);
+    const isOwn = ground !== null && parseHex(ground) !== null;
     this.select.value = isOwn ? 'own' : (ground ?? '');
     this.color.hidden = !isOwn;
     if (isOwn) this.color.value = `#${ground}`;
@@ -61,8 +62,7 @@ export function showColor({style}: HTMLElement, color: string | null): void {
 }
 
 function isDark(color: string): boolean {
-  const channels = color.match(/../g)!.map((text) => parseInt(text, 16));
-  return channels.reduce((sum, channel) => sum + channel) < 3 * kMiddle;
+  return parseHex(color)!.reduce((sum, channel) => sum + channel) < 3 * kMiddle;
 }
 
 export const groundPanel: PanelKind = {

@@ -6,7 +6,7 @@ import type {FieldInfo} from '../../core/protocol/fields';
 import type {View} from '../../webgl/view';
 import {find} from '../page/find';
 import {formatIn} from '../page/format';
-import {cellPath} from './cell_outline';
+import {cellOutline} from './marks';
 import {scalarName} from './panel';
 
 /** So long the pointer has to rest. */
@@ -105,9 +105,7 @@ export class Hover {
     const pick = await this.host.pick(x, y);
     const text = pick && hoverText(pick, shown.scalar, shown.fields);
     if (!text || rest !== this.rest) return;
-    const cell = document.createElementNS(this.marks.namespaceURI, 'path');
-    cell.setAttribute('d', cellPath(pick.places.map((place) => view.project(place))));
-    this.marks.replaceChildren(cell);
+    this.marks.replaceChildren(cellOutline(pick.places, view));
     const {label} = this;
     label.textContent = text;
     label.hidden = false;

@@ -10,8 +10,8 @@ import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
-import {cellPath} from './cell_outline';
 import {hoverText} from './hover';
+import {cellOutline, shape} from './marks';
 import {segments} from './markup';
 import {withUnit} from './panel';
 import {RepeatedQuestion} from './repeated_question';
@@ -183,11 +183,7 @@ export class Inspect {
     this.marks.replaceChildren();
     if (!view) return;
     if (this.tool === 'point')
-      for (const {places} of this.points) {
-        const cell = document.createElementNS(this.marks.namespaceURI, 'path');
-        cell.setAttribute('d', cellPath(places.map((place) => view.project(place))));
-        this.marks.append(cell);
-      }
+      for (const {places} of this.points) this.marks.append(cellOutline(places, view));
     const at = this.points.map(({lattice}) => view.project(lattice));
     if (at.length === 2)
       this.marks.append(shape('line', {x1: at[0]!.x, y1: at[0]!.y, x2: at[1]!.x, y2: at[1]!.y}));
@@ -400,11 +396,4 @@ function placeInside(pick: Pick): Vector {
     const middle = places.reduce((sum, place) => sum + place[axis]!, 0) / places.length;
     return x + kInside * (middle - lattice[axis]!);
   }) as Vector;
-}
-
-function shape(name: string, attributes: Record<string, number>): SVGElement {
-  const element = document.createElementNS('http://www.w3.org/2000/svg', name);
-  for (const [key, value] of Object.entries(attributes))
-    element.setAttribute(key, value.toFixed(1));
-  return element;
 }
