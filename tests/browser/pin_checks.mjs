@@ -14,9 +14,9 @@ const pinsOf = (viewer) =>
     [...window.qtetViewer.shadowRoot.querySelectorAll('.pin:not([hidden])')].map((pin) => {
       const {left, top, width, height} = pin.querySelector('i').getBoundingClientRect();
       return {
-        text: pin.querySelector('span').textContent,
+        text: pin.querySelector('button').textContent,
         color: getComputedStyle(pin.querySelector('i')).backgroundColor,
-        edge: getComputedStyle(pin.querySelector('span')).borderLeftColor,
+        edge: getComputedStyle(pin.querySelector('div')).borderLeftColor,
         at: [left + width / 2, top + height / 2],
       };
     }),
@@ -137,7 +137,77 @@ async function followsThePicture({page}, [x, y]) {
   assert.ok(Math.abs(after - still - (before - still) / 2) < 0.01, `${moved} ${now} ${rest}`);
 }
 
+/** Cards of close points cover neither one another nor a dot. Those without room are folded. */
+async function findsRoomForCardsOnAPhone(context) {
+  const at = (...places) => places.map(([x, y, z]) => `${x},${y},${z}`).join(' ');
+  const Height = (x, y, z) => z;
+  await serveMesh(context, 'close', linearBox(3, {Height}));
+  const two = at([0.5, 0, 0.5], [0.53, 0, 0.5]);
+  const viewer = await opened(
+    context,
+    `mesh=close&field=Height&points=${encodeURIComponent(two)}`,
+    kCoarsePhone,
+  );
+  const {page} = viewer;
+  await viewer.screenshot('pins-close-phone');
+  assert.equal((await cardsOf(viewer)).length, 2);
+  assert.deepEqual(await overlapsOf(viewer), []);
+  await tapPoint(viewer, 2);
+  assert.match(await viewer.text('.result h2'), /^Height 0\.5/);
+  assert.equal(await page.getByRole('button', {name: 'Keep', exact: true}).count(), 0);
+  await viewer.screenshot('pins-tapped-phone');
+  await page.locator('qtet-viewer .close-result').click();
+  const many = at(...Array.from({length: 8}, (_, i) => [0.5 + 0.003 * i, 0, 0.5]));
+  await page.evaluate((points) => window.qtetViewer.setAttribute('points', points), many);
+  await viewer.settle();
+  await viewer.screenshot('pins-folded-phone');
+  const cards = await cardsOf(viewer);
+  assert.ok(cards.length >= 1 && cards.length < 8, `${cards.length} cards have room`);
+  assert.ok(cards.includes(8), 'the newest card has room');
+  assert.deepEqual(await overlapsOf(viewer), []);
+  assert.deepEqual(await viewer.accessibilityViolations(), []);
+  assert.deepEqual(viewer.problems, []);
+}
+
+/** The numbers of the points whose cards are open. */
+const cardsOf = (viewer) =>
+  viewer.page.evaluate(() =>
+    [...window.qtetViewer.shadowRoot.querySelectorAll('.pin:not(.folded) i')].map((its) =>
+      Number(its.textContent),
+    ),
+  );
+
+/** Pairs of open cards that overlap, cards over a dot's middle, and cards that leave the viewer. */
+const overlapsOf = (viewer) =>
+  viewer.page.evaluate(() => {
+    const boxes = (selector) =>
+      [...window.qtetViewer.shadowRoot.querySelectorAll(selector)].map((its) =>
+        its.getBoundingClientRect(),
+      );
+    const cards = boxes('.pin:not(.folded) > div');
+    const dots = boxes('.pin i').map(({left, top, width, height}) => ({
+      left: left + width / 2,
+      right: left + width / 2,
+      top: top + height / 2,
+      bottom: top + height / 2,
+    }));
+    const overlap = (a, b) =>
+      a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    return cards.flatMap((card, i) => [
+      ...cards.slice(i + 1).flatMap((other, k) => (overlap(card, other) ? [[i, i + 1 + k]] : [])),
+      ...dots.flatMap((dot, k) => (overlap(card, dot) ? [`card ${i} over dot ${k}`] : [])),
+      ...(card.left < 0 || card.right > innerWidth ? [`card ${i} leaves the viewer`] : []),
+    ]);
+  });
+
+async function tapPoint(viewer, number) {
+  const [x, y] = (await pinsOf(viewer))[number - 1].at;
+  await viewer.page.touchscreen.tap(x, y);
+  await viewer.page.locator('qtet-viewer .result').waitFor();
+}
+
 export const pinChecks = {
+  pinsFindRoomOnAPhone: findsRoomForCardsOnAPhone,
   pinsKeepSeveralPoints: keepsSeveralPoints,
   pinsMoveWithAWarp: movesPointsWithAWarp,
 };

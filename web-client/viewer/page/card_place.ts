@@ -68,11 +68,11 @@ export function placeCard(
   return best;
 }
 
-function grown({left, top, right, bottom}: Box, by: number): Box {
+export function grown({left, top, right, bottom}: Box, by: number): Box {
   return {left: left - by, top: top - by, right: right + by, bottom: bottom + by};
 }
 
-function overlap(a: Box, b: Box): boolean {
+export function overlap(a: Box, b: Box): boolean {
   return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 }
 

@@ -45,8 +45,8 @@ export interface InspectHost extends OverTimeHost {
   readonly view: View | null;
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
-  /** Another point may stay. */
-  readonly hasRoom: boolean;
+  /** This place may stay: it does not yet, and there is room. */
+  mayKeep(place: Vector): boolean;
   /** A place of the mesh at rest, in its own coordinates. */
   keep(place: Vector): void;
 }
@@ -126,6 +126,15 @@ export class Inspect {
     if (!view) return;
     if (this.tool === 'none') this.use('point');
     void this.click(x * view.canvas.clientWidth, y * view.canvas.clientHeight);
+  }
+
+  /** Opens the card of a point, as if it was pointed at. */
+  open(pick: Pick): void {
+    this.use('point');
+    this.setPoints([pick]);
+    this.place();
+    this.hint('');
+    this.showPick(pick);
   }
 
   /** The place that is pointed at, in lattice coordinates; null for none. */
@@ -260,7 +269,7 @@ export class Inspect {
   private showPick(pick: Pick): void {
     const {isOpen} = this.overTime;
     this.card.show(this.titleOf(pick), this.rowsOf(pick), isOpen);
-    this.card.offerKeep(this.host.hasRoom);
+    this.card.offerKeep(this.host.mayKeep(placeAtRest(pick)));
     this.card.offerOverTime(this.offersOverTime);
     this.placeCard();
     if (isOpen) void this.overTime.begin(materialPlace(pick));
@@ -271,7 +280,7 @@ export class Inspect {
     const [pick] = this.points;
     if (!pick) return;
     this.clear();
-    this.host.keep(pick.rest?.position ?? pick.position);
+    this.host.keep(placeAtRest(pick));
   }
 
   private get offersOverTime(): boolean {
@@ -315,7 +324,7 @@ export class Inspect {
     const {fileNameOf, originOf, tableOf, timeTableOf, timeTitle} = tables;
     const {fields, units} = mesh.manifest!;
     const unit = units?.get('');
-    const places = this.points.map(({position, rest}) => rest?.position ?? position);
+    const places = this.points.map(placeAtRest);
     const place = places.map((its) =>
       its.map((x) => Number(x.toPrecision(kPlaceDigits))).join(' '),
     );
@@ -382,6 +391,9 @@ export class Inspect {
     hint.textContent = text;
   }
 }
+
+/** In the mesh's own coordinates. */
+const placeAtRest = ({position, rest}: Pick): Vector => rest?.position ?? position;
 
 /** A place of the mesh at rest: a point that moves keeps it. */
 const materialPlace = ({lattice, rest}: Pick): Vector => rest?.lattice ?? lattice;

@@ -5,6 +5,7 @@ import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {FieldInfo} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Client} from '../../core/session/client';
+import type {Pick as Picked} from '../../core/session/inspector';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import type {View} from '../../webgl/view';
 import type {Actions} from '../page/actions';
@@ -49,6 +50,8 @@ export interface PanelTools {
   signal: AbortSignal;
   /** Opens files of this machine. */
   take: (files: File[]) => void;
+  /** Opens the card of a point. */
+  open: (pick: Picked) => void;
 }
 
 export interface Panel {

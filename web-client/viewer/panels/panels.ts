@@ -3,6 +3,7 @@
 import type {Scalar} from '../../core/picture/field_scale';
 import type {Vector} from '../../core/protocol/geometry';
 import {isEqual} from '../../core/protocol/equal';
+import type {Pick} from '../../core/session/inspector';
 import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import {seriesServer} from '../../core/transport/series_server';
 import {bindFolds} from '../page/folds';
@@ -22,14 +23,15 @@ export class Panels {
 
   /** REQUIRES: the markup of `kinds` is in the page. */
   constructor(
-    private readonly tools: PanelTools,
+    private readonly tools: Omit<PanelTools, 'open'>,
     kinds: readonly PanelKind[],
     cards: {readonly middle: [number, number]},
   ) {
     const {host, page} = tools;
     const {root} = page;
     bindFolds(root);
-    this.panels = kinds.flatMap((kind) => kind.make?.(tools) ?? []);
+    const open = (pick: Pick): void => this.inspect.open(pick);
+    this.panels = kinds.flatMap((kind) => kind.make?.({...tools, open}) ?? []);
     const keptPoints = (): Vector[] => parsePoints(page.read('points') ?? '') ?? [];
     this.inspect = new Inspect(root, {
       get client() {
@@ -51,8 +53,11 @@ export class Panels {
         const {manifest, firstField} = host.mesh;
         return manifest && shownScalar(page.read('field'), manifest.fields, firstField);
       },
-      get hasRoom() {
-        return keptPoints().length < kMaxPoints;
+      mayKeep: (place) => {
+        const kept = keptPoints();
+        return (
+          kept.length < kMaxPoints && !kept.some((its) => pointsText([its]) === pointsText([place]))
+        );
       },
       keep: (place) => page.write('points', pointsText([...keptPoints(), place])),
       apply: () => host.apply(),

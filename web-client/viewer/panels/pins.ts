@@ -1,10 +1,12 @@
 // Points that are kept. Each is a dot on the mesh, and beside it a small card of the same colour
-// with the value of the shown field. They follow the mesh, its time, and the camera.
+// with the value of the shown field. They follow the mesh, its time, and the camera. A card without
+// room is folded: the dot has the point's number. A click on a dot opens the point.
 
 import type {Vector} from '../../core/protocol/geometry';
 import {isEqual} from '../../core/protocol/equal';
 import type {Pick} from '../../core/session/inspector';
 import {find, setText} from '../page/find';
+import {placeLabels} from '../page/label_place';
 import type {Page} from '../page/page';
 import {parsePoints, pointsText} from '../settings/points';
 import {valueText} from './hover';
@@ -23,11 +25,22 @@ const kColors = [
   '#5c6773',
 ];
 
+interface Pin {
+  root: HTMLElement;
+  card: HTMLElement;
+  value: HTMLElement;
+  /** The card's. */
+  size: {width: number; height: number};
+  /** As LabelledDot.last. */
+  last: number;
+}
+
 class Pins implements Panel {
   private readonly layer = document.createElement('div');
   private points: Vector[] = [];
   /** Null: the point is not known yet, or the mesh has no cells. */
   private picks: (Pick | null)[] = [];
+  private pins: Pin[] = [];
   private readonly question = new RepeatedQuestion(
     () => this.ask(),
     (picks) => this.take(picks),
@@ -36,6 +49,7 @@ class Pins implements Panel {
   constructor(
     private readonly page: Page,
     private readonly host: PanelsHost,
+    private readonly open: (pick: Pick) => void,
   ) {
     this.layer.className = 'pins';
     find(page.root, '.layer').after(this.layer);
@@ -46,7 +60,8 @@ class Pins implements Panel {
     if (isEqual(points, this.points)) return;
     this.points = points;
     this.picks = [];
-    this.layer.replaceChildren(...points.map((_point, i) => this.cardOf(i)));
+    this.pins = points.map((_point, i) => this.pinOf(i));
+    this.layer.replaceChildren(...this.pins.map(({root}) => root));
     this.question.forget();
     this.question.repeat();
   }
@@ -55,16 +70,26 @@ class Pins implements Panel {
     this.question.repeat();
   }
 
-  /** The cards follow the picture. */
+  /** The pins follow the picture. The card of the last point chooses its place first. */
   follow(): void {
     const {view} = this.host;
-    this.points.forEach((_, i) => {
-      const card = this.layer.children[i] as HTMLElement;
+    const seen = this.pins.flatMap((pin, i) => {
       const pick = this.picks[i];
-      card.hidden = !pick || !view;
-      if (!pick || !view) return;
-      const {x, y} = view.project(pick.lattice);
-      card.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      pin.root.hidden = !pick || !view;
+      return pick && view ? [{pin, ...view.project(pick.lattice)}] : [];
+    });
+    if (!view) return;
+    seen.reverse();
+    const {clientWidth: width, clientHeight: height} = view.canvas;
+    const dots = seen.map(({pin: {size, last}, x, y}) => ({x, y, ...size, last}));
+    const places = placeLabels(dots, {width, height});
+    seen.forEach(({pin, x, y}, i) => {
+      const place = places[i] ?? null;
+      pin.root.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      pin.root.classList.toggle('folded', place === null);
+      if (!place) return;
+      pin.last = place.choice;
+      pin.card.style.transform = `translate(${place.x.toFixed(1)}px, ${place.y.toFixed(1)}px)`;
     });
   }
 
@@ -74,22 +99,29 @@ class Pins implements Panel {
     this.follow();
   }
 
-  private cardOf(i: number): HTMLElement {
-    const card = document.createElement('div');
-    card.className = 'pin';
-    card.hidden = true;
-    card.style.setProperty('--pin', kColors[i]!);
-    const close = document.createElement('button');
-    Object.assign(close, {
-      type: 'button',
-      ariaLabel: `Remove point ${i + 1}`,
-      textContent: '\u00d7',
-    });
-    close.addEventListener('click', () =>
+  private pinOf(i: number): Pin {
+    const [root, card] = [document.createElement('div'), document.createElement('div')];
+    const dot = document.createElement('i'); // the keyboard has the value
+    dot.ariaHidden = 'true';
+    dot.textContent = String(i + 1);
+    dot.addEventListener('click', () => this.openPoint(i));
+    const value = buttonOf(() => this.openPoint(i));
+    root.className = 'pin';
+    root.hidden = true;
+    root.style.setProperty('--pin', kColors[i]!);
+    const close = buttonOf(() =>
       this.page.write('points', pointsText(this.points.filter((_, at) => at !== i))),
     );
-    card.append(document.createElement('i'), document.createElement('span'), close);
-    return card;
+    close.textContent = '\u00d7';
+    close.ariaLabel = `Remove point ${i + 1}`;
+    card.append(value, close);
+    root.append(dot, card);
+    return {root, card, value, size: {width: 0, height: 0}, last: 0};
+  }
+
+  private openPoint(i: number): void {
+    const pick = this.picks[i];
+    if (pick && this.host.opening === null) this.open(pick);
   }
 
   private ask(): Promise<(Pick | null)[]> | null {
@@ -110,14 +142,25 @@ class Pins implements Panel {
     const color = mesh.snapshot?.color;
     const fields = mesh.manifest?.fields ?? [];
     picks.forEach((pick, i) => {
+      const pin = this.pins[i]!;
       const value = pick && color ? valueText(pick, color, fields) : null;
-      setText(find(this.layer.children[i]!, 'span'), value ?? `Point ${i + 1}`);
+      setText(pin.value, value ?? `Point ${i + 1}`);
     });
+    for (const {root} of this.pins) root.hidden = false; // else it has no size
+    for (const pin of this.pins)
+      pin.size = {width: pin.card.offsetWidth, height: pin.card.offsetHeight};
     this.follow();
   }
 }
 
+function buttonOf(press: () => void): HTMLButtonElement {
+  const button = document.createElement('button');
+  button.type = 'button';
+  button.addEventListener('click', press);
+  return button;
+}
+
 export const pinsPanel: PanelKind = {
   markup: '',
-  make: ({page, host}) => new Pins(page, host),
+  make: ({page, host, open}) => new Pins(page, host, open),
 };
