@@ -169,21 +169,23 @@ async function seesWhole(browser, host, log) {
   await page.context().close();
 }
 
-async function theDecoderComesWithThePagesScript({server, browser}) {
+async function theWorkersComeWithThePagesScript({server, browser}) {
   const page = await browser.blank();
   const seen = [];
   await page.route('**/assets/index-*.js', (route) => route.abort());
   page.on('request', (request) => seen.push(new URL(request.url()).pathname));
   await page.goto(`${server.url}?mesh=fin`);
   await page.waitForTimeout(1000);
-  for (const part of [/\/worker-.*\.js$/, /view_worker-.*\.js$/, /qtet-base.*\.wasm$/])
+  for (const part of [/\/worker-.*\.js$/, /view_worker-.*\.js$/])
     assert.ok(
       seen.some((path) => part.test(path)),
       `${part} waits for the page's script; fetched: ${seen.join(' ')}`,
     );
+  const runs = page.workers().map((worker) => worker.url());
+  assert.match(runs.join(), /start_graphics/, "the graphics wait for the page's script");
   await page.context().close();
   const {headers} = await fetch(`${server.url}?mesh=fin`);
-  assert.match(headers.get('link'), /worker-[^>]*>; rel=modulepreload; crossorigin/);
+  assert.match(headers.get('link'), /start_graphics-[^>]*>; rel=modulepreload; crossorigin/);
   assert.match(headers.get('link'), /poster\.webp>; rel=preload; as=image/);
 }
 
@@ -192,5 +194,5 @@ export const posterChecks = {
   thePosterStandsWhereTheMeshWillStand,
   aGuardedMeshHasNoPoster,
   aPublishedFolderShowsThePosterOfItsAddress,
-  theDecoderComesWithThePagesScript,
+  theWorkersComeWithThePagesScript,
 };

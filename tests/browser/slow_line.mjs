@@ -59,15 +59,18 @@ export class SlowLine {
     return line;
   }
 
-  /** Each connection that has something gets as much as the others. */
+  /** Each connection that has something gets as much as the others, a packet at a time. */
   #share(oneWayMs) {
     const kPacket = 1400;
     for (let waiting = true; waiting && this.#room > 0;) {
       waiting = false;
-      for (const {browser, server, queue, ended} of this.#connections) {
+      for (const connection of [...this.#connections]) {
+        const {browser, server, queue, ended} = connection;
         const [first] = queue;
         if (!first || this.#room <= 0) continue;
         waiting = true;
+        this.#connections.delete(connection); // behind the others, also in the next tick
+        this.#connections.add(connection);
         const part = first.subarray(0, kPacket);
         if (part.length < first.length) queue[0] = first.subarray(kPacket);
         else queue.shift();

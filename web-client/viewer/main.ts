@@ -2,7 +2,7 @@
 // so that a link is a picture.
 
 import './element';
-import {trustOwnWorkers} from './page/trusted';
+import {trustOwnWorkers} from './page/own_workers';
 import type {QtetViewer} from './qtet_viewer';
 import {kViewAttributes} from './settings/settings';
 import {linkTo} from './settings/share';

@@ -99,6 +99,15 @@ export class MeshParts {
     });
   }
 
+  /** Shows a triangle without area. */
+  warmUp(): void {
+    this.surface.show({
+      positions: new Float32Array(9),
+      values: new Float32Array(3),
+      firstHalf: 1,
+    });
+  }
+
   clear(): void {
     for (const soup of this.all) soup.show(null);
     this.restEdges.show(new Float32Array(0));

@@ -62,6 +62,14 @@ export class MeshView implements View {
     this.resize();
   }
 
+  /** Makes the graphics' programs before there is a mesh: that takes as long as many pictures. */
+  warmUp(): void {
+    this.parts.warmUp();
+    this.draw();
+    this.parts.clear();
+    this.invalidate(false);
+  }
+
   /** As View.show. */
   show(snapshot: Snapshot, drawn: (ms: number) => void, change: LatticeChange | null = null): void {
     // A picture in tiles shows one mesh.

@@ -56,6 +56,7 @@ function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}
       ...(answers ? {coarse} : {}),
     });
     post({type: 'drawn', pose: view.pose});
+    view.warmUp();
   } catch (thrown) {
     post({type: 'failed', message: errorText(thrown)});
   }

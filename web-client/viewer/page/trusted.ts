@@ -3,9 +3,8 @@
 interface TypePolicy {
   createHTML(text: string): string;
 }
-type Rules = Partial<Record<'createHTML' | 'createScriptURL', (text: string) => string>>;
 interface TypePolicies {
-  createPolicy(name: string, rules: Rules): TypePolicy;
+  createPolicy(name: string, rules: TypePolicy): TypePolicy;
 }
 
 const policies = (globalThis as {trustedTypes?: TypePolicies}).trustedTypes;
@@ -39,16 +38,3 @@ export function adopt(
   adopted.set(root, new Set([...(adopted.get(root) ?? []), styles]));
 }
 const adopted = new WeakMap<ShadowRoot, Set<string>>();
-
-/**
- * For a page of our own under `require-trusted-types-for 'script'`: workers come from the page's
- * origin alone.
- */
-export function trustOwnWorkers(): void {
-  policies?.createPolicy('default', {
-    createScriptURL: (url) => {
-      if (new URL(url, location.href).origin === location.origin) return url;
-      throw new TypeError(`${url} is not of this page's origin`);
-    },
-  });
-}
