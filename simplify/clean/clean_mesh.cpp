@@ -1,6 +1,7 @@
 #include "simplify/clean/clean_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -31,7 +32,9 @@ std::vector<std::uint64_t> countedUp(std::size_t count) {
 /// Moves the tuples of the points or cells that are kept to the front.
 void keepTuples(MeshField& field, const std::vector<std::uint64_t>& kept) {
   const std::size_t components = field.components;
+  assert(kept.size() * components <= field.values.size());
   for (std::size_t i = 0; i < kept.size(); ++i) {
+    assert(kept[i] >= i);
     for (std::size_t c = 0; c < components; ++c)
       field.values[i * components + c] = field.values[kept[i] * components + c];
   }
@@ -39,6 +42,8 @@ void keepTuples(MeshField& field, const std::vector<std::uint64_t>& kept) {
 }
 
 void dropCells(Cleaning& cleaning, const std::vector<char>& drop) {
+  assert(drop.size() == cleaning.mesh.tetrahedra.size());
+  assert(cleaning.cellNames.size() == drop.size());
   std::vector<std::uint64_t> kept;
   for (std::size_t i = 0; i < cleaning.mesh.tetrahedra.size(); ++i) {
     if (drop[i]) continue;
@@ -107,6 +112,7 @@ enum : char { kUnseen = 0, kAsStored = 1, kTurned = 2 };
 Result<std::vector<CellId>> orientComponent(CellId first, const Cleaning& cleaning,
                                             const std::vector<CellNeighbours>& neighbours,
                                             std::vector<char>& sense) {
+  assert(sense[first] == kUnseen);
   std::vector<CellId> component{first};
   sense[first] = kAsStored;
   for (std::size_t next = 0; next < component.size(); ++next) {
@@ -146,6 +152,7 @@ void turn(Cleaning& cleaning, const std::vector<CellId>& component, const std::v
 
 Status orient(Cleaning& cleaning, MatchedFaces& faces) {
   std::vector<Tetrahedron>& cells = cleaning.mesh.tetrahedra;
+  assert(faces.neighbours.size() == cells.size());
   std::vector<char> sense(cells.size(), kUnseen), turned(cells.size(), 0);
   for (CellId first = 0; first < cells.size(); ++first) {
     if (sense[first] != kUnseen) continue;
@@ -189,6 +196,7 @@ void dropUnusedPoints(Cleaning& cleaning) {
     for (VertexId& v : cell) v = renumbered[v];
   }
   for (std::size_t i = 0; i < kept.size(); ++i) mesh.points[i] = mesh.points[kept[i]];
+  assert(kept.size() + cleaning.report.unusedPoints.count == mesh.points.size());
   mesh.points.resize(kept.size());
   for (MeshField& field : mesh.fields) {
     if (!isCellField(field)) keepTuples(field, kept);
@@ -226,6 +234,7 @@ void reportExtent(Cleaning& cleaning) {
   const TetMesh& mesh = cleaning.mesh;
   CleanReport& report = cleaning.report;
   for (const Tetrahedron& cell : mesh.tetrahedra) report.volume += volume6Of(mesh, cell) / 6;
+  assert(!mesh.points.empty());
   report.box = {mesh.points.front(), mesh.points.front()};
   for (const Position& p : mesh.points)
     for (std::size_t a = 0; a < 3; ++a) {
@@ -250,6 +259,8 @@ Result<CleanReport> clean(TetMesh& mesh, const std::stop_token& stop) {
     return std::unexpected(oriented.error());
   dropUnusedPoints(cleaning);
   cleaning.report.boundary = faces.boundaryOf(mesh.tetrahedra);
+  assert(cleaning.cellNames.size() == mesh.tetrahedra.size());
+  assert(cleaning.pointNames.size() == mesh.points.size());
   reportCoincidentPoints(cleaning);
   reportNonManifoldParts(cleaning);
   reportExtent(cleaning);

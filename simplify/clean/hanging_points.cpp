@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "simplify/mesh/vector3.h"
@@ -29,6 +30,7 @@ class PointTree {
  private:
   void build(std::size_t begin, std::size_t end, std::size_t axis) {
     if (end - begin < 2) return;
+    assert(axis < 3 && end <= ids_.size());
     const std::size_t middle = begin + (end - begin) / 2;
     const auto at = [this](std::size_t i) { return ids_.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(begin), at(middle), at(end),

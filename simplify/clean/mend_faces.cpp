@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -159,6 +160,7 @@ class Mender {
       if (std::ranges::find(mesh_.tetrahedra[cell], from[1]) != mesh_.tetrahedra[cell].end())
         round_.push_back(cell);
     }
+    assert(from[0] != from[1] && to[0] != to[1]);
     std::vector<CellId> left = round_;
     round_.clear();
     path_ = {to[0]};
@@ -193,6 +195,7 @@ class Mender {
   /// Cuts the path's polygon as a fan from path_[apex]; false where a tetrahedron would be flat or
   /// inside out.
   bool triangulate(const Edge& from, std::size_t apex) {
+    assert(path_.size() >= 3 && apex < path_.size() && round_.size() + 1 == path_.size());
     const std::size_t n = path_.size();
     const int sense = sign(from[0], from[1], path_[0], path_[1]);
     for (std::size_t k = 0; k + 1 < n; ++k) {
@@ -211,6 +214,7 @@ class Mender {
   }
 
   void replace(const Edge& from) {
+    assert(triangles_.size() + 2 == path_.size());
     std::vector<CellId> origin;
     for (const CellId cell : round_) origin.push_back(parentOf(cell));
     for (const CellId cell : round_) leave(cell);
@@ -222,9 +226,11 @@ class Mender {
         const bool keep = positive == first;
         const Tetrahedron cell{first ? from[0] : from[1], t[0], keep ? t[1] : t[2],
                                keep ? t[2] : t[1]};
+        assert(fan.step < origin.size());
         place(cell, origin[fan.step], used);
       }
     }
+    assert(used == round_.size());
   }
 
   void place(const Tetrahedron& cell, CellId parent, std::size_t& used) {
@@ -257,6 +263,7 @@ class Mender {
 void inherit(TetMesh& mesh, const std::vector<CellId>& parents) {
   for (MeshField& field : mesh.fields) {
     if (!isCellField(field)) continue;
+    assert(parents.size() == mesh.tetrahedra.size());
     const std::vector<double> before = field.values;
     field.values.resize(parents.size() * field.components);
     for (std::size_t i = 0; i < parents.size(); ++i)

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "codec/mesh/boundary.h"
+#include "proto/limits.h"
 #include "proto/number_text.h"
 #include "proto/rounding_error.h"
 #include "simplify/clean/verify.h"
@@ -19,11 +21,13 @@ struct Nearest {
 };
 
 Nearest nearest(double steps, int bits) {
+  assert(bits > 0 && bits < 32);
   const double integer = std::clamp(std::floor(steps + 0.5), 0.0, std::ldexp(1.0, bits) - 1);
   return {static_cast<std::int32_t>(integer), std::abs(steps - integer)};
 }
 
 Status putPoints(const TetMesh& mesh, OnLattice& out) {
+  assert(out.mesh.lattice.step > 0 && out.mesh.lattice.bits <= kMaxPositionBits);
   const Lattice& lattice = out.mesh.lattice;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     LatticePoint point{};
@@ -96,6 +100,7 @@ Status putField(const MeshField& field, const FieldInfo& info, OnLattice& out) {
     integers.push_back(found.integer);
     largest = std::max(largest, found.error);
   }
+  assert(integers.size() == field.values.size());
   out.mesh.fields.push_back(info);
   out.mesh.values.push_back(std::move(integers));
   out.largestFieldErrors.push_back(largest);

@@ -1,6 +1,7 @@
 #include "simplify/clean/quantise.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -45,6 +46,7 @@ Lattice latticeOf(const Bounds& box, int bits) {
 }
 
 std::vector<LatticePoint> onLattice(const std::vector<Position>& points, const Lattice& lattice) {
+  assert(lattice.step > 0 && lattice.bits <= kMaxPositionBits);
   const double highest = std::ldexp(1.0, lattice.bits) - 1;
   std::vector<LatticePoint> out;
   out.reserve(points.size());
@@ -74,6 +76,7 @@ std::vector<signed char> signsOf(const TetMesh& mesh, const std::stop_token& sto
 Occurrences worseCells(const std::vector<Tetrahedron>& cells,
                        const std::vector<signed char>& before,
                        const std::vector<LatticePoint>& points, const std::stop_token& stop) {
+  assert(before.size() == cells.size());
   Occurrences worse;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i % kLookEvery == 0) throwIfStopped(stop);
@@ -188,6 +191,8 @@ Status placeFields(const TetMesh& mesh, const QuantiseOptions& options, const st
     out.mesh.fields.push_back(std::move(quantised->info));
     if (quantised->nonFinite > 0)
       fillMissing(mesh.tetrahedra, out.mesh.fields.back(), quantised->missing, quantised->values);
+    assert(quantised->values.size() == field.values.size());
+    assert(quantised->missing.empty() == (quantised->nonFinite == 0));
     out.mesh.values.push_back(std::move(quantised->values));
     out.missing.push_back(std::move(quantised->missing));
   }
@@ -211,6 +216,8 @@ Result<QuantisedMesh> place(const TetMesh& mesh, const QuantiseOptions& options,
   throwIfStopped(stop);
   if (Status placed = placeFields(mesh, options, stop, out); !placed)
     return std::unexpected(placed.error());
+  assert(out.mesh.points.size() == mesh.points.size() &&
+         out.mesh.fields.size() == mesh.fields.size());
   return out;
 }
 

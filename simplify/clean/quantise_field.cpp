@@ -89,6 +89,7 @@ Status takeBound(double extent, double bound, FieldInfo& info) {
     takeBoundOfConstant(bound, info);
     return {};
   }
+  assert(std::isfinite(extent) && info.minimum.size() == info.components);
   const double rounding = roomForRounding(info, extent, bound);
   const double most = std::ldexp(1.0, kMaxFieldBits) - 1;
   if (!(bound > rounding)) return tooFine(info, extent, bound, rounding);
@@ -105,11 +106,14 @@ Status takeBound(double extent, double bound, FieldInfo& info) {
 
 /// The integers of `out.info`, and which are missing. REQUIRES: out.nonFinite.
 void place(const MeshField& field, QuantisedField& out) {
+  assert(out.values.empty() && out.info.step > 0 && out.info.bits <= kMaxFieldBits);
+  assert(field.components > 0 && field.values.size() % field.components == 0);
   out.values.reserve(field.values.size());
   if (out.nonFinite > 0) out.missing.assign(field.values.size(), 0);
   for (std::size_t i = 0; i < field.values.size(); ++i) {
     const auto component = static_cast<std::uint32_t>(i % field.components);
     const bool finite = std::isfinite(field.values[i]);
+    assert(finite || out.nonFinite > 0);
     if (!finite) out.missing[i] = 1;
     out.values.push_back(finite ? fieldInteger(out.info, component, field.values[i]) : 0);
   }
@@ -132,6 +136,7 @@ FieldExtents extentsOf(const MeshField& field) {
 }
 
 bool haveOneScale(const FieldInfo& a, const FieldInfo& b) {
+  assert(a.step > 0 && b.step > 0);
   return a.step == b.step && a.minimum == b.minimum;
 }
 
@@ -159,6 +164,7 @@ void FieldExtents::include(const FieldExtents& other) {
 
 std::int32_t fieldInteger(const FieldInfo& info, std::uint32_t component, double value) {
   assert(std::isfinite(value) && component < info.components);
+  assert(info.step > 0 && info.minimum.size() == info.components);
   const double highest = std::ldexp(1.0, info.bits) - 1;
   return static_cast<std::int32_t>(
       std::clamp(std::floor((value - info.minimum[component]) / info.step + 0.5), 0.0, highest));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <optional>
 
 #include "simplify/mesh/split_mix64.h"
@@ -77,6 +78,7 @@ Hash rotationHash(Hash a, Hash b, Hash c) {
 
 /// Every vertex's colour with what its cells show of their other vertices and of their values.
 std::vector<Hash> refined(const LatticeMesh& mesh, const std::vector<Hash>& colours) {
+  assert(colours.size() == mesh.points.size());
   std::vector<Hash> sums(colours.size());
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const Tetrahedron& cell = mesh.tetrahedra[t];
@@ -119,6 +121,7 @@ std::vector<Hash> cellHashes(const LatticeMesh& mesh, const std::vector<Hash>& c
 
 /// `hashes`, each with its cell's values.
 std::vector<Hash> withValues(const LatticeMesh& mesh, const std::vector<Hash>& hashes) {
+  assert(hashes.size() == mesh.tetrahedra.size());
   std::vector<Hash> out;
   out.reserve(hashes.size());
   for (std::size_t t = 0; t < hashes.size(); ++t) {

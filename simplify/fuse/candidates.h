@@ -45,10 +45,12 @@ class Candidates {
            Workers& workers) {
     if (owners.empty()) return;
     assert(lists_.size() <= owners.front());
+    assert(found.size() >= owners.size());
     lists_.resize(std::size_t{owners.back()} + 1);
     const std::size_t before = pool_.size();
     std::size_t end = before;
     for (std::size_t i = 0; i < owners.size(); ++i) {
+      assert(i == 0 || owners[i - 1] < owners[i]);
       lists_[owners[i]] = {end, 0, static_cast<std::uint32_t>(found[i].size())};
       end += found[i].size();
     }
@@ -65,6 +67,7 @@ class Candidates {
   [[nodiscard]] const Candidate* best(VertexId owner) const {
     if (owner >= lists_.size()) return nullptr;
     const List& list = lists_[owner];
+    assert(list.next <= list.count && list.first + list.count <= pool_.size());
     return list.next < list.count ? &pool_[list.first + list.next] : nullptr;
   }
   /// Ask the memory for the owner's list, and then for what best() looks at.
@@ -116,6 +119,7 @@ class Candidates {
   /// The best one costs `key`, more than was known. REQUIRES: best(owner).
   void raise(VertexId owner, float key) {
     assert(best(owner));
+    assert(best(owner)->key <= key);
     const List& list = lists_[owner];
     std::size_t i = list.first + list.next;
     pool_[i].key = key;
@@ -136,12 +140,14 @@ class Candidates {
     if (pool_.size() < 2 * live_ + 4096) return;
     std::size_t end = 0;
     for (List& list : lists_) {
+      assert(list.first >= end || list.count == 0);
       if (list.first != end)
         std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(list.first), list.count,
                     pool_.begin() + static_cast<std::ptrdiff_t>(end));
       list.first = end;
       end += list.count;
     }
+    assert(end == live_);
     pool_.resize(end);
     giveBackRoom(pool_);
   }

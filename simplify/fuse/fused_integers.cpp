@@ -1,6 +1,7 @@
 #include "simplify/fuse/fused_integers.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,7 @@ namespace qtet {
 namespace {
 
 VertexId nearestOf(const FusionMesh& mesh, const Prey& prey, const LatticePoint& point) {
+  assert(prey.k >= 2 && prey.k <= 4);
   VertexId nearest = prey.vertex[0];
   double least = std::numeric_limits<double>::infinity();
   for (const VertexId v : prey.vertices()) {
@@ -26,6 +28,7 @@ FusedIntegers::FusedIntegers(const FusionMesh& mesh, const FusionCost& cost, con
       prey_(prey),
       values_(values),
       nearest_(nearestOf(mesh, prey, point)) {
+  assert(values.size() == cost.components());
   if (basis_.isDirect()) return;
   many_.emplace(Many{cost.sharesOf(prey, point), {}});
   for (std::size_t j = 0; j < values.size(); ++j) {
@@ -36,6 +39,7 @@ FusedIntegers::FusedIntegers(const FusionMesh& mesh, const FusionCost& cost, con
 }
 
 double FusedIntegers::ofMany(const CostPart& part, std::size_t c, std::size_t component) const {
+  assert(many_ && c < mesh_.fields()[part.field].components);
   double value =
       basis_.changeOf(component, std::span(many_->change).first(basis_.components())) / part.scale;
   for (std::size_t i = 0; i < prey_.k; ++i)
@@ -54,6 +58,7 @@ SomeIntegers::SomeIntegers(const FusionMesh& mesh, const FusionCost& cost,
                            std::span<const std::size_t> fields)
     : mesh_(mesh), cost_(cost) {
   for (const std::size_t f : fields) {
+    assert(f < mesh.fields().size() && !isCellField(mesh.fields()[f]));
     Chosen chosen{f, {}, 0};
     std::size_t component = 0;
     for (const CostPart& part : cost.parts()) {

@@ -1,6 +1,7 @@
 #include "simplify/fuse/fusion_loop.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <deque>
 #include <utility>
@@ -32,6 +33,7 @@ constexpr double kTurnCosine = 0.3;
 FusionFrame::FusionFrame(const LatticeMesh& mesh, const FusionState& whole,
                          const FusionOptions& options)
     : displacements(sampledDisplacements(mesh, options.checkedInstants)) {
+  assert(whole.mesh().fusions() == 0 && whole.mesh().firstGhost() == mesh.tetrahedra.size());
   const double tolerance = options.envelopeTolerance.value_or(kEnvelopeTolerance);
   if (tolerance > 0)
     allowed =
@@ -39,6 +41,7 @@ FusionFrame::FusionFrame(const LatticeMesh& mesh, const FusionState& whole,
 }
 
 double progressOf(std::size_t cells, std::size_t live, std::size_t target) {
+  assert(live <= cells);
   if (cells <= target || target == 0) return 1;
   const auto over = [&](std::size_t n) {
     return std::log(static_cast<double>(cells) / static_cast<double>(n));
@@ -49,6 +52,7 @@ double progressOf(std::size_t cells, std::size_t live, std::size_t target) {
 FusionLoop::FusionLoop(FusionState& state, const FusionFrame& frame, const FusionOptions& options,
                        Workers& workers, std::uint32_t levels)
     : options_(options), frame_(frame), state_(state), workers_(workers), levels_(levels) {
+  assert(levels <= kMaxLevels);
   limitBy(kShapeFloor, kTurnCosine);
 }
 
@@ -71,11 +75,13 @@ Result<std::uint32_t> FusionLoop::run(std::size_t target) {
 
 PartLevels FusionLoop::runPart(const PartEnd& end, std::span<const std::uint8_t> isSeam) {
   PartLevels out;
+  assert(end.leastShare >= 0);
   target_ = end.cells;
   fusions_.keepOff(isSeam);
   open_.findAll();
   for (std::size_t before = live(); runLevel(end.key); before = live()) {
     if (fusions_.fused().empty()) break;
+    assert(live() < before);
     out.levels.push_back({queue_.limit(), fusions_.fused().size(), before - live()});
     out.isCut = live() <= target_;
     if (out.isCut || !isWorth(end.leastShare, before)) break;
@@ -100,6 +106,7 @@ bool FusionLoop::runLevels() {
 
 /// False when nothing is left to try, or the level would end beyond that key.
 bool FusionLoop::runLevel(float lastKey) {
+  assert(levels_ < kMaxLevels);
   open_.fill(queue_.refill());
   if (queue_.entries().empty()) return false;
   queue_.begin(kLevelQuantile);
@@ -114,12 +121,14 @@ bool FusionLoop::runLevel(float lastKey) {
 
 /// Whether at least this fraction of the cells that were there before is gone.
 bool FusionLoop::isWorth(double fraction, std::size_t before) const {
+  assert(live() <= before && fraction >= 0);
   return static_cast<double>(before - live()) >= fraction * static_cast<double>(before);
 }
 
 /// Limits fusions by the worst shape of a cell, and the cosine of the largest turn of a boundary
 /// triangle.
 void FusionLoop::limitBy(double shapeFloor, double normalCosine) {
+  assert(shapeFloor >= 0 && normalCosine >= -1 && normalCosine <= 1);
   const FusionLimits limits{shapeFloor, frame_.allowed.get(), normalCosine, frame_.displacements};
   proposers_.clear();
   for (std::size_t i = 0; i < workers_.count(); ++i)

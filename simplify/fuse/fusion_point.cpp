@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -45,6 +46,7 @@ LatticePoint rounded(const Vector3& p) {
 // The error that the fusion adds to the mesh: how much the prey is off more than its vertices are
 // now. Only that decides, since no fusion can reduce the rest.
 PreyQuadric FusionPointFinder::growth(const Prey& prey) const {
+  assert(prey.k >= 2 && prey.k <= 4);
   PreyQuadric out = cost_.of(prey);
   for (const VertexId v : prey.vertices()) out.quadric.c -= cost_.of(v);
   return out;
@@ -67,6 +69,7 @@ FusionPointFinder::Deciding FusionPointFinder::deciding(const Prey& prey) const 
   }
   for (std::size_t i = 0; i < out.count; ++i)
     out.centre = out.centre + (mesh_.position(out.vertex[i]) - mesh_.position(prey.vertex[0]));
+  assert(out.count > 0 && (boundary == 0 || out.count == boundary));
   out.isAll = out.count == prey.k;
   out.centre = (1.0 / static_cast<double>(out.count)) * out.centre;
   return out;
@@ -74,6 +77,7 @@ FusionPointFinder::Deciding FusionPointFinder::deciding(const Prey& prey) const 
 
 FusionPointFinder::Ideal FusionPointFinder::idealOf(const Prey& prey, const Deciding& deciding,
                                                     const PreyQuadric& of) const {
+  assert(deciding.count > 0);
   const auto& [quadric, pull] = of;
   if (const auto minimum = quadric.minimum(deciding.centre, pull)) {
     double radius = 0;
@@ -94,6 +98,7 @@ FusionPointFinder::Ideal FusionPointFinder::ideal(const Prey& prey) const {
 // Along an edge E(t) = (a t + b) t + c: what its cheap points cost, but for their rounding to the
 // lattice.
 Pair FusionPointFinder::keysOf(VertexId v, std::array<VertexId, 2> w) const {
+  assert(v != w[0] && v != w[1]);
   auto [quadric, pull, along] = cost_.ofEdges(v, w);
   quadric.c -= cost_.of(v) + Pair{cost_.of(w[0]), cost_.of(w[1])};  // as growth() does
   const auto rankOf = [&](VertexId x) { return mesh_.onBoundary(x) ? 2 : mesh_.onSurface(x); };
@@ -125,6 +130,7 @@ Pair FusionPointFinder::keysOf(VertexId v, std::array<VertexId, 2> w) const {
 }
 
 void FusionPointFinder::offer(const LatticePoint& p, bool isOutside, double dearness) {
+  assert(dearness >= 1);
   for (const Choice& c : choices_)
     if (((c.point[0] ^ p[0]) | (c.point[1] ^ p[1]) | (c.point[2] ^ p[2])) == 0) return;
   const double cost = quadric_.at(toVector(p) - origin_);
@@ -148,6 +154,7 @@ void FusionPointFinder::offerCheap(const Prey& prey, const FusionCheck& test) {
     const bool isInside = !deciding_.boundary || test.insideEnvelope(p);
     if (isInside || test.mayLeave()) offer(p, !isInside);
   };
+  assert(choices_.empty());
   for (std::size_t i = 0; i < deciding_.count; ++i) offerInside(mesh_.point(deciding_.vertex[i]));
   if (options_.rule == PlacementRule::kVertex || !deciding_.isAll) return;
   std::array<LatticePoint, 4> at{};
@@ -160,6 +167,7 @@ void FusionPointFinder::offerCheap(const Prey& prey, const FusionCheck& test) {
 }
 
 void FusionPointFinder::offerFree(const FusionCheck& test) {
+  assert(isFreeToCome() && options_.rule != PlacementRule::kVertex);
   const Vector3 middle = origin_ + deciding_.centre;
   const Vector3 best = origin_ + ideal_;
   const double dearness = dearnessOfFree(options_.rule);
@@ -178,6 +186,7 @@ void FusionPointFinder::offerFree(const FusionCheck& test) {
 }
 
 std::optional<double> FusionPointFinder::price(const Prey& prey, const FusionCheck& test) {
+  assert(!mesh_.singular(prey.vertex[0]) && !mesh_.singular(prey.vertex[1]));
   prey_ = prey;
   choices_.clear();
   PreyQuadric of = growth(prey);
@@ -199,6 +208,7 @@ std::optional<double> FusionPointFinder::price(const Prey& prey, const FusionChe
 }
 
 bool FusionPointFinder::isHopeless(const FusionCheck& test) {
+  assert(deciding_.count > 0 && deciding_.count <= prey_.k);
   const bool isDrawnOut = deciding_.boundary && !deciding_.isAll;
   if (!isDrawnOut && refused_ < kOftenRefused) return false;
   std::uint32_t moving = 0;
@@ -218,6 +228,7 @@ bool FusionPointFinder::isHopeless(const FusionCheck& test) {
 }
 
 std::optional<FusionPoint> FusionPointFinder::choose(const FusionCheck& test) {
+  assert(deciding_.count > 0 && deciding_.count <= prey_.k);
   found_.reset();
   choose(choices_, test);
   if (isFreeToCome() && (!found_ || least_ > minFree_)) {
@@ -227,16 +238,19 @@ std::optional<FusionPoint> FusionPointFinder::choose(const FusionCheck& test) {
     std::ranges::sort(free, comesFirst);
     choose(free, test);
   }
+  assert(!found_ || isOnLattice(found_->point, mesh_.latticeBits()));
   count(!found_);
   return found_;
 }
 
 void FusionPointFinder::count(bool isRefused) {
   refused_ += kLastShare * ((isRefused ? 1 : 0) - refused_);
+  assert(refused_ >= 0 && refused_ <= 1);
 }
 
 // Asked last, as the fields' values at the point take longer than all else.
 bool FusionPointFinder::flipsMoved(const LatticePoint& p, const FusionCheck& test) {
+  assert(test.mayMove() == !options_.displacements.empty());
   return test.mayMove() && test.flipsMoved(p, moved_.at(prey_, p));
 }
 
@@ -255,6 +269,7 @@ void FusionPointFinder::choose(std::span<const Choice> choices, const FusionChec
     if (found_ && choice.compared * factor >= least_) continue;
     if (choice.isOutside && !test.staysNear(choice.point)) continue;
     if (flipsMoved(choice.point, test)) continue;
+    assert(!choice.isOutside || test.mayLeave());
     least_ = choice.compared * factor;
     found_ = FusionPoint{choice.point, choice.cost * factor, choice.isOutside};
   }

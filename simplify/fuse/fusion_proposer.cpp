@@ -28,6 +28,7 @@ class CellsGoing {
       one += hasV || hasW, both += hasV && hasW;
     }
     // of the cells round v-w one is the prey
+    assert(v != w && mesh_.cellsRound(v, w) > both);
     return alone_ + one + mesh_.cellsRound(v, w) - both - 1;
   }
 
@@ -62,6 +63,7 @@ void FusionProposer::candidatesOf(VertexId v, std::vector<Candidate>& found) {
 
 void FusionProposer::candidatesOf(VertexId v, std::span<const VertexId> link,
                                   std::vector<Candidate>& found) {
+  assert(mesh_.alive(v));
   found.clear();
   if (mesh_.star(v).size() > kMaxStarCells) return;
   mesh_.prefetchStar(v);
@@ -70,8 +72,10 @@ void FusionProposer::candidatesOf(VertexId v, std::span<const VertexId> link,
   for (const CellId c : mesh_.star(v))
     for (const VertexId w : mesh_.cell(c))
       if (w < v && counts_.add(w) && link.empty()) cost_.prefetchSlot(w);
+  assert(link.empty() || counts_.size() + 1 >= link.size());
   found.reserve(counts_.size());
   counts_.take([&](VertexId w, std::uint32_t cells) {
+    assert(cells > 0 && mesh_.alive(w));
     if (mesh_.singular(w)) return;
     found.push_back({static_cast<float>(cells), w});
     cost_.prefetch(w);
@@ -96,6 +100,10 @@ void FusionProposer::price(VertexId v, std::vector<Candidate>& found) const {
 bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidates, float most,
                              std::uint32_t now, Proposal& out) {
   assert(!candidates.empty());
+  assert(candidates[0].partner < owner);
+  assert(!changes_.isLocked(owner) && !changes_.isLocked(candidates[0].partner));
+  assert(mesh_.alive(owner) && mesh_.alive(candidates[0].partner));
+  assert(now == changes_.now());
   const Prey edge{2, {owner, candidates[0].partner, 0, 0}};
   const auto exact = test_.gatherBoundary(edge) ? finder_.price(edge, test_) : std::nullopt;
   const double share = shares_.of(mesh_.cellsRound(owner, candidates[0].partner));
@@ -118,6 +126,7 @@ bool FusionProposer::propose(VertexId owner, std::span<const Candidate> candidat
   out.where.cost *= share;
   out.edgeCost = static_cast<float>(out.where.cost);
   out.most = most;
+  assert(!test_.star().deleted.empty());
   test_.takeStar(out.star);
   takeAlong(candidates.subspan(1), most, out);
   out.tetrahedra = static_cast<std::uint32_t>(
@@ -159,6 +168,7 @@ void FusionProposer::findCompanions(const Proposal& edge, std::span<const Candid
     cost_.prefetch(other.partner);
     if (!changes_.isLocked(other.partner)) std::swap(companions_[free++], companions_.back());
   }
+  assert(free <= companions_.size());
   freeCompanions_ = free;
 }
 
@@ -171,6 +181,7 @@ std::optional<FusionProposer::Larger> FusionProposer::largerPrey(const Proposal&
     const double share = shares_.of(removed), c = share * finder_.ideal(prey).cost;
     if (c < cost) cost = c, best = {prey, share};
   };
+  assert(edge.prey.k == 2 && freeCompanions_ <= companions_.size());
   const auto [a, b] = std::pair(edge.prey.vertex[0], edge.prey.vertex[1]);
   const auto free = std::span<const VertexId>(companions_).first(freeCompanions_);
   const CellsGoing going(mesh_, edge.star);
@@ -179,7 +190,10 @@ std::optional<FusionProposer::Larger> FusionProposer::largerPrey(const Proposal&
     std::array<VertexId, 2> taken{};
     std::size_t n = 0;
     for (const VertexId v : mesh_.cell(c))
-      if (std::ranges::find(free, v) != free.end()) taken[n++] = v;
+      if (std::ranges::find(free, v) != free.end()) {
+        assert(n < 2);  // the edge's vertices are not among them
+        taken[n++] = v;
+      }
     if (n == 2) consider({4, {a, b, taken[0], taken[1]}}, going.with(taken[0], taken[1]));
   }
   return best;

@@ -1,6 +1,7 @@
 #include "simplify/fuse/fusion_state.h"
 
 #include <array>
+#include <cassert>
 
 #include "simplify/fuse/fused_integers.h"
 #include "simplify/mesh/tet_mesh.h"
@@ -61,11 +62,14 @@ void FusionState::fuse(const Prey& prey, const FusedVertex& what, const Star& st
 
 void FusionState::fuse(const Prey& prey, const FusedVertex& what, std::span<const double> values,
                        const Star& star, std::uint32_t level) {
+  assert(what.values.size() == integers_.size());
+  assert(values.size() == cost_.components());
   const auto fused = static_cast<VertexId>(mesh_.vertexSlots());
   cost_.makeRoom(fused + std::size_t{1});
   changes_.resize(fused + std::size_t{1});
   cost_.fuse(prey, fused, what.point, values);
-  mesh_.fuse(prey, what, star, level);
+  [[maybe_unused]] const VertexId made = mesh_.fuse(prey, what, star, level);
+  assert(made == fused && !candidates_.best(fused));
 }
 
 void FusionState::findIntegers(const Prey& prey, const LatticePoint& point,
@@ -82,6 +86,7 @@ void FusionState::findIntegers(const Prey& prey, const LatticePoint& point,
       for (const std::int32_t value : all.ofOther(f)) integers_[at++] = value;
     }
   }
+  assert(at == integers_.size() && part == cost_.parts().size());
 }
 
 }  // namespace qtet

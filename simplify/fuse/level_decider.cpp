@@ -13,6 +13,7 @@ constexpr float kDearer = 1.25f;
 
 void LevelDecider::run(LevelQueue& queue, LevelFusions& fusions, std::size_t goal) {
   assert(fusions.fused().empty());
+  assert(!proposers_.empty());
   state_.changes().beginLevel();
   proposals_.begin(queue.entries());
   while (queue.nextKey() <= queue.limit() && state_.mesh().liveTetrahedra() > goal) {
@@ -26,6 +27,7 @@ void LevelDecider::run(LevelQueue& queue, LevelFusions& fusions, std::size_t goa
 }
 
 void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusions) {
+  assert(state_.mesh().alive(owner) && state_.candidates().best(owner));
   const Candidate candidate = *state_.candidates().best(owner);
   assert(state_.mesh().alive(candidate.partner));  // or the owner would be locked
   if (state_.changes().isLocked(candidate.partner)) return;
@@ -33,7 +35,9 @@ void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusi
   const float most = std::min(queue.limit(), std::max(kDearer * candidate.key, queue.nextKey()));
   const Outcome outcome = propose(owner, candidate.partner, most);
   if (outcome.cost <= most && outcome.proposal && !fusions.isMet(*outcome.proposal)) {
+    assert(outcome.proposal->partner == candidate.partner && !outcome.proposal->isPriceAll);
     fusions.carryOut(*outcome.proposal);
+    assert(state_.changes().isLocked(owner) && !state_.mesh().alive(owner));
     proposals_.giveBack(owner);
     return;
   }
@@ -50,6 +54,7 @@ void LevelDecider::process(VertexId owner, LevelQueue& queue, LevelFusions& fusi
 // The outcome for the owner's best candidate. It is made now, unless the one found in this level
 // still holds.
 LevelDecider::Outcome LevelDecider::propose(VertexId owner, VertexId partner, float most) {
+  assert(owner != partner && !state_.changes().isLocked(partner));
   Proposal& proposal = proposals_.of(owner);
   if (const auto illegal =
           std::ranges::find(proposal.illegal, partner, &Proposal::Illegal::partner);
@@ -64,6 +69,7 @@ LevelDecider::Outcome LevelDecider::propose(VertexId owner, VertexId partner, fl
   if (!holds && !proposers_[0]->propose(owner, state_.candidates().remaining(owner), most,
                                         state_.changes().now(), proposal))
     return {nullptr, proposal.illegal.back().price};
+  assert(proposal.partner == partner && proposal.madeAfter <= state_.changes().now());
   return {&proposal,
           proposal.price > most ? proposal.price : static_cast<float>(proposal.where.cost)};
 }

@@ -5,12 +5,15 @@
 namespace qtet {
 
 void LevelFusions::begin(std::uint32_t level) {
+  assert(level >= level_);
   level_ = level;
   if (boundary_) boundary_->beginLevel();
   fused_.clear(), links_.clear(), linkEnds_.clear();
 }
 
 void LevelFusions::carryOut(const Proposal& proposal) {
+  assert(proposal.partner != kGhost && !proposal.isPriceAll);
+  assert(!proposal.where.goesOutside || boundary_);
   const std::vector<VertexId>& link = proposal.star.link;
   for (const VertexId v : proposal.prey.vertices()) {
     assert(!state_.changes().isLocked(v));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,7 @@ class LevelFusions {
   void keepOff(std::span<const std::uint8_t> isSeam) { isSeam_ = isSeam; }
   /// The fusion would make the boundary meet itself, or could meet that of another part.
   [[nodiscard]] bool isMet(const Proposal& proposal) const {
+    assert(!proposal.where.goesOutside || boundary_);
     return proposal.where.goesOutside && (isAtSeam(proposal) || boundary_->isMetBy(proposal));
   }
   /// Does the fusion and touches its star. REQUIRES: no vertex of the prey is locked.
@@ -36,6 +38,7 @@ class LevelFusions {
   [[nodiscard]] std::span<const VertexId> fused() const { return fused_; }
   /// The link of fused()[i], in which nothing changes until the level ends.
   [[nodiscard]] std::span<const VertexId> linkOf(std::size_t i) const {
+    assert(i < fused_.size() && linkEnds_.size() == fused_.size());
     const std::size_t first = i == 0 ? 0 : linkEnds_[i - 1];
     return std::span(links_).subspan(first, linkEnds_[i] - first);
   }

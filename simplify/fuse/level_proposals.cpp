@@ -12,6 +12,7 @@ constexpr std::size_t kLocksAhead = 8;
 }  // namespace
 
 void LevelProposals::begin(std::span<const QueueEntry> entries) {
+  assert(withProposal_.empty() && spare_.empty() && used_ == 0);
   entries_ = entries;
   next_ = first_ = end_ = 0;
   proposalOf_.resize(mesh_.vertexSlots(), nullptr);
@@ -42,6 +43,7 @@ bool LevelProposals::addNext() {
     if (!changes_.isLocked(entries_[next_].owner)) break;
   }
   if (next_ == entries_.size()) return false;
+  assert(end_ - first_ < kAhead);
   ahead_[end_++ % ahead_.size()] = {next_, entries_[next_].owner, kGhost};
   ++next_;
   return true;
@@ -73,6 +75,7 @@ void LevelProposals::askMemory() {
 }
 
 Proposal& LevelProposals::of(VertexId owner) {
+  assert(owner < proposalOf_.size());
   Proposal*& own = proposalOf_[owner];
   if (!own) {
     own = &sparest();
@@ -84,6 +87,7 @@ Proposal& LevelProposals::of(VertexId owner) {
 // The one that was given back last, since the processor has it near.
 Proposal& LevelProposals::sparest() {
   if (spare_.empty() && used_ == proposals_.size()) proposals_.emplace_back();
+  assert(used_ <= proposals_.size());
   Proposal& proposal = spare_.empty() ? proposals_[used_++] : *spare_.back();
   if (!spare_.empty()) spare_.pop_back();
   proposal.illegal.clear();
@@ -92,6 +96,7 @@ Proposal& LevelProposals::sparest() {
 }
 
 void LevelProposals::giveBack(VertexId owner) {
+  assert(owner < proposalOf_.size());
   if (!proposalOf_[owner]) return;
   spare_.push_back(proposalOf_[owner]);
   proposalOf_[owner] = nullptr;

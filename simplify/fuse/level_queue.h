@@ -52,7 +52,10 @@ class LevelQueue {
     return {owner, kBack};
   }
   /// It comes back at this key.
-  void push(const QueueEntry& entry) { back_.push(entry); }
+  void push(const QueueEntry& entry) {
+    assert(entry.key <= limit_);
+    back_.push(entry);
+  }
 
  private:
   std::vector<QueueEntry> entries_;

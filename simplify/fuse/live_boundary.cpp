@@ -31,6 +31,7 @@ LiveBoundary::LiveBoundary(const FusionMesh& mesh)
         triangles_.resize(count), points_.resize(3 * count), vertices_.resize(count);
         live_.resize(count);
         for (std::uint32_t i = 0; i < count; ++i) {
+          assert(mesh.isGhost(firstGhost_ + i));
           live_[i] = mesh.isLive(firstGhost_ + i);
           triangles_[i] = {3 * i, 3 * i + 1, 3 * i + 2, kGhost};
           const auto& cell = mesh.cell(firstGhost_ + i);
@@ -59,16 +60,20 @@ void LiveBoundary::beginLevel() {
 
 void LiveBoundary::place(CellId ghost, std::size_t corner, VertexId vertex,
                          const LatticePoint& at) {
+  assert(corner < 3 && numberOf(ghost) < vertices_.size());
+  assert(vertex != kGhost);
   vertices_[numberOf(ghost)][corner] = vertex;
   points_[3 * numberOf(ghost) + corner] = at;
 }
 
 PlacedTriangle LiveBoundary::triangle(std::uint32_t number) const {
+  assert(number < vertices_.size());
   return {vertices_[number],
           {points_[3 * number], points_[3 * number + 1], points_[3 * number + 2]}};
 }
 
 void LiveBoundary::collect(const Proposal& proposal) {
+  assert(proposal.prey.k >= 2 && proposal.prey.k <= 4);
   new_.clear(), left_.clear();
   const LatticePoint& p = proposal.where.point;
   const auto addLeft = [&](const PlacedTriangle& t) {
@@ -137,9 +142,13 @@ bool LiveBoundary::isMetBy(const Proposal& proposal) {
 
 void LiveBoundary::decideOn(const Proposal& proposal, VertexId fused) {
   for (const CellId c : proposal.star.deleted)
-    if (mesh_.isGhost(c)) live_[numberOf(c)] = 0;
+    if (mesh_.isGhost(c)) {
+      assert(live_[numberOf(c)] != 0);
+      live_[numberOf(c)] = 0;
+    }
   for (const CellId c : proposal.star.affected) {
     if (!mesh_.isGhost(c)) continue;
+    assert(live_[numberOf(c)] != 0);
     for (std::size_t i = 0; i < 3; ++i)
       if (isPrey(proposal.prey, vertices_[numberOf(c)][i]))
         place(c, i, fused, proposal.where.point);

@@ -1,6 +1,7 @@
 #include "simplify/fuse/open_vertices.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace qtet {
@@ -49,6 +50,7 @@ void OpenVertices::findAll() {
 
 void OpenVertices::add(const LevelFusions& level) {
   const std::span<const VertexId> fused = level.fused();
+  assert(fused.empty() || vertices_.empty() || vertices_.back() < fused.front());
   vertices_.insert(vertices_.end(), fused.begin(), fused.end());
   collect(fused, [&](FusionProposer& proposer, std::size_t i, std::vector<Candidate>& found) {
     if (i + kFusedAhead < fused.size()) prefetchFused(level, i + kFusedAhead);
@@ -69,6 +71,7 @@ void OpenVertices::prefetchFused(const LevelFusions& level, std::size_t i) const
 // The candidates of these vertices, found in parallel, kept in order: find(proposer, index, found).
 template <class Find>
 void OpenVertices::collect(std::span<const VertexId> vertices, const Find& find) {
+  assert(proposers_.size() == workers_.count());
   found_.resize(std::max(found_.size(), std::min(vertices.size(), kCollected)));
   for (std::size_t first = 0; first < vertices.size(); first += kCollected) {
     const auto part = vertices.subspan(first, std::min(kCollected, vertices.size() - first));
@@ -92,6 +95,7 @@ void OpenVertices::fill(std::vector<QueueEntry>& entries) {
       // what its old neighbours forbade the new ones may allow
       if (candidates.hasFailed(v) && state_.changes().isLocked(v)) candidates.restart(v);
       const Candidate* best = state_.bestAlive(v);
+      assert(left.vertices <= i && left.entries <= left.vertices);
       vertices_[left.vertices] = v;
       left.vertices += !candidates.isEmpty(v);
       entries[left.entries] = {best ? best->key : 0, v};
@@ -101,6 +105,7 @@ void OpenVertices::fill(std::vector<QueueEntry>& entries) {
   });
   joinRuns(vertices_, filled, &Filled::vertices);
   joinRuns(entries, filled, &Filled::entries);
+  assert(entries.size() <= vertices_.size());
 }
 
 }  // namespace qtet

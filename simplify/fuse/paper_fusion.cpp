@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/heap/fibonacci_heap.hpp>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -96,6 +97,7 @@ class PaperSimplifier {
       throwIfStopped(options_.stop);
       const CellId cell = heap_.top().cell;
       heap_.pop();
+      assert(queued_[cell] && mesh_.isLive(cell));
       queued_[cell] = 0;
       if (options_.progress && ++extracted_ % kProgressEvery == 0)
         options_.progress(1 - static_cast<double>(heap_.size()) / static_cast<double>(cells_));
@@ -107,8 +109,10 @@ class PaperSimplifier {
         updateHeap();
       }
     }
+    assert(figures_.fusions == mesh_.fusions() && mesh_.liveTetrahedra() <= cells_);
     figures_.removed = cells_ - mesh_.liveTetrahedra();
     figures_.fuseSeconds = secondsSince(start);
+    assert(nextLevel_.size() == mesh_.vertexSlots());
     PaperFusion out{mesh_.takeHistory(levels_), figures_};
     // Independent fusions may change places; the fused vertices give the order of doing.
     std::ranges::sort(out.history.fusions, {},
@@ -117,7 +121,10 @@ class PaperSimplifier {
   }
 
  private:
-  [[nodiscard]] Prey preyOf(CellId c) const { return {4, mesh_.cell(c)}; }
+  [[nodiscard]] Prey preyOf(CellId c) const {
+    assert(c < cells_ && mesh_.isLive(c));
+    return {4, mesh_.cell(c)};
+  }
 
   /// Where PQEM(T) is least, the barycentre where that is no one point (Eq. 6-7). Relative to the
   /// first prey vertex.

@@ -1,9 +1,11 @@
 #include "simplify/fuse/qtetfusion.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
+#include "proto/limits.h"
 #include "simplify/fuse/fusion_loop.h"
 #include "simplify/fuse/fusion_state.h"
 #include "simplify/mesh/stopping.h"
@@ -27,6 +29,7 @@ Result<FusionHistory> simplifyAll(const LatticeMesh& mesh, const FusionOptions& 
   const std::uint32_t done = first ? first(state, frame) : 0;
   const Result<std::uint32_t> levels = FusionLoop(state, frame, options, workers, done).run(target);
   if (!levels) return std::unexpected(levels.error());
+  assert(*levels >= done && *levels <= kMaxLevels);
   return state.takeHistory(*levels);
 }
 

@@ -32,6 +32,7 @@ float EntrySorter::keepCheapest(std::vector<QueueEntry>& entries, double quantil
   for (const QueueEntry& e : entries)
     if (const std::uint32_t rank = rankOf(e); rank >> (32 - kDigitBits) == digit)
       ranks_.push_back(rank);
+  assert(at >= before && at - before < ranks_.size());
   const auto nth = ranks_.begin() + static_cast<std::ptrdiff_t>(at - before);
   std::nth_element(ranks_.begin(), nth, ranks_.end());
   const std::uint32_t limit = *nth;
@@ -43,6 +44,7 @@ float EntrySorter::keepCheapest(std::vector<QueueEntry>& entries, double quantil
     entries[kept] = e;
     kept += rank <= limit;
   }
+  assert(kept > at);
   entries.resize(kept);
   sort(entries);
   return key;

@@ -1,5 +1,6 @@
 #include "simplify/legality/allowed_space.h"
 
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
@@ -28,6 +29,8 @@ bool areCubesWorthIt(const TriangleTree& tree, std::size_t triangles, double tol
 
 AllowedSpace::AllowedSpace(const FusionMesh& mesh, double tolerance)
     : surface_(mesh), tolerances_(localTolerances(surface_.tree(), tolerance)) {
+  assert(tolerance > 0 && tolerances_.own.size() == surface_.tree().builtOver());
+  assert(tolerances_.least >= 0 && tolerances_.most <= tolerance);
   if (!areCubesWorthIt(surface_.tree(), tolerances_.own.size(), tolerance)) return;
   cells_ = NearCells(surface_.tree(), tolerances_.own, tolerance, [this](const Vector3& p) {
     NearestTriangle nearest;

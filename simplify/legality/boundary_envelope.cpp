@@ -23,6 +23,7 @@ constexpr double kRoundingReach = 0.87;  // sqrt(3) / 2 lattice steps
 }  // namespace
 
 void BoundaryEnvelope::gather(const Prey& prey) {
+  assert(prey.k >= 2 && prey.k <= 4);
   assert(starCellsOf(mesh_, prey) <= kMaxStarCells);
   origin_ = mesh_.position(prey.vertex[0]);
   faces_.clear();
@@ -49,6 +50,7 @@ void BoundaryEnvelope::addFaces(const Prey& prey) {
 // `from`: one of its corners, relative to the first prey vertex. Where doubles are exact each gives
 // the same plane.
 inline void BoundaryEnvelope::addFace(const Face& face, const Vector3& from) {
+  assert(mesh_.isLive(face.ghost) && face.moving < 3);
   const BoundaryPlane& plane = mesh_.plane(face.ghost);
   const double allowed = plane.inverseLength > 0 ? 0 : -std::numeric_limits<double>::infinity();
   double height = dot(plane.normal, from);
@@ -75,6 +77,7 @@ inline void BoundaryEnvelope::addFace(const Face& face, const Vector3& from) {
 }
 
 bool BoundaryEnvelope::turnsTooFar(const Face& face, const LatticePoint& p) const {
+  assert(face.stays && face.moving < 3);
   const auto& cell = mesh_.cell(face.ghost);
   const Vector3& old = mesh_.plane(face.ghost).normal;
   const Vector3 from = mesh_.position(cell[(face.moving + 1) % 3]);
@@ -121,6 +124,7 @@ inline bool BoundaryEnvelope::isOutside(const Face& face, double side, const Pro
 // The tetrahedra of p and each triangle that it is beyond are all that the solid gains.
 bool BoundaryEnvelope::staysNear(const AllowedSpace& allowed, const LatticePoint& p,
                                  DistanceCells& known) const {
+  assert(isOnLattice(p, mesh_.latticeBits()));
   const Probe probe = probeOf(p);
   for (std::size_t i = 0; i < faces_.size(); ++i) {
     if (outsideOf(i / 2, probe)[i % 2] == 0) continue;
@@ -145,6 +149,7 @@ inline Pair BoundaryEnvelope::heightsOf(const Planes& planes, const Probe& probe
 // lies outside if and only if doubles say so.
 inline BoundaryEnvelope::Lanes BoundaryEnvelope::outsideOf(std::size_t i,
                                                            const Probe& probe) const {
+  assert(i < planes().size());
   const Pair side = heightsOf(planes_[i], probe);
   if (mesh_.latticeBits() <= kExactBits) return side > 0;
   Lanes out = probe.error > 0 ? side >= -probe.error : side > 0;
@@ -201,7 +206,9 @@ inline std::optional<std::size_t> BoundaryEnvelope::farthestFace(const Probe& pr
   if (farthest[0] < 0 && farthest[1] < 0) return std::nullopt;
   const bool isSecond =
       farthest[1] != farthest[0] ? farthest[1] > farthest[0] : where[1] < where[0];
-  return 2 * static_cast<std::size_t>(where[isSecond]) + isSecond;
+  const std::size_t face = 2 * static_cast<std::size_t>(where[isSecond]) + isSecond;
+  assert(face < faces_.size());
+  return face;
 }
 
 // Leads from the point back onto the plane of this face. To keep a distance, it also leads away
@@ -212,6 +219,7 @@ Vector3 BoundaryEnvelope::wayBack(std::size_t face, const Probe& probe, const Ve
     const TwoVectors& normal = planes_[i / 2].normal;
     return {normal[0][i % 2], normal[1][i % 2], normal[2][i % 2]};
   };
+  assert(face < faces_.size() && std::isfinite(planes_[face / 2].allowed[face % 2]));
   const Planes& planes = planes_[face / 2];
   const double outside = beyond(planes, probe, both(past, past))[face % 2];
   Vector3 back = (outside * planes.inverseLength[face % 2]) * normalOf(face);

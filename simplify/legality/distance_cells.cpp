@@ -1,6 +1,7 @@
 #include "simplify/legality/distance_cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <utility>
 
@@ -40,17 +41,20 @@ Vector3 LatticeCube::middle() const {
 
 DistanceCells::Slot& DistanceCells::slotOf(const LatticeCube& cube) {
   if (2 * taken_ >= slots_.size()) grow();
+  assert(2 * taken_ < slots_.size());
   Slot& slot = find(cube);
   taken_ += !slot.isTaken;
   return slot;
 }
 
 DistanceCells::Slot& DistanceCells::find(const LatticeCube& cube) {
+  assert(taken_ < slots_.size() && std::has_single_bit(slots_.size()));
   for (std::size_t i = hashOf(cube) & (slots_.size() - 1);; i = (i + 1) & (slots_.size() - 1))
     if (!slots_[i].isTaken || slots_[i].cube == cube) return slots_[i];
 }
 
 void DistanceCells::grow() {
+  assert(slots_.size() <= kMaxSlots && 2 * taken_ >= slots_.size());
   const bool isFull = slots_.size() == kMaxSlots;
   std::vector<Slot> old(isFull ? kMaxSlots : std::max(kFirstSlots, 2 * slots_.size()));
   std::swap(old, slots_);

@@ -29,6 +29,7 @@ bool hasTwo(Mask mask) {
 bool hasCommonChord(const LocalStar& star, std::span<RingVertex> vertices) {
   for (const auto& t : star.turned())
     for (std::size_t e = 0; e < 3; ++e) {
+      assert(t[e] < vertices.size() && t[3] < 2);
       RingVertex& from = vertices[t[e]];
       from.chords[t[3]] |= vertices[t[(e + 1) % 3]].own & ~from.joined;
     }
@@ -56,6 +57,9 @@ bool edgeKeepsTopology(const LocalStar& star) {
   const auto ring = star.ring();
   assert(star.prey().k == 2 && ring.size() <= kMaxRing);
   std::array<RingVertex, LocalVertices::kMax> room;
+  assert(star.vertices().size() <= room.size());
+  assert(star.ofFirst().affected <= star.turned().size());
+  assert(star.ofFirst().vertices <= star.vertices().size());
   const std::span<RingVertex> vertices = std::span(room).first(star.vertices().size());
   std::ranges::fill(vertices, RingVertex{});
   for (const auto& t : star.turned().subspan(star.ofFirst().affected))

@@ -15,6 +15,7 @@ namespace {
 inline bool flips(const FusionMesh& mesh, const Prey& prey, std::uint32_t i, CellId c,
                   const Vector3& place, double error) {
   const auto& cell = mesh.cell(c);
+  assert(mesh.isLive(c) && !mesh.isGhost(c) && mesh.holds(c, prey.vertex[i]));
   for (std::uint32_t j = 0; j < prey.k; ++j)
     if (j != i && mesh.holds(c, prey.vertex[j])) return false;
   const VertexId v = prey.vertex[i];
@@ -27,6 +28,7 @@ inline bool flips(const FusionMesh& mesh, const Prey& prey, std::uint32_t i, Cel
 }  // namespace
 
 bool FlipCheck::flipsAt(const Prey& prey, const LatticePoint& p, std::uint32_t moving) const {
+  assert(moving < 1u << prey.k);
   const Vector3 place = toVector(p);
   // Coordinates reach as far as the lattice; what is too close to call is not called.
   const double error =

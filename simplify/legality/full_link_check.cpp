@@ -30,6 +30,7 @@ void FullLinkCheck::build(const Star& star) {
     const auto& cell = mesh_->cell(star.affected[i]);
     const auto at = static_cast<std::size_t>(std::ranges::find(cell, prey_.vertex[star.labels[i]]) -
                                              cell.begin());
+    assert(at < 4 && star.labels[i] < prey_.k);
     const auto turned = withLast(cell, at);
     link_.add(turned[0], turned[1], turned[2]);
   }
@@ -42,6 +43,7 @@ bool FullLinkCheck::deletedOnLink(const Star& star) const {
     std::size_t n = 0;
     for (const VertexId v : mesh_->cell(c))
       if (preyIndex(v) < 0) stay[n++] = link_.localOf(v);
+    assert(n <= 2);  // or it had but one prey vertex
     if (n == 2 && link_.triangleAtEdge(stay[0], stay[1]) == kNoNeighbour) return false;
   }
   return true;
@@ -55,6 +57,7 @@ bool FullLinkCheck::patchIsDisc(const Star& star) const {
   std::int64_t faces = ring;
   for (const CellId c : star.deleted)
     faces += std::ranges::find(mesh_->cell(c), kGhost) != mesh_->cell(c).end();
+  assert(faces >= ring);
   if (faces == 0) return true;
   std::int64_t inner = 0;
   for (const VertexId v : prey_.vertices()) inner += mesh_->onBoundary(v);
@@ -63,6 +66,7 @@ bool FullLinkCheck::patchIsDisc(const Star& star) const {
 }
 
 bool FullLinkCheck::describable(const Star& star) {
+  assert(link_.triangles().size() == star.labels.size());
   for (std::uint32_t i = 0; i < star.labels.size(); ++i) link_.label(i, star.labels[i]);
   truth_.clear();
   for (const CellId c : star.deleted) {

@@ -16,6 +16,7 @@ FusionCheck::FusionCheck(const FusionMesh& mesh, const FusionLimits& limits)
       moved_(mesh, star_, limits_.displacements) {}
 
 bool FusionCheck::gatherBoundary(const Prey& prey) {
+  assert(prey.k >= 2 && prey.k <= 4);
   if (starCellsOf(mesh_, prey) > kMaxStarCells) return false;
   prey_ = prey;
   envelope_.gather(prey);

@@ -82,10 +82,14 @@ class FusionCheck {
   /// Whether a cell would flip at one of them with the prey at p (moved_check.h). REQUIRES gather.
   [[nodiscard]] bool flipsMoved(const LatticePoint& p,
                                 std::span<const std::int32_t> integers) const {
+    assert(isGathered() && mayMove());
     return moved_.flipsAt(p, integers);
   }
   /// The worst shape in the star as it is. REQUIRES gather.
-  [[nodiscard]] double oldShape() const { return shapes_.old(); }
+  [[nodiscard]] double oldShape() const {
+    assert(isGathered());
+    return shapes_.old();
+  }
 
   [[nodiscard]] const Star& star() const { return star_.star(); }
   /// The same for good: until the next gather there is none here.

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
+#include "proto/limits.h"
 #include "simplify/mesh/vector3.h"
 
 namespace qtet {
@@ -19,12 +21,14 @@ inline constexpr double kDistanceRounding = 0x1p-18;
 /// A bound on the rounding errors of volumes with an apex at d over triangles of this reach, on a
 /// lattice of so many bits. Both relative to the same origin.
 [[nodiscard]] inline double roundingAt(const Vector3& d, double reach, int latticeBits) {
+  assert(reach >= 0);
   if (latticeBits <= kExactBits) return 0;
   const double farthest = std::max({reach, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
   return farthest < 1 << kExactBits ? 0 : kRounding * farthest * farthest * farthest;
 }
 
 [[nodiscard]] inline bool isOnLattice(const LatticePoint& p, int bits) {
+  assert(bits > 0 && bits <= kMaxPositionBits);
   const auto end = std::int64_t{1} << bits;
   return std::ranges::all_of(p, [&](std::int32_t x) { return x >= 0 && x < end; });
 }

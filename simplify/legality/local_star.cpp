@@ -1,6 +1,7 @@
 #include "simplify/legality/local_star.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 
 #include "codec/mesh/growing_mesh.h"
@@ -18,6 +19,8 @@ bool LocalStar::gather(const Prey& prey) {
   for (const VertexId v : prey.vertices()) (void)vertices_.intern(v);
   if (prey.k == 2 ? !addStars<2>() : prey.k == 3 ? !addStars<3>() : !addStars<4>()) return false;
   if (star_.affected.size() > kMaxStarCells / 2) return false;
+  assert(star_.labels.size() == star_.affected.size());
+  assert(vertices_.ids().size() >= prey.k);
   star_.link.assign(vertices_.ids().begin() + prey.k, vertices_.ids().end());
   return true;
 }
@@ -41,6 +44,7 @@ bool LocalStar::addStars() {
     }
     star_.affected.insert(star_.affected.end(), staying.begin(),
                           staying.begin() + static_cast<std::ptrdiff_t>(stayingCount));
+    assert(stayingCount + goingCount <= mesh_.star(prey_.vertex[i]).size());
     star_.labels.resize(before + stayingCount, static_cast<std::uint8_t>(i));
     std::size_t ghosts = 0;  // come first in every star
     while (ghosts < stayingCount && mesh_.isGhost(staying[ghosts])) ++ghosts;
@@ -60,6 +64,7 @@ inline void LocalStar::addAffected(std::size_t before, std::uint32_t from) {
   LocalVertices::Adding adding(vertices_);
   auto* local = &turned_[before];
   for (const CellId c : std::span(star_.affected).subspan(before)) {
+    assert(mesh_.isLive(c) && mesh_.holds(c, v));
     const auto& cell = mesh_.cell(c);
     const auto turned = withLast(cell, onlyCorner(cornersThatAre(cell, v)));
     const Local x = adding.intern(turned[0]), y = adding.intern(turned[1]),
@@ -83,6 +88,7 @@ inline bool LocalStar::addDeleted(std::span<const CellId> cells) {
       local[corner == 0 ? 4 : onlyCorner(corner)] = i;
       prey |= corner;
     }
+    assert(std::popcount(prey) >= 2);
     const OtherCorners& others = kOtherCorners[prey];
     std::array<Local, 2> other{};
     std::size_t singular = 0;
@@ -93,6 +99,7 @@ inline bool LocalStar::addDeleted(std::span<const CellId> cells) {
     }
     maxSingular = std::max(maxSingular, singular);
     if (k == 2) ring_[at] = other;
+    assert(mesh_.isLive(cells[at]));
     innerDeleted_.addIf(!mesh_.isGhost(cells[at]), {local[0], local[1], local[2], local[3]});
   }
   star_.deleted.insert(star_.deleted.end(), cells.begin(), cells.end());

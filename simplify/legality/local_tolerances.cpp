@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -38,6 +39,7 @@ class Lookout {
       : tree_(tree), reach_(most / kShare), most_(most), out_(tree.builtOver(), floatBelow(most)) {}
 
   void lookFrom(std::uint32_t triangle) {
+    assert(triangle < out_.size());
     const auto corners = tree_.corners(triangle);
     const Vector3 u = corners[1] - corners[0], v = corners[2] - corners[0], normal = cross(u, v);
     const double length = std::sqrt(dot(normal, normal));
@@ -65,6 +67,7 @@ class Lookout {
                      const double at = passingAt(from, along, corners);
                      if (at >= -kEdge && at < nearest) nearest = std::max(at, 0.0), hit = other;
                    });
+    assert(hit < out_.size() && nearest >= 0 && nearest <= 1);
     for (const std::uint32_t t : {triangle, hit})
       out_[t] = std::min(out_[t], floatBelow(nearest * most_));
   }
@@ -77,6 +80,7 @@ class Lookout {
 }  // namespace
 
 std::vector<float> localTolerances(const TriangleTree& tree, double most) {
+  assert(most > 0);
   Lookout lookout(tree, most);
   for (std::uint32_t t = 0; t < tree.builtOver(); ++t) lookout.lookFrom(t);
   return lookout.take();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <tuple>
 
@@ -38,12 +39,14 @@ double squaredToBox(const Vector3& p, const Vector3& low, const Vector3& high) {
 
 NearCells::NearCells(const TriangleTree& tree, std::span<const float> tolerances, double most,
                      const IsInside& isInside) {
+  assert(tolerances.size() == tree.builtOver());
   double extent = 1;
   for (std::uint32_t t = 0; t < tolerances.size(); ++t)
     for (const Vector3& c : tree.corners(t)) extent = std::max({extent, c[0], c[1], c[2]});
   if (!(kLength * most >= 1) || kMaxAlong * kLength * most <= extent + most) return;
   length_ = std::floor(std::min(kLength * most, extent));
   const auto cells = static_cast<std::int32_t>((extent + most) / length_) + 1;
+  assert(length_ >= 1 && cells > 0);
   blockCounts_.fill((cells >> kBlockBits) + 1);
   directory_.assign(placeOf({0, 0, blockCounts_[2]}), kUnknown);
   rootBits_ = std::bit_width(static_cast<std::uint32_t>(blockCounts_[0] * kBlockLength - 1));
@@ -61,6 +64,7 @@ NearCells::NearCells(const TriangleTree& tree, std::span<const float> tolerances
 }
 
 std::size_t NearCells::placeOf(const Cell& block) const {
+  assert(block[0] >= 0 && block[1] >= 0 && block[2] >= 0);
   return (static_cast<std::size_t>(block[2]) * blockCounts_[1] + block[1]) * blockCounts_[0] +
          block[0];
 }
@@ -79,6 +83,7 @@ Vector3 NearCells::middleOf(const Cell& low, double cells) const {
 
 std::uint32_t NearCells::blockOf(const Cell& cell) {
   const Cell block{cell[0] >> kBlockBits, cell[1] >> kBlockBits, cell[2] >> kBlockBits};
+  assert(isBlock(block));
   std::uint32_t& own = directory_[placeOf(block)];
   if (own == kUnknown) {
     own = static_cast<std::uint32_t>(blocks_.size()) + kFirstBlock;
@@ -108,6 +113,7 @@ void NearCells::spread(const Spread& of) {
 
 // All cubes of a node within a block are near already.
 bool NearCells::isAllNear(const Node& node) const {
+  assert(node.bits >= 0 && node.bits <= kBlockBits);
   const std::uint32_t own = directory_[placeOf(
       {node.low[0] >> kBlockBits, node.low[1] >> kBlockBits, node.low[2] >> kBlockBits})];
   if (own < kFirstBlock) return false;
@@ -159,6 +165,7 @@ bool NearCells::isNear(const Cell& cell) const {
 }
 
 bool NearCells::areNear(const Cell& low, const Cell& high) const {
+  assert(low[0] <= high[0] && low[1] <= high[1] && low[2] <= high[2]);
   // the bits from `from` to `to`
   const auto run = [](int from, int to) { return (2u << to) - (1u << from); };
   Cell block{};
@@ -175,6 +182,7 @@ bool NearCells::areNear(const Cell& low, const Cell& high) const {
           first[k] = std::max(low[k] - origin, 0);
           last[k] = std::min(high[k] - origin, kBlockLength - 1);
         }
+        assert(first[0] <= last[0] && first[1] <= last[1] && last[0] < kBlockLength);
         std::uint64_t square = 0;
         for (std::int32_t y = first[1]; y <= last[1]; ++y)
           square |= std::uint64_t{run(first[0], last[0])} << 8 * y;
@@ -202,6 +210,7 @@ void NearCells::findInside(const IsInside& isInside) {
 // decides for each.
 void NearCells::fillBlock(const Cell& block, const IsInside& isInside) {
   const std::uint32_t number = directory_[placeOf(block)] - kFirstBlock;
+  assert(number < blocks_.size() && passed_.size() == blocks_.size());
   Block& near = blocks_[number];
   constexpr std::uint64_t kNotFirst = 0xfefefefefefefefe, kNotLast = 0x7f7f7f7f7f7f7f7f;
   Block open, inside{};
@@ -235,6 +244,7 @@ void NearCells::fillBlock(const Cell& block, const IsInside& isInside) {
 // The same of whole blocks that have no other cubes.
 void NearCells::fillEmpty(const Cell& first, const IsInside& isInside,
                           std::vector<std::uint8_t>& isSeen) {
+  assert(directory_[placeOf(first)] == kUnknown);
   const bool isIn = isInside(middleOf(firstOf(first, kBlockLength), kBlockLength));
   std::vector<Cell> waiting{first};
   isSeen[placeOf(first)] = 1;
@@ -257,6 +267,7 @@ void NearCells::fillEmpty(const Cell& first, const IsInside& isInside,
 // The last corner is where the prey goes: if anything lies too far outside, it often does. Most
 // tetrahedra have nothing but near cubes in their whole box.
 bool NearCells::holds(const Corners& tetrahedron) const {
+  assert(isKnown());
   Corners at = tetrahedron;
   for (Vector3& c : at) c = 1 / length_ * c;
   Cell last{}, low{}, high{};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -72,12 +73,14 @@ OriginalSurface::Tolerances::Tolerances(std::vector<float> each) : own(std::move
   if (own.empty()) return;
   const auto [low, high] = std::ranges::minmax_element(own);
   least = *low, most = *high;
+  assert(least >= 0);
 }
 
 OriginalSurface::OriginalSurface(const FusionMesh& mesh) {
   std::vector<VertexId> vertices;
   collect(mesh, vertices);
   findNeighbours();
+  assert(vertices.size() == points_.size() && neighbours_.size() == triangles_.size());
   std::vector<std::uint32_t> ids(triangles_.size());
   std::iota(ids.begin(), ids.end(), 0u);
   tree_ = std::make_unique<TriangleTree>(points_, triangles_, std::move(ids));
@@ -162,6 +165,7 @@ Vector3 OriginalSurface::normalAt(const NearestTriangle& nearest) const {
 }
 
 bool OriginalSurface::isInside(const Vector3& p, const NearestTriangle& nearest) const {
+  assert(nearest.triangle < triangles_.size());
   const Vector3 normal = normalAt(nearest);
   const Vector3 from = p - blend(tree_->corners(nearest.triangle), nearest.point.weights);
   const double along = dot(normal, from);
@@ -173,6 +177,7 @@ SignedDistance OriginalSurface::distanceOf(const LatticeCube& cube) const {
   const double near = kNear * cube.length();
   NearestTriangle nearest;
   tree_->nearest(p, nearest, near * near);
+  assert(nearest.triangle < triangles_.size());
   const double distance = std::sqrt(nearest.point.squared);
   const bool isIn = distance > near && isInside(p, nearest);
   const double outside = (isIn ? -distance : distance) + kDistanceRounding;
@@ -189,6 +194,7 @@ SignedDistance OriginalSurface::distanceOf(const LatticeCube& cube) const {
 // too far, it is soon found.
 bool OriginalSurface::holds(const Corners& tetrahedron, const Tolerances& tolerances,
                             DistanceCells& known, int maxCuts) const {
+  assert(tolerances.own.size() == triangles_.size() && maxCuts >= 0);
   struct Piece {
     Corners corners;
     double outside;
@@ -205,6 +211,7 @@ bool OriginalSurface::holds(const Corners& tetrahedron, const Tolerances& tolera
         LatticeCube::at(centre, static_cast<int>(std::bit_width(size | 1)) - 1);
     const SignedDistance from = known.at(cube, [&] { return distanceOf(cube); });
     const double reach = radiusOf(corners, cube.middle());
+    assert(from.nearest < tolerances.own.size());
     const double tolerance = tolerances.own[from.nearest];
     if (from.outside - reach > tolerance + kDistanceRounding) return false;
     if (from.outside + reach > (from.outside < 0 ? tolerances.least : tolerance) &&

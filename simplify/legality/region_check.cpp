@@ -27,6 +27,7 @@ bool RegionCheck::passes(const FusionMesh& mesh, const Prey& prey, const Star& s
   for (const CellId c : star.deleted)
     if (!addCell(mesh, prey, c, false) || regions_.size() > onLink) return false;
   if (onLink == 1) return true;
+  assert(!simplices_.empty() && onLink <= kMaxRegions);
   merge();
   for (const Simplex& s : simplices_)
     if (s.ofLink != 0 && s.ofLink != s.regions) return false;
@@ -44,6 +45,7 @@ bool RegionCheck::addCell(const FusionMesh& mesh, const Prey& prey, CellId c, bo
   if (at == regions_.size()) regions_.push_back(region);
   std::array<VertexId, 4> cell = mesh.cell(c);
   std::ranges::sort(cell);  // kGhost last
+  assert((cell[3] == kGhost) == (region == FusionMesh::kOutside));
   const unsigned corners = cell[3] == kGhost ? 3 : 4;
   for (unsigned subset = 1; subset < 1u << corners; ++subset) {
     Simplex s{{kNoVertex, kNoVertex, kNoVertex, kNoVertex}, 0, static_cast<Mask>(1u << at), 0};
@@ -89,6 +91,7 @@ bool RegionCheck::isContractible(Mask regions) {
     if (s.size == 1) corners_.push_back(s.vertex[0]);
   }
   if (characteristic != 1) return false;
+  assert(!corners_.empty() && std::ranges::is_sorted(corners_));
   parent_.resize(corners_.size());
   std::iota(parent_.begin(), parent_.end(), 0u);
   std::size_t parts = corners_.size();
@@ -97,6 +100,7 @@ bool RegionCheck::isContractible(Mask regions) {
   };
   for (const Simplex& s : simplices_) {
     if (s.size != 2 || (s.regions & regions) != regions) continue;
+    assert(local(s.vertex[0]) < corners_.size() && local(s.vertex[1]) < corners_.size());
     const std::uint32_t a = root(local(s.vertex[0])), b = root(local(s.vertex[1]));
     if (a != b) parent_[a] = b, --parts;
   }

@@ -65,11 +65,13 @@ void StarShapes::measure() {
   for (std::size_t i = 0; i < deleted.size(); i += 2)
     worst = std::min(
         worst, worstSquared(deleted[i], deleted[std::min(i + 1, deleted.size() - 1)], places));
+  assert(worst >= 0 && worst <= 1);
   old_ = std::sqrt(worst);
 }
 
 // Returns the worse shape of the two as they are, squared.
 inline double StarShapes::addBases(std::uint32_t i, std::uint32_t j, Places places) {
+  assert(i < star_.turned().size() && j < star_.turned().size());
   const auto& s = star_.turned()[i];
   const auto& t = star_.turned()[j];
   const TwoVectors a = both(places[s[0]], places[t[0]]), b = both(places[s[1]], places[t[1]]),
@@ -88,6 +90,8 @@ inline double StarShapes::addBases(std::uint32_t i, std::uint32_t j, Places plac
 }
 
 double StarShapes::at(const LatticePoint& p, double least) const {
+  assert(bases_.size() == (star_.inner().size() + 1) / 2);
+  assert(least >= 0 && old_ >= 0 && old_ <= 1);
   const Vector3 d = toVector(p) - origin_;
   const double distance = 3 * dot(d, d), rounding = roundingAt(d, reach_, mesh_.latticeBits());
   const TwoVectors twice = both(d, d);
@@ -96,6 +100,7 @@ double StarShapes::at(const LatticePoint& p, double least) const {
   double worst = 1;
   for (std::size_t n = 0; n < bases_.size(); ++n) {
     const std::size_t i = n == 0 ? suspect_ : n == suspect_ ? 0 : n;
+    assert(i < bases_.size());
     const Bases& bases = bases_[i];
     Pair volume = dot(bases.normal, twice) - bases.height;
     Pair squares = bases.squares + distance - 2 * dot(twice, bases.corners);
@@ -125,6 +130,7 @@ double StarShapes::at(const LatticePoint& p, double least) const {
 double StarShapes::exactVolume6(std::uint32_t affected, const LatticePoint& p,
                                 bool& allowed) const {
   const Star& star = star_.star();
+  assert(affected < star.affected.size() && star.labels[affected] < star_.prey().k);
   const auto& cell = mesh_.cell(star.affected[affected]);
   const VertexId apex = star_.prey().vertex[star.labels[affected]];
   const auto t = withLast(cell, onlyCorner(cornersThatAre(cell, apex)));

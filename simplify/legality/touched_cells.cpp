@@ -1,5 +1,7 @@
 #include "simplify/legality/touched_cells.h"
 
+#include <cassert>
+
 namespace qtet {
 namespace {
 
@@ -40,6 +42,7 @@ CellRows::CellRows(const Corners& corners) {
     low_[k] = std::max(low_[k] - kTouchSlack, 0.0), high_[k] += kTouchSlack;
     extent = std::max(extent, high_[k] - low_[k]);
   }
+  assert(low_[0] <= high_[0] && low_[1] <= high_[1] && low_[2] <= high_[2]);
   slack_ = kHeightSlack * extent * extent;
   for (std::size_t i = 0; i < 4; ++i) addFace(i);
   for (std::size_t i = 0; i < 4; ++i)

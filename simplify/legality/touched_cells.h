@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +25,10 @@ class CellRows {
 
   explicit CellRows(const Corners& corners);
   /// Number 0 is the axis of the rows.
-  [[nodiscard]] std::size_t axis(std::size_t number) const { return axes_[number]; }
+  [[nodiscard]] std::size_t axis(std::size_t number) const {
+    assert(number < 3);
+    return axes_[number];
+  }
   [[nodiscard]] const Vector3& low() const { return low_; }
   [[nodiscard]] const Vector3& high() const { return high_; }
   /// Narrows a range of the second axis to what the layer at `third` may touch.

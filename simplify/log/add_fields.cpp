@@ -28,6 +28,7 @@ namespace {
 template <class T>
 std::vector<T> inLogOrder(const std::vector<T>& values, std::uint32_t components,
                           const std::vector<std::uint32_t>& logs) {
+  assert(values.size() == logs.size() * components);
   std::vector<T> out(values.size());
   for (std::size_t i = 0; i < logs.size(); ++i)
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * components), components,
@@ -38,8 +39,10 @@ std::vector<T> inLogOrder(const std::vector<T>& values, std::uint32_t components
 /// How many predictions a field rests on in a row, if its parents' are known.
 std::size_t depthOf(const TimePrediction& prediction, const std::vector<std::size_t>& depths) {
   std::size_t out = 0;
-  for (const TimePrediction::Parent& parent : prediction.all())
+  for (const TimePrediction::Parent& parent : prediction.all()) {
+    assert(parent.field < depths.size());
     out = std::max(out, 1 + depths[parent.field]);
+  }
   return out;
 }
 
@@ -65,6 +68,8 @@ std::vector<std::size_t> decodingOrderOf(const std::vector<FieldInfo>& before,
 
 /// The same step, and whole ranges of room below, one at least and as many as the box needs.
 FieldInfo withRoomBelow(FieldInfo scale, const FieldExtents& box) {
+  assert(box.minimum.size() == scale.components && scale.minimum.size() == scale.components);
+  assert(scale.bits < kMaxScaleBits);
   const auto isBelow = [&] {
     for (std::size_t c = 0; c < scale.components; ++c)
       if (box.minimum[c] < scale.minimum[c]) return true;
@@ -127,6 +132,8 @@ Status FieldAdder::matchTo(const TetMesh& mesh) {
   Result<MeshMatch> match =
       matchMesh(placed->mesh, std::span(h.points).first(history_->vertices), finest_);
   if (!match) return std::unexpected(match.error());
+  assert(match->points.size() == mesh.points.size());
+  assert(match->tetrahedra.size() == mesh.tetrahedra.size());
   match_ = std::move(*match);
   matched_.points = mesh.points, matched_.tetrahedra = mesh.tetrahedra;
   return {};
@@ -339,6 +346,7 @@ Result<LevelErrors> FieldAdder::measure(std::span<const Item> items, FieldReplay
     if (items[f].isLabel) measure.labels.push_back(f);
   FusionHistory& h = history_->history;
   // the others may have missing values
+  assert(items.size() <= h.fields.size() && h.values.size() == h.fields.size());
   const auto others = static_cast<std::ptrdiff_t>(h.fields.size() - items.size());
   std::vector<FieldInfo> fields(h.fields.begin(), h.fields.begin() + others);
   std::vector<std::vector<std::int32_t>> values;
@@ -363,6 +371,7 @@ Result<std::vector<LiftingRules>> FieldAdder::lift(std::span<Item> items) {
   Result<std::vector<LiftingRules>> rules = history_->valueCodec == CodecId::kLifted
                                                 ? liftMeasured(items, *errors, replay)
                                                 : std::vector<LiftingRules>(h.fields.size());
+  assert(!rules || rules->size() == h.fields.size());
   if (!rules) return rules;
   for (std::size_t f = 0; f < items.size(); ++f)
     for (const std::optional<LevelError>& level : *errors)
@@ -377,6 +386,7 @@ Result<std::vector<LiftingRules>> FieldAdder::liftMeasured(std::span<const Item>
   std::vector<std::vector<std::uint8_t>> missing;
   for (const Item& item : items) missing.push_back(item.missing);
   LiftOptions options;
+  assert(items.size() <= h.fields.size());
   options.firstField = h.fields.size() - items.size();
   options.missing = missing;
   options.unmeasuredShift = LiftingRule::kNoCorrection;
@@ -466,6 +476,7 @@ Status FieldAdder::takeUnfinished(std::vector<Item>& items) {
   }
   for (const auto& [key, count] : come) {
     std::vector<Instant>& all = series_[key].instants;
+    assert(!all.empty());
     const std::size_t unfinished = (all.size() - 1) % kWindow;
     if (unfinished == 0 || unfinished + count < kWindow) continue;
     const std::size_t before = items.size();
@@ -479,6 +490,7 @@ Status FieldAdder::takeUnfinished(std::vector<Item>& items) {
 void FieldAdder::complete(std::vector<Item>& items, Numbers& numbers) {
   FusionHistory& h = history_->history;
   for (Item& item : items) {
+    assert(numbers.all.size() < h.values.size());
     std::vector<std::int32_t>& values = h.values[numbers.all.size()];
     if (!item.missing.empty())
       values = withMissing(h, item.info, std::move(item.missing), std::move(values));
@@ -525,12 +537,15 @@ AddedFields FieldAdder::take() {
 
 /// The blocks of the history's fields that the log does not have.
 Status FieldAdder::encode(const Numbers& numbers, std::span<const LiftingRules> rules) {
+  assert(numbers.rows.size() <= numbers.all.size() && rules.size() == numbers.all.size());
   const FusionHistory& h = history_->history;
   for (std::size_t i = numbers.rows.size(); i < numbers.all.size(); ++i) {
+    assert(numbers.all[i] >= manifest_.fields.size());
     TimePrediction prediction = h.fields[i].prediction;
     for (std::size_t p = 0; p < prediction.count; ++p)
       prediction.parents[p].field =
           static_cast<std::uint16_t>(numbers.all[prediction.parents[p].field]);
+    assert(depths_.size() == numbers.all[i]);
     depths_.push_back(depthOf(prediction, depths_));
     NewField& field = added_.fields[numbers.all[i] - manifest_.fields.size()];
     field.prediction = prediction;
@@ -557,6 +572,7 @@ Status FieldAdder::code(std::vector<Item> items) {
   if (!rules) return std::unexpected(rules.error());
   complete(ordered, numbers);
   toTimeDifferences(h);
+  assert(numbers.all.size() == h.fields.size());
   if (Status s = encode(numbers, *rules); !s) return s;
   h.fields.clear(), h.values.clear();
   return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -28,7 +29,10 @@ struct LinearMean {
     constant += other.constant;
     slope = slope + other.slope;
   }
-  [[nodiscard]] double at(const Vector3& x) const { return (dot(slope, x) + constant) / weight; }
+  [[nodiscard]] double at(const Vector3& x) const {
+    assert(weight > 0);
+    return (dot(slope, x) + constant) / weight;
+  }
 };
 
 class BestValues {
@@ -39,6 +43,7 @@ class BestValues {
         finest_(finest),
         boundary_(boundaryOf(finest)) {
     for (const LatticePoint& point : history_.points) points_.push_back(toVector(point));
+    assert(vertices_ > 0 && vertices_ <= points_.size());
     Vector3 least = points_[0], most = least;
     for (VertexId v = 1; v < vertices_; ++v)
       for (std::size_t a = 0; a < 3; ++a)
@@ -50,6 +55,7 @@ class BestValues {
   /// Component `c` of all fused vertices.
   void fill(std::vector<std::int32_t>& values, std::size_t c, std::size_t components) {
     const auto at = [&](VertexId v) -> std::int32_t& { return values[v * components + c]; };
+    assert(c < components && values.size() == points_.size() * components);
     means_.assign(points_.size(), {});
     for (const Tetrahedron& cell : finest_) addCell(cell, at);
     for (const Triangle& triangle : boundary_) addTriangle(triangle, at);
@@ -57,6 +63,7 @@ class BestValues {
     for (VertexId v = 1; v < vertices_; ++v)
       least = std::min(least, at(v)), most = std::max(most, at(v));
     for (const Fusion& fusion : history_.fusions) {
+      assert(fusion.fused >= vertices_ && fusion.prey[0] < fusion.fused);
       LinearMean& mean = means_[fusion.fused];
       for (std::size_t i = 0; i < fusion.k; ++i) mean.add(means_[fusion.prey[i]]);
       at(fusion.fused) =
@@ -107,6 +114,7 @@ class BestValues {
 
 std::vector<std::int32_t> fusedValues(const LogHistory& log, std::span<const Tetrahedron> finest,
                                       std::vector<std::int32_t> values, std::uint32_t components) {
+  assert(values.size() == log.vertices * std::size_t{components});
   values.resize(log.history.points.size() * components);
   BestValues best(log, finest);
   for (std::size_t c = 0; c < components; ++c) best.fill(values, c, components);

@@ -1,6 +1,7 @@
 #include "simplify/log/kept_input.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -61,6 +62,7 @@ class FinestValues {
   /// The next field's.
   const std::vector<std::int32_t>& next() {
     const std::size_t f = values_.size();
+    assert(f < history_.fields.size());
     const FieldInfo& info = history_.fields[f];
     std::vector<std::int32_t> values =
         gathered(history_.values[f], info.components, historyElements(info));
@@ -82,6 +84,8 @@ class FinestValues {
 };
 
 Status giveOrder(const FinestMesh& finest, const KeptInput& input, const ClosingSink& give) {
+  assert(finest.historyVertices.size() == input.mesh.points.size());
+  assert(finest.historyCells.size() == input.mesh.tetrahedra.size());
   const DecodedMesh decoded{finest.points, finest.tetrahedra};
   const InputOrder order{inverse(finest.historyVertices), inverse(finest.historyCells),
                          input.mesh.tetrahedra};
@@ -94,6 +98,7 @@ Status giveOrder(const FinestMesh& finest, const KeptInput& input, const Closing
 
 Status giveExact(const FusionHistory& history, const FinestMesh& finest, const TetMesh& input,
                  const std::stop_token& stop, const ClosingSink& give) {
+  assert(input.fields.size() == history.fields.size());
   std::vector<double> positions;
   for (const VertexId v : finest.historyVertices)
     positions.insert(positions.end(), input.points[v].begin(), input.points[v].end());
@@ -145,6 +150,7 @@ std::optional<std::vector<std::uint32_t>> takeOriginalCells(TetMesh& mesh) {
   if (field == mesh.fields.end() || field->type != "int32" || field->components != 1 ||
       std::ranges::any_of(field->values, [](double value) { return value < 0; }))
     return std::nullopt;
+  assert(field->values.size() == mesh.tetrahedra.size());
   std::vector<std::uint32_t> out(field->values.begin(), field->values.end());
   mesh.fields.erase(field);
   return out;

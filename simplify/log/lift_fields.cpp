@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -51,6 +52,7 @@ std::vector<double> sharesOfCells(const FusionHistory& history) {
   double left = all;
   for (std::size_t level = out.size(); level-- > 0;) {
     left -= static_cast<double>(removed[level]);
+    assert(left > 0);
     out[level] = left / all;
   }
   return out;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 
 #include "simplify/mesh/vector3.h"
@@ -18,6 +19,7 @@ struct BoundTriangles {
   bool isAll = true;
 
   void add(std::uint32_t triangle) {
+    assert(count <= triangles.size());
     for (std::size_t i = 0; i < count; ++i)
       if (triangles[i] == triangle) return;
     if (count == triangles.size()) {

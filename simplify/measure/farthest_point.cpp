@@ -1,6 +1,7 @@
 #include "simplify/measure/farthest_point.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -23,8 +24,12 @@ struct Piece {
   std::uint32_t guess;
   double bound;
 
-  void add(const Vector3& corner) { corners[count++] = corner; }
+  void add(const Vector3& corner) {
+    assert(count < kMaxCorners);
+    corners[count++] = corner;
+  }
   [[nodiscard]] Vector3 middle() const {
+    assert(count >= 3);
     Vector3 sum{};
     for (std::size_t i = 0; i < count; ++i) sum = sum + corners[i];
     return 1.0 / static_cast<double>(count) * sum;
@@ -72,6 +77,7 @@ class Search {
 
   /// The squared distance, or any that is not above `limit`.
   double searched(const Vector3& at, std::uint32_t guess, double limit) {
+    assert(limit >= 0);
     ++searches_;
     NearestTriangle nearest;
     tree_.tryTriangle(at, guess, nearest);
@@ -83,6 +89,7 @@ class Search {
   }
 
   void examine(Piece piece) {
+    assert(piece.count >= 3 && piece.count <= kMaxCorners);
     if (isUnder(piece)) return;
     const Vector3 middle = piece.middle();
     double radius = 0;
@@ -102,6 +109,7 @@ class Search {
                                          normal_, std::sqrt(acceptable()));
     if (std::isinf(over.height)) return false;
     nearest_ = over.triangle;
+    assert(over.height >= 0 && over.cover.count > 0);
     bound_.add(over.cover);
     accepted_ = std::max(accepted_, over.height * over.height);
     return true;
@@ -208,11 +216,13 @@ double farthestCorner(const Corners& corners, const Corners& to) {
 }
 
 double withTolerance(double found) {
+  assert(found >= 0);
   return found * (1 + kFarthestTolerance) * (1 + kFarthestTolerance);
 }
 
 FarthestPoint farthestPoint(const TriangleTree& tree, const Corners& corners, std::uint32_t guess,
                             double enough) {
+  assert(tree.builtOver() > 0 && enough >= 0);
   return Search(tree, enough).of(corners, guess);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +28,7 @@ struct ReplayedPlace {
                                     const std::array<double, 4>& weights,
                                     const std::vector<std::int32_t>& values, std::size_t components,
                                     std::size_t component) {
+  assert(component < components);
   const std::size_t count = corners[3] == kGhost ? 3 : 4;
   double out = 0;
   for (std::size_t i = 0; i < count; ++i)
@@ -41,6 +43,7 @@ struct ReplayedPlace {
 template <class IsOriginal>
 [[nodiscard]] FieldError errorOf(const std::vector<double>& squared, std::size_t uniform,
                                  const FieldError& rounding, const IsOriginal& isOriginal) {
+  assert(uniform <= squared.size());
   const double added = rounding.rms * rounding.rms;
   double sum = 0, worst = 0;
   for (std::size_t i = 0; i < squared.size(); ++i) {

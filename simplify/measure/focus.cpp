@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -24,10 +25,14 @@ constexpr std::uint32_t kRoom = 4;
 /// How many cells' middles lie in each bin along one axis.
 class Histogram {
  public:
-  void add(std::int64_t bin) { ++counts_[static_cast<std::size_t>(bin)], ++cells_; }
+  void add(std::int64_t bin) {
+    assert(bin >= 0 && bin < kFocusBins);
+    ++counts_[static_cast<std::size_t>(bin)], ++cells_;
+  }
 
   /// The first bin with which more than `numerator` / kQuantiles of the cells are passed.
   [[nodiscard]] std::uint32_t quantile(std::uint64_t numerator) const {
+    assert(numerator < kQuantiles);
     std::uint64_t passed = 0;
     std::uint32_t bin = 0;
     for (; bin + 1 < kFocusBins; ++bin)
@@ -62,6 +67,7 @@ std::optional<Focus> focusOf(const LatticeMesh& mesh) {
     const Histogram& cells = histograms[axis];
     most = std::max(most, cells.quantile(kBulkTo) - cells.quantile(kBulkFrom));
     const std::uint32_t low = cells.quantile(kFrom), high = cells.quantile(kTo);
+    assert(low <= high);
     extent = std::max(extent, high - low);
     out[axis] = static_cast<std::uint16_t>(low);
     out[axis + 3] = static_cast<std::uint16_t>(high);

@@ -1,6 +1,7 @@
 #include "simplify/measure/label_volumes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "simplify/mesh/vector3.h"
@@ -17,6 +18,7 @@ LabelVolumes::LabelVolumes(const FusionHistory& history, const std::vector<std::
 }
 
 double LabelVolumes::worst() const {
+  assert(finest_.size() == labels_.size());
   const std::vector<Volumes> now = volumes();
   double worst = 0;
   for (std::size_t i = 0; i < finest_.size(); ++i)

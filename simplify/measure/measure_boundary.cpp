@@ -31,7 +31,7 @@ void followFusion(const MeasuredMesh& mesh, const Fusion& fusion, const Vector3&
 
 BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& options)
     : mesh_(mesh), options_(options) {
-  assert(mesh.level() == mesh.history().levels);
+  assert(mesh.level() == mesh.history().levels && options.workers != nullptr);
   const FusionHistory& history = mesh.history();
   const auto onIt = [](const Vector3& at, std::uint32_t ghost) {
     return Followed{at, {ghost, {0, {}}}};
@@ -80,6 +80,7 @@ void BoundaryMeter::followTriangles(const Fusion& fusion) {
     std::ranges::replace(was, fusion.fused, fusion.prey[history.affectedLabels[i]]);
     const Corners corners{toVector(history.points[was[0]]), toVector(history.points[was[1]]),
                           toVector(history.points[was[2]])};
+    assert(history.affectedLabels[i] < fusion.k);
     double& bound = triangleBounds_[mesh_.originalTriangle(ghost)];
     const double distance = std::sqrt(bound) + std::sqrt(nearestOnTriangle(fused, corners).squared);
     bound = distance * distance;
@@ -113,6 +114,7 @@ void BoundaryMeter::follow(std::uint32_t triangle) {
   const auto [a, b, c] = mesh_.originalTree().corners(triangle);
   NearestTriangle nearest;
   followFusion(mesh_, *fusion, 1.0 / 3 * (a + b + c), nearest);
+  assert(mesh_.isGhost(nearest.triangle) && mesh_.history().live[nearest.triangle]);
   followed.near = nearest.triangle;
   followed.bound = std::numeric_limits<double>::infinity();
 }
@@ -130,6 +132,7 @@ BoundaryMeter::Maximum BoundaryMeter::farthestOf(std::span<const std::uint32_t> 
           const Corners corners = mesh_.originalTree().corners(triangles[i]);
           const FarthestPoint point =
               farthestPoint(mesh_.boundaryTree(), corners, followed.near, farthest);
+          assert(point.found <= point.bound);
           of[i] = {point.found, point.bound};
           farthest = std::max(farthest, point.found);
           const double bound = farthestCorner(corners, mesh_.boundaryTree().corners(point.nearest));
@@ -189,6 +192,7 @@ double BoundaryMeter::boundToOriginal(double squared) {
           if (bound <= withTolerance(farthest)) continue;
           const FarthestPoint point = farthestPoint(
               mesh_.originalTree(), mesh_.boundaryTree().corners(boundary[i]), was, farthest);
+          assert(point.found <= point.bound);
           bound = point.bound;
           farthest = std::max(farthest, point.found);
         }
@@ -206,6 +210,7 @@ OneSidedDistance BoundaryMeter::toOriginal() {
   std::vector<double> squared(samples.size());
   options_.workers->forRuns(samples.size(), kPlacesPerRun, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      assert(mesh_.isGhost(samples[i].cell) && mesh_.history().live[samples[i].cell]);
       if (mesh_.isOriginal(samples[i].cell)) continue;
       NearestTriangle nearest;
       mesh_.originalTree().tryTriangle(samples[i].at, mesh_.originalTriangle(samples[i].cell),

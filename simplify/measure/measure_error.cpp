@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -46,7 +47,10 @@ Samples samplesFor(Effort effort, const FusionHistory& history) {
 /// thousand times as much on the finest lattice.
 constexpr double kNoDistance = 1e-12;
 
-double roundedDistance(double d) { return d < kNoDistance ? 0 : roundedUp(d); }
+double roundedDistance(double d) {
+  assert(d >= 0);
+  return d < kNoDistance ? 0 : roundedUp(d);
+}
 OneSidedDistance rounded(const OneSidedDistance& d) {
   return {roundedDistance(d.mean), roundedDistance(d.max)};
 }
@@ -115,11 +119,13 @@ class ErrorMeter {
   void findVolumes(LevelError& error) const {
     const double net = mesh_.volumeKept() - 1;
     const auto [places, all] = fields_.uncovered();
+    assert(places <= all);
     const double n = static_cast<double>(std::max<std::size_t>(all, 1)),
                  lost = static_cast<double>(places) / n;
     const double chance = kDeviations * std::sqrt(lost * (1 - lost) / n);
     const double both = std::min(lost, lost + net);  // as much lost as gained
     error.volumeLost = std::max(-net, 0.0) + (both > chance ? both : 0);
+    assert(error.volumeLost >= 0);
     error.volumeGained = error.volumeLost + net;
   }
 
@@ -176,6 +182,7 @@ struct LevelSize {
   }
   void coarsenBy(const FusionHistory& history, std::span<const Fusion> step) {
     for (const Fusion& fusion : step) {
+      assert(vertices >= fusion.k && tetrahedra >= 1);
       vertices -= fusion.k - 1u;
       for (const std::uint32_t cell :
            std::span(history.deletedCells).subspan(fusion.firstDeleted, fusion.deletedCount))
@@ -203,6 +210,8 @@ class LevelBounds {
   /// Bounds count with this share of them.
   [[nodiscard]] bool hold(const MeasuredLevel& level, const LevelSize& size,
                           double share = 1) const {
+    assert(share > 0 && share <= 1);
+    assert(level.error.fields.size() == least_.fields.size());
     const LevelError& error = level.error;
     return (!options_.bounds.boundary || isNear(error, share * *options_.bounds.boundary)) &&
            std::ranges::all_of(fields_,
@@ -267,6 +276,8 @@ class LevelRow {
 
   /// Whether a coarser one is.
   bool isNext(std::uint32_t level) {
+    assert(level < last_);
+    assert(options_.levels.empty() || level < options_.levels.size());
     const bool isIt =
         options_.levels.empty() ? last_ - level >= step_ : options_.levels[level] != 0;
     if (!isIt && level > 0) return false;
@@ -306,8 +317,10 @@ Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& optio
     coarsest = levels.level();
     base = size;
   }
+  assert(out[coarsest].has_value() && out.back().has_value());
   levels.moveTo(coarsest);
   levels.forgetCoarser();
+  assert(levels.level() == 0 && out.size() == coarsest + levels.finest() + std::size_t{1});
   out.erase(out.begin(), out.begin() + coarsest);
   return out;
 }
@@ -324,6 +337,7 @@ std::size_t baseBytesOf(std::size_t vertices, std::size_t components) {
 void setFieldErrors(const FieldReplay& replay, std::span<const FieldError> figures,
                     std::size_t field, LevelErrors& errors) {
   for (std::size_t level = 0; level < replay.levels.size(); ++level) {
+    assert(level < figures.size());
     const std::uint32_t coarser = replay.levels[level].coarser;
     if (coarser >= errors.size()) break;  // the history has forgotten it
     if (std::optional<LevelError>& error = errors[errors.size() - 1 - coarser])

@@ -41,7 +41,7 @@ bool weightsIn(const std::array<Vector3, 4>& corners, const Vector3& p, double l
 
 FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options)
     : mesh_(mesh), options_(options) {
-  assert(mesh.level() == mesh.history().levels);
+  assert(mesh.level() == mesh.history().levels && options.workers != nullptr);
   const FusionHistory& history = mesh.history();
   for (const ErrorSample& sample :
        samplesInVolume(history.points, history.cells, options.samples, options.seed))
@@ -54,6 +54,7 @@ FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options)
   findRanges(isOriginal);
   addVertices(std::move(isOriginal));
   keepTruth();
+  assert(truth_.size() == history.fields.size() && ranges_.size() == truth_.size());
   squaredErrors_.assign(history.fields.size(), std::vector<double>(places_.size(), 0));
 }
 
@@ -89,6 +90,7 @@ void FieldMeter::findRanges(const std::vector<std::uint8_t>& isOriginal) {
         low = std::min(low, history.values[f][i * components + c]);
         high = std::max(high, history.values[f][i * components + c]);
       }
+      assert(low <= high);
       const double range = static_cast<double>(high) - static_cast<double>(low);
       squared += range * range;
     }
@@ -109,6 +111,7 @@ void FieldMeter::keepTruth() {
 
 double FieldMeter::valueAt(const Place& place, std::size_t field, std::size_t component) const {
   const FusionHistory& history = mesh_.history();
+  assert(field < history.fields.size() && component < history.fields[field].components);
   const std::size_t components = history.fields[field].components;
   if (isCellField(history.fields[field]))
     return history.values[field][place.tetrahedron * components + component];
@@ -137,10 +140,12 @@ void FieldMeter::follow(Place& place) const {
   if (fusion == nullptr) return;
   place.isMeasured = place.isKept = false;
   if (findIn(*fusion, place)) {
+    assert(!mesh_.isGhost(place.sample.cell) && mesh_.history().live[place.sample.cell]);
     place.tetrahedron = place.sample.cell;
   } else {
     followFusion(mesh_, *fusion, place.sample.at, place.nearest);
     place.sample.cell = place.nearest.triangle;
+    assert(mesh_.isGhost(place.sample.cell));
   }
 }
 
@@ -177,6 +182,7 @@ bool FieldMeter::findIn(const Fusion& fusion, Place& place) const {
 }
 
 void FieldMeter::findOnBoundary(Place& place) const {
+  assert(mesh_.isGhost(place.sample.cell));
   mesh_.boundaryTree().nearest(place.sample.at, place.nearest);
   place.sample.cell = place.nearest.triangle;
   const auto& weights = place.nearest.point.weights;
@@ -186,6 +192,7 @@ void FieldMeter::findOnBoundary(Place& place) const {
 void FieldMeter::measure(std::size_t place) {
   for (std::size_t f = 0; f < truth_.size(); ++f) {
     if (!(ranges_[f] > 0)) continue;
+    assert(truth_[f].size() == places_.size() * mesh_.history().fields[f].components);
     const std::size_t components = mesh_.history().fields[f].components;
     double squared = 0;
     for (std::size_t c = 0; c < components; ++c) {
@@ -199,6 +206,7 @@ void FieldMeter::measure(std::size_t place) {
 
 FieldMeter::Uncovered FieldMeter::uncovered() const {
   const auto isUncovered = [&](const Place& place) { return mesh_.isGhost(place.sample.cell); };
+  assert(uniform_ <= places_.size());
   const auto uniform = std::span(places_).first(uniform_);
   return {static_cast<std::size_t>(std::ranges::count_if(uniform, isUncovered)), uniform_};
 }
@@ -206,6 +214,7 @@ FieldMeter::Uncovered FieldMeter::uncovered() const {
 void FieldMeter::keepIn(FieldReplay& replay) {
   const FusionHistory& history = mesh_.history();
   if (replay.levels.empty()) {
+    assert(mesh_.level() == history.levels);
     replay.uniform = uniform_;
     replay.ranges = ranges_;
     replay.roundings = roundings();
@@ -213,6 +222,7 @@ void FieldMeter::keepIn(FieldReplay& replay) {
   FieldReplay::Level& level = replay.levels.emplace_back();
   level.coarser = history.levels - mesh_.level();
   for (std::size_t i = 0; i < places_.size(); ++i) {
+    assert(places_[i].isMeasured);
     if (std::exchange(places_[i].isKept, true)) continue;
     const ErrorSample& sample = places_[i].sample;
     level.moved.push_back({static_cast<std::uint32_t>(i), mesh_.isOriginal(sample.cell),
@@ -228,6 +238,7 @@ bool FieldMeter::isOriginal(const Place& place, std::size_t field) const {
 
 std::vector<FieldError> FieldMeter::errors() const {
   const std::vector<FieldError> rounding = roundings();
+  assert(rounding.size() == squaredErrors_.size());
   std::vector<FieldError> out;
   for (std::size_t f = 0; f < squaredErrors_.size(); ++f) {
     FieldError error = errorOf(squaredErrors_[f], uniform_, rounding[f],

@@ -2,6 +2,7 @@
 #include "simplify/mesh/split_mix64.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -29,6 +30,7 @@ double volumeOf(const std::array<Vector3, 4>& t) {
 std::array<double, 4> triangleWeights(SplitMix64& random) {
   double s = random.unit(), t = random.unit();
   if (s + t > 1) s = 1 - s, t = 1 - t;
+  assert(s + t <= 1 && s >= 0 && t >= 0);
   return {1 - s - t, s, t, 0};
 }
 
@@ -68,6 +70,7 @@ std::vector<ErrorSample> stratified(std::span<const LatticePoint> points, CellSp
   double end = 0, wanted = next();
   std::size_t lastWithMeasure = 0;
   const auto drawIn = [&](std::uint32_t id) {
+    assert(out.size() < count);
     const auto corners = cornersOf<N>(points, cells[id]);
     ErrorSample sample{{}, id, weights(random)};
     std::array<double, N> own;

@@ -48,6 +48,7 @@ void MeasuredMesh::coarsen() {
   levels_.coarsen();
   step_ = levels_.fusionsInto(levels_.level());
   for (const Fusion& fusion : step_) {
+    assert(fusion.level < history().levels);
     const auto mark = static_cast<std::uint32_t>(&fusion - history().fusions.data()) + 1;
     for (const std::uint32_t cell : affected(fusion)) lastFusion_[cell] = mark;
     for (const std::uint32_t cell :
@@ -77,12 +78,14 @@ const Fusion* MeasuredMesh::fusionOf(std::uint32_t cell) const {
 std::uint32_t MeasuredMesh::originalTriangle(std::uint32_t ghost) const {
   assert(!originalBoundary_.empty() && ghost >= originalBoundary_.front());
   // boundary cells stand behind all others, fusion_history.h
+  assert(isGhost(ghost) && ghost - originalBoundary_.front() < originalTriangles_.size());
   return ghost - originalBoundary_.front();
 }
 
 double MeasuredMesh::volume() const {
   Int128 sum = 0;  // exact: at most 2^29 triangles of 2^87
   for (const std::uint32_t ghost : boundary_) {
+    assert(isGhost(ghost) && history().live[ghost]);
     const auto& cell = history().cells[ghost];
     const std::vector<LatticePoint>& points = history().points;
     sum += volume6({0, 0, 0}, points[cell[0]], points[cell[1]], points[cell[2]]);

@@ -2,6 +2,7 @@
 // the search trees of both boundaries.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -30,11 +31,15 @@ class MeasuredMesh {
   /// is what and where it was before.
   [[nodiscard]] const Fusion* fusionOf(std::uint32_t cell) const;
   /// Whether the cell is what and where it is in the original.
-  [[nodiscard]] bool isOriginal(std::uint32_t cell) const { return lastFusion_[cell] == 0; }
+  [[nodiscard]] bool isOriginal(std::uint32_t cell) const {
+    assert(cell < lastFusion_.size());
+    return lastFusion_[cell] == 0;
+  }
   [[nodiscard]] std::span<const std::uint32_t> affected(const Fusion& fusion) const {
     return std::span(history().affectedCells).subspan(fusion.firstAffected, fusion.affectedCount);
   }
   [[nodiscard]] bool isGhost(std::uint32_t cell) const {
+    assert(cell < history().cells.size());
     return history().cells[cell][3] == kGhost;
   }
 

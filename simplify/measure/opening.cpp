@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -72,6 +73,7 @@ class Values {
   [[nodiscard]] bool ofCells() const { return info_.association == "cell"; }
   [[nodiscard]] std::size_t size() const { return integers_.size() / info_.components; }
   [[nodiscard]] double operator[](std::size_t index) const {
+    assert(index < size());
     const std::size_t n = info_.components;
     if (n == 1) return (info_.value(0, integers_[index]) - low_) * inverse_;
     double sum = 0;
@@ -94,6 +96,7 @@ struct Range {
 };
 
 std::size_t binOf(double share, std::size_t bins) {
+  assert(bins > 0 && !std::isnan(share));
   return static_cast<std::size_t>(
       std::clamp(share * static_cast<double>(bins), 0.0, static_cast<double>(bins - 1)));
 }
@@ -123,6 +126,7 @@ class Palette {
   explicit Palette(Range range) : range_(range) {}
 
   void add(double value, double area) {
+    assert(area >= 0 && range_.low < range_.high);
     if (std::isnan(value)) return;
     areas_[binOf((value - range_.low) / (range_.high - range_.low), kColors)] += area;
   }
@@ -193,6 +197,7 @@ class Scene {
 
  private:
   [[nodiscard]] double colorsOnBoundary(std::size_t field) const {
+    assert(field < extents_.size());
     const Values values(mesh_, field, extents_[field]);
     Palette palette(shownRange(values));
     if (values.ofCells()) {
@@ -207,6 +212,7 @@ class Scene {
 
   /// On the plane across the axis in the middle of the lattice's points.
   [[nodiscard]] double colorsOnCut(std::size_t field, std::size_t axis) const {
+    assert(field < extents_.size() && axis < 3);
     const Values values(mesh_, field, extents_[field]);
     const auto [low, high] =
         std::ranges::minmax(mesh_.points, {}, [&](const LatticePoint& p) { return p[axis]; });
@@ -262,6 +268,7 @@ class Scene {
       (mesh_.points[v][axis] > height ? above[ups++] : below[downs++]) = v;
     if (ups == 0 || downs == 0) return;
     // In the order round the section: each edge shares a corner with the one before it.
+    assert(ups + downs == 4);
     std::array<Vector3, 4> points{};
     std::array<double, 4> known{};
     std::size_t count = 0;
@@ -330,6 +337,7 @@ std::optional<double> openingTime(const LatticeMesh& mesh, const std::optional<F
   if (all.empty()) return std::nullopt;
   const Scene scene(mesh, focus);
   const std::vector<double> times = timesOf(all);
+  assert(!times.empty());
   const std::size_t last = times.size() - 1, steps = std::min(last, kLookedAt - 1);
   double most = kBetter * scene.bestOf(openingFields(mesh)).colors;
   std::optional<double> out;

@@ -52,6 +52,7 @@ class Prism {
       area_ += dot(normal_, cross(from, edge));
       if (!(length > 0)) continue;
       const Vector3 inward = 1 / length * cross(normal_, edge);
+      assert(sideCount_ < kMaxCorners);
       sides_[sideCount_++] = {inward, dot(inward, from)};
     }
     isWide_ = area_ >= 2 * kMinWidth * circumference;
@@ -74,6 +75,7 @@ class Prism {
   }
 
   [[nodiscard]] SurfaceOver result() const {
+    assert(isWide_);
     const double layers = sum_ / area_, whole = std::round(layers);
     if (whole == 0 || !(std::abs(layers - whole) < kMissing)) return {};
     return {highest_, triangle_, bound_};
@@ -93,6 +95,7 @@ class Prism {
         isIn &= in >= 0;
       }
       if (isOut) return false;
+      assert(cuts < kMaxCorners);
       if (!isIn) cutting[cuts++] = &sides_[s];
     }
     Polygon other;
@@ -106,6 +109,7 @@ class Prism {
   }
 
   static void cut(const Polygon& from, const Side& side, Polygon& to) {
+    assert(from.count <= from.places.size());
     to.count = 0;
     if (from.count == 0) return;
     const Place* a = &from.places[from.count - 1];
@@ -125,6 +129,7 @@ class Prism {
   }
 
   bool addLayer(std::uint32_t id, const Polygon& polygon) {
+    assert(polygon.count >= 3);
     double low = kNone, high = -kNone, area = 0;
     const Vector3& first = polygon.places[0].at;
     for (std::size_t i = 0; i < polygon.count; ++i) {

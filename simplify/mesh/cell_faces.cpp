@@ -15,6 +15,7 @@ VertexId oppositeVertex(std::span<const Tetrahedron> cells, FaceSide side) {
 
 bool sameRotation(const Triangle& s, const Triangle& t) {
   const std::size_t at = t[0] == s[0] ? 0 : t[0] == s[1] ? 1 : 2;
+  assert(t[0] == s[at]);
   return t[1] == s[(at + 1) % 3];
 }
 
@@ -24,6 +25,7 @@ void join(std::span<const Tetrahedron> cells, FaceSide one, FaceSide other,
                                      cellFace(cells[cellOf(other)], oppositeCornerOf(other)));
   const auto set = [&](FaceSide from, FaceSide to) {
     CellNeighbours& neighbours = out[cellOf(from)];
+    assert(neighbours.across[static_cast<std::size_t>(oppositeCornerOf(from))] == kNoCell);
     neighbours.across[static_cast<std::size_t>(oppositeCornerOf(from))] = cellOf(to);
     if (disagree) neighbours.disagrees |= static_cast<std::uint8_t>(1u << oppositeCornerOf(from));
   };

@@ -1,11 +1,13 @@
 #include "simplify/mesh/fusion_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
 #include "codec/mesh/growing_mesh.h"
 #include "codec/mesh/link.h"
+#include "proto/limits.h"
 #include "simplify/mesh/large_pages.h"
 #include "simplify/mesh/workers.h"
 
@@ -24,12 +26,21 @@ FusionMesh::FusionMesh(const LatticeMesh& mesh, std::size_t regionField, Workers
     : regionField_(regionField),
       firstGhost_(static_cast<CellId>(mesh.tetrahedra.size())),
       liveTetrahedra_(mesh.tetrahedra.size()) {
+  assert(mesh.lattice.bits > 0 && mesh.lattice.bits <= kMaxPositionBits);
+  assert(mesh.values.size() == mesh.fields.size());
+  assert(regionField == kNoRegions || isCellField(mesh.fields[regionField]));
   history_.lattice = mesh.lattice;
   history_.fields = mesh.fields;
   reserve(mesh);
   history_.points.assign(mesh.points.begin(), mesh.points.end());
-  for (std::size_t f = 0; f < mesh.values.size(); ++f)
+  for (std::size_t f = 0; f < mesh.values.size(); ++f) {
+    // a part has no values of cells but its regions (mesh_part.cpp)
+    assert((isCellField(mesh.fields[f]) && mesh.values[f].empty()) ||
+           mesh.values[f].size() ==
+               mesh.fields[f].components *
+                   (isCellField(mesh.fields[f]) ? mesh.tetrahedra.size() : mesh.points.size()));
     history_.values[f].assign(mesh.values[f].begin(), mesh.values[f].end());
+  }
   history_.cells.assign(mesh.tetrahedra.begin(), mesh.tetrahedra.end());
   onBoundary_.assign(mesh.points.size(), 0);
   for (const Triangle& t : mesh.boundary) {
@@ -165,6 +176,8 @@ void FusionMesh::fillRecord(Fusion& record, const Prey& prey, const Placed& plac
 void FusionMesh::removeFromStar(VertexId v, CellId c) {
   StarRange& range = stars_[v];
   std::uint32_t hole = placeInStar(v, c);
+  assert(aliveVertex_[v] && hole < range.size);
+  assert(pool_[range.first + hole] == c);
   if (isGhost(c)) {
     moveInStar(v, --range.ghosts, hole);
     hole = range.ghosts;
@@ -185,6 +198,7 @@ std::uint32_t FusionMesh::placeInStar(VertexId v, CellId c) {
 }
 
 void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
+  assert(to <= from);
   if (from == to) return;
   CellId* cells = &pool_[stars_[v].first];
   cells[to] = cells[from];
@@ -193,6 +207,7 @@ void FusionMesh::moveInStar(VertexId v, std::uint32_t from, std::uint32_t to) {
 }
 
 void FusionMesh::findPlane(CellId ghost) {
+  assert(isGhost(ghost) && history_.cells[ghost][3] == kGhost);
   const auto& cell = history_.cells[ghost];
   const Vector3 a = position(cell[0]), normal = cross(position(cell[1]) - a, position(cell[2]) - a);
   const double squared = dot(normal, normal);
@@ -201,6 +216,9 @@ void FusionMesh::findPlane(CellId ghost) {
 
 VertexId FusionMesh::fuse(const Prey& prey, const FusedVertex& what, const Star& star,
                           std::uint32_t level) {
+  assert(prey.k >= 2 && prey.k <= 4 && level < kMaxLevels);
+  assert(star.labels.size() == star.affected.size());
+  assert(((what.point[0] | what.point[1] | what.point[2]) >> latticeBits()) == 0);
   Fusion& record = addRecord(star, level);
   const VertexId fused = record.fused;
   const std::uint64_t firstOfStar = pool_.size();
@@ -242,26 +260,31 @@ Fusion& FusionMesh::addRecord(const Star& star, std::uint32_t level) {
 
 // The star's cells that stay get the fused vertex, and those that go leave the stars of the others.
 void FusionMesh::fuseCells(const Prey& prey, const Star& star, VertexId fused) {
+  assert(stars_.size() == vertexSlots() && aliveVertex_.size() == vertexSlots());
   for (const VertexId v : prey.vertices()) {
     assert(aliveVertex_[v] && !singular(v));
     onBoundary_[fused] |= onBoundary_[v];
     if (hasRegions()) onInterface_[fused] |= onInterface_[v];
     aliveVertex_[v] = 0;
+    assert(stars_[v].size <= livePool_);
     livePool_ -= stars_[v].size;
     stars_[v].size = stars_[v].ghosts = 0;
   }
   for (std::size_t i = 0; i < star.affected.size(); ++i) {
     const CellId c = star.affected[i];
+    assert(history_.live[c] && star.labels[i] < prey.k);
     auto& cell = history_.cells[c];
     cell[onlyCorner(cornersThatAre(cell, prey.vertex[star.labels[i]]))] = fused;
     if (isGhost(c)) findPlane(c);
   }
   for (const CellId c : star.deleted) {
+    assert(history_.live[c]);
     history_.live[c] = 0;
     liveTetrahedra_ -= !isGhost(c);
     const auto& cell = history_.cells[c];
     unsigned fusing = 0;
     for (const VertexId v : prey.vertices()) fusing |= cornersThatAre(cell, v);
+    assert(std::popcount(fusing) >= 2);
     const OtherCorners& others = kOtherCorners[fusing];
     for (std::size_t i = 0; i < others.count; ++i)
       if (const VertexId v = cell[others.corner[i]]; v != kGhost) removeFromStar(v, c), --livePool_;
@@ -273,15 +296,18 @@ void FusionMesh::setValues(VertexId fused, std::span<const std::int32_t> values)
   for (std::size_t f = 0; f < history_.fields.size(); ++f) {
     if (isCellField(history_.fields[f])) continue;
     const std::size_t n = history_.fields[f].components;
+    assert(values.size() >= n && history_.values[f].size() == (fused + std::size_t{1}) * n);
     std::ranges::copy(values.first(n), &history_.values[f][fused * n]);
     values = values.subspan(n);
   }
+  assert(values.empty());
 }
 
 // The fused vertex's, ghosts first.
 FusionMesh::StarRange FusionMesh::addStar(std::uint64_t first, std::span<const CellId> cells) {
   std::size_t ghosts = 0, at = cells.size();
   for (const CellId c : cells) pool_[first + (isGhost(c) ? ghosts++ : --at)] = c;
+  assert(ghosts == at);
   return {first, static_cast<std::uint32_t>(cells.size()), static_cast<std::uint32_t>(ghosts)};
 }
 
@@ -289,17 +315,20 @@ FusionMesh::StarRange FusionMesh::addStar(std::uint64_t first, std::span<const C
 void FusionMesh::compactPool() {
   std::uint64_t end = 0;
   for (StarRange& s : stars_) {
+    assert(s.first >= end);
     if (s.first != end)
       std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(s.first), s.size,
                   pool_.begin() + static_cast<std::ptrdiff_t>(end));
     s.first = end;
     end += s.size;
   }
+  assert(end == livePool_);
   pool_.resize(end);
   giveBackRoom(pool_);
 }
 
 FusionHistory FusionMesh::takeHistory(std::uint32_t levels) {
+  assert(history_.fusions.empty() || history_.fusions.back().level < levels);
   history_.levels = levels;
   return std::move(history_);
 }

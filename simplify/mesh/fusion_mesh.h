@@ -62,17 +62,34 @@ class FusionMesh {
                       Workers* workers = nullptr);
 
   [[nodiscard]] std::size_t vertexSlots() const { return history_.points.size(); }
-  [[nodiscard]] bool alive(VertexId v) const { return aliveVertex_[v]; }
-  [[nodiscard]] bool onBoundary(VertexId v) const { return onBoundary_[v]; }
+  [[nodiscard]] bool alive(VertexId v) const {
+    assert(v < aliveVertex_.size());
+    return aliveVertex_[v];
+  }
+  [[nodiscard]] bool onBoundary(VertexId v) const {
+    assert(v < onBoundary_.size());
+    return onBoundary_[v];
+  }
   /// Takes these out of all fusions to come, as singular vertices are. REQUIRES: vertices of the
   /// mesh.
   void keep(std::span<const VertexId> vertices);
   /// The link of v is no sphere: the mesh is not a manifold there, or v is kept. V is never prey.
-  [[nodiscard]] bool singular(VertexId v) const { return hasSingular_ && singular_[v]; }
-  [[nodiscard]] const LatticePoint& point(VertexId v) const { return history_.points[v]; }
+  [[nodiscard]] bool singular(VertexId v) const {
+    assert(v < singular_.size());
+    return hasSingular_ && singular_[v];
+  }
+  [[nodiscard]] const LatticePoint& point(VertexId v) const {
+    assert(v < vertexSlots());
+    return history_.points[v];
+  }
   [[nodiscard]] Vector3 position(VertexId v) const { return toVector(history_.points[v]); }
-  [[nodiscard]] const std::array<VertexId, 4>& cell(CellId c) const { return history_.cells[c]; }
+  [[nodiscard]] const std::array<VertexId, 4>& cell(CellId c) const {
+    assert(c < history_.cells.size());
+    return history_.cells[c];
+  }
   [[nodiscard]] std::span<const CellId> star(VertexId v) const {
+    assert(v < stars_.size() && stars_[v].ghosts <= stars_[v].size);
+    assert(stars_[v].first + stars_[v].size <= pool_.size());
     return std::span(pool_).subspan(stars_[v].first, stars_[v].size);
   }
   /// The ghost cells of v's star, one a boundary triangle; the ghost is their last vertex.
@@ -83,7 +100,10 @@ class FusionMesh {
   [[nodiscard]] std::span<const CellId> innerStar(VertexId v) const {
     return star(v).subspan(stars_[v].ghosts);
   }
-  [[nodiscard]] bool isLive(CellId c) const { return history_.live[c]; }
+  [[nodiscard]] bool isLive(CellId c) const {
+    assert(c < history_.live.size());
+    return history_.live[c];
+  }
   [[nodiscard]] bool isGhost(CellId c) const { return c >= firstGhost_; }
   [[nodiscard]] bool holds(CellId c, VertexId v) const {
     return cornersThatAre(history_.cells[c], v) != 0;
@@ -114,6 +134,7 @@ class FusionMesh {
   /// REQUIRES: hasRegions().
   [[nodiscard]] std::int64_t region(CellId c) const {
     assert(hasRegions());
+    assert(c < history_.cells.size());
     const auto& values = history_.values[regionField_];
     return c < values.size() ? values[c] : kOutside;
   }
@@ -130,6 +151,7 @@ class FusionMesh {
   /// REQUIRES: a ghost cell.
   [[nodiscard]] const BoundaryPlane& plane(CellId c) const {
     assert(isGhost(c));
+    assert(c - firstGhost_ < planes_.size());
     return planes_[c - firstGhost_];
   }
   /// Boundary triangles at first: the ghost cells from firstGhost() on.
@@ -142,6 +164,7 @@ class FusionMesh {
   [[nodiscard]] int latticeBits() const { return history_.lattice.bits; }
   [[nodiscard]] std::span<const FieldInfo> fields() const { return history_.fields; }
   [[nodiscard]] std::span<const std::int32_t> values(std::size_t field, VertexId v) const {
+    assert(!isCellField(history_.fields[field]) && v < vertexSlots());
     const std::size_t n = history_.fields[field].components;
     return std::span(history_.values[field]).subspan(v * n, n);
   }

@@ -6,6 +6,8 @@
 namespace qtet {
 
 HistoryLevels::HistoryLevels(FusionHistory& history) : history_(history) {
+  assert(history.affectedLabels.size() == history.affectedCells.size());
+  assert(history.live.size() == history.cells.size());
   const std::vector<Fusion>& fusions = history.fusions;
   assert(std::ranges::is_sorted(fusions, {}, &Fusion::level));
   for (std::uint32_t set = 0; set <= history.levels; ++set)
@@ -21,6 +23,7 @@ std::span<const Fusion> HistoryLevels::fusionsInto(std::uint32_t level) const {
 }
 
 void HistoryLevels::refine() {
+  assert(level_ < finest());
   // independent of one another: any order
   for (const Fusion& fusion : fusionsInto(level_)) undo(fusion);
   ++level_;
@@ -50,24 +53,31 @@ void HistoryLevels::forgetCoarser() {
   history_.affectedCells.resize(affected);
   history_.affectedLabels.resize(affected);
   history_.deletedCells.resize(deleted);
+  assert(history_.fusions.empty() || history_.fusions.back().level < kept);
   history_.levels = kept;
   level_ = 0;
 }
 
 void HistoryLevels::undo(const Fusion& fusion) {
+  assert(fusion.firstAffected + fusion.affectedCount <= history_.affectedCells.size());
+  assert(fusion.firstDeleted + fusion.deletedCount <= history_.deletedCells.size());
   for (std::size_t i = fusion.firstAffected; i < fusion.firstAffected + fusion.affectedCount; ++i)
     std::ranges::replace(history_.cells[history_.affectedCells[i]], fusion.fused,
                          fusion.prey[history_.affectedLabels[i]]);
-  for (std::size_t i = fusion.firstDeleted; i < fusion.firstDeleted + fusion.deletedCount; ++i)
+  for (std::size_t i = fusion.firstDeleted; i < fusion.firstDeleted + fusion.deletedCount; ++i) {
+    assert(!history_.live[history_.deletedCells[i]]);
     history_.live[history_.deletedCells[i]] = 1;
+  }
 }
 
 void HistoryLevels::redo(const Fusion& fusion) {
   for (std::size_t i = fusion.firstAffected; i < fusion.firstAffected + fusion.affectedCount; ++i)
     std::ranges::replace(history_.cells[history_.affectedCells[i]],
                          fusion.prey[history_.affectedLabels[i]], fusion.fused);
-  for (std::size_t i = fusion.firstDeleted; i < fusion.firstDeleted + fusion.deletedCount; ++i)
+  for (std::size_t i = fusion.firstDeleted; i < fusion.firstDeleted + fusion.deletedCount; ++i) {
+    assert(history_.live[history_.deletedCells[i]]);
     history_.live[history_.deletedCells[i]] = 0;
+  }
 }
 
 }  // namespace qtet

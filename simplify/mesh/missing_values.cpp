@@ -1,6 +1,7 @@
 #include "simplify/mesh/missing_values.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace qtet {
@@ -23,6 +24,7 @@ class CellsOfPoints {
   }
   [[nodiscard]] std::size_t points() const { return first_.size() - 1; }
   [[nodiscard]] std::span<const CellId> of(VertexId v) const {
+    assert(v < points());
     return std::span(cells_).subspan(first_[v], first_[v + 1] - first_[v]);
   }
 
@@ -35,6 +37,9 @@ class CellsOfPoints {
 
 void fillMissing(std::span<const Tetrahedron> cells, const FieldInfo& field,
                  std::span<const std::uint8_t> missing, std::vector<std::int32_t>& values) {
+  assert(field.components > 0 && values.size() % field.components == 0);
+  assert(missing.size() == values.size());
+  assert(!isCellField(field) || values.size() == cells.size() * field.components);
   const CellsOfPoints around(cells);
   const std::size_t n = field.components;
   // points whose cells are all known: once is enough, however many cells meet there
@@ -70,6 +75,7 @@ std::vector<std::int32_t> withMissing(const FusionHistory& history, const FieldI
                                       std::vector<std::uint8_t> missing,
                                       std::vector<std::int32_t> values) {
   const std::size_t n = field.components;
+  assert(missing.size() <= values.size() && values.size() % n == 0);
   missing.resize(values.size());
   if (!isCellField(field))
     for (const Fusion& fusion : history.fusions)
@@ -83,6 +89,7 @@ std::vector<std::int32_t> withMissing(const FusionHistory& history, const FieldI
 }
 
 void restoreMissing(FusionHistory& history, const std::vector<std::vector<std::uint8_t>>& missing) {
+  assert(missing.size() <= history.fields.size());
   for (std::size_t f = 0; f < missing.size(); ++f)
     if (!missing[f].empty())
       history.values[f] =

@@ -30,6 +30,7 @@ int signOf(Number x) {
 }
 
 bool isConstant(std::span<const std::int32_t> values) {
+  assert(values.size() >= 3 && values.size() % 3 == 0);
   return std::ranges::equal(values.first(values.size() - 3), values.subspan(3));
 }
 
@@ -40,6 +41,7 @@ MovedPoint movedPoint(const Lattice& lattice, const FieldInfo& field, const Latt
   MovedPoint out{};
   assert(integers.size() == 3 && lattice.step > 0);
   for (std::size_t c = 0; c < 3; ++c) {
+    assert(integers[c] != kMissing);
     const double by = field.value(c, integers[c]) / lattice.step;
     const double rounded = std::clamp(std::floor(by + 0.5), -kFarthest, kFarthest);
     out[c] = point[c] + static_cast<std::int64_t>(rounded);
@@ -75,6 +77,7 @@ std::vector<std::size_t> displacementFields(std::span<const FieldInfo> fields) {
 }
 
 std::vector<std::size_t> sampledDisplacements(const LatticeMesh& mesh, std::size_t most) {
+  assert(mesh.values.size() == mesh.fields.size());
   std::vector<std::size_t> all = displacementFields(mesh.fields);
   std::erase_if(
       all, [&](std::size_t f) { return mesh.values[f].size() < 3 || isConstant(mesh.values[f]); });

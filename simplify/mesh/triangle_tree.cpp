@@ -22,10 +22,12 @@ constexpr double kSlabRounding = 0x1p-18;
 TriangleTree::TriangleTree(std::span<const LatticePoint> points, std::span<const Cell> cells,
                            std::vector<std::uint32_t> ids)
     : points_(points), cells_(cells), ids_(std::move(ids)) {
+  assert(ids_.size() <= cells_.size());
   nodes_.reserve(ids_.size());
   build(0, static_cast<std::uint32_t>(ids_.size()));
   places_.reserve(ids_.size());
   for (const std::uint32_t id : ids_) places_.push_back(placeOf(id));
+  assert(nodes_.size() < 2 * std::max<std::size_t>(1, ids_.size()));
   if (isCrowded()) fitSlabs({});
 }
 
@@ -51,6 +53,7 @@ bool TriangleTree::isCrowded() const {
 }
 
 void TriangleTree::fitSlabs(std::span<const std::uint8_t> live) {
+  assert(live.empty() || live.size() == cells_.size());
   slabs_.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) slabs_[i] = slabsOf(nodes_[i], live);
 }
@@ -109,6 +112,7 @@ bool TriangleTree::enclose(Node& node, const Place& place) {
 }
 
 void TriangleTree::build(std::uint32_t first, std::uint32_t count) {
+  assert(first + count <= ids_.size());
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({{}, {}, 0, first, count});
   clear(nodes_[index]);
@@ -147,6 +151,7 @@ void TriangleTree::allowGrowth() {
 }
 
 void TriangleTree::grow(std::uint32_t triangle) {
+  assert(triangle < leaves_.size());
   assert(!parents_.empty() && leaves_[triangle] != kNoNode);
   const Place place = placeOf(triangle);
   const Node& leaf = nodes_[leaves_[triangle]];
@@ -157,6 +162,7 @@ void TriangleTree::grow(std::uint32_t triangle) {
 }
 
 void TriangleTree::refit(std::span<const std::uint8_t> live) {
+  assert(live.size() == cells_.size());
   for (std::size_t i = nodes_.size(); i-- > 0;) {  // children stand behind their parent
     Node& node = nodes_[i];
     if (node.right == 0) {
@@ -169,6 +175,7 @@ void TriangleTree::refit(std::span<const std::uint8_t> live) {
         enclose(node, places_[at] = placeOf(ids_[at]));
       continue;
     }
+    assert(node.right > i + 1 && node.right < nodes_.size());
     const Node &left = nodes_[i + 1], &right = nodes_[node.right];
     for (std::size_t k = 0; k < 3; ++k) {
       node.low[k] = std::min(left.low[k], right.low[k]);
@@ -236,6 +243,7 @@ std::size_t TriangleTree::nearest(const Vector3& p, NearestTriangle& best, doubl
       }
       Waiting near{minSquared(index + 1), index + 1}, far{minSquared(node.right), node.right};
       if (far.squared < near.squared) std::swap(near, far);
+      assert(size < kMaxWaiting && near.squared <= far.squared);
       if (far.squared < best.point.squared) waiting[size++] = far;
       squared = near.squared;
       index = near.node;

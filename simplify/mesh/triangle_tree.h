@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -86,6 +87,7 @@ class TriangleTree {
   using Place = std::array<LatticePoint, 3>;
   [[nodiscard]] Place placeOf(std::uint32_t triangle) const {
     const Cell& cell = cells_[triangle];
+    assert(cell[0] < points_.size() && cell[1] < points_.size() && cell[2] < points_.size());
     return {points_[cell[0]], points_[cell[1]], points_[cell[2]]};
   }
   [[nodiscard]] static std::array<Vector3, 3> toVectors(const Place& place) {
@@ -127,6 +129,7 @@ void TriangleTree::walk(const IsApart& isApart, const Visit& visit) const {
     const Node& node = nodes_[index];
     const bool apart = isApart(node);
     if (!apart && node.right != 0) {
+      assert(size < kMaxWaiting && node.right > index);
       waiting[size++] = node.right;
       ++index;
       continue;
@@ -142,6 +145,7 @@ void TriangleTree::walk(const IsApart& isApart, const Visit& visit) const {
 template <class Visit>
 void TriangleTree::touching(const LatticePoint& low, const LatticePoint& high,
                             const Visit& visit) const {
+  assert(low[0] <= high[0] && low[1] <= high[1] && low[2] <= high[2]);
   const auto isApart = [&](const Node& node) {
     bool apart = false;
     for (std::size_t k = 0; k < 3; ++k) apart |= node.high[k] < low[k] || node.low[k] > high[k];

@@ -1,6 +1,7 @@
 #include "simplify/mesh/workers.h"
 
 #include <algorithm>
+#include <cassert>
 #include <exception>
 #include <new>
 #include <system_error>
@@ -72,6 +73,7 @@ void Workers::runByAll(const std::function<void(std::size_t)>& take) {
   Job job{take, {}};
   {
     const std::lock_guard lock(mutex_);
+    assert(job_ == nullptr && !ending_);
     job_ = &job;
     ++jobs_;
   }
@@ -98,6 +100,7 @@ void Workers::awaitOthers() {
 
 void Workers::forEach(std::size_t n, std::size_t grain,
                       const std::function<void(std::size_t, std::size_t)>& work) {
+  assert(grain > 0);
   if (threads_.empty() || n <= grain) {
     for (std::size_t first = 0; first < n; first += grain) {
       throwIfStopped();
@@ -150,6 +153,7 @@ void Workers::serve(std::size_t worker) {
       const std::lock_guard lock(mutex_);
       if (!job->failure) job->failure = std::current_exception();
     }
+    assert(busy_ > 0 && worker > 0);
     if (--busy_ == 0) busy_.notify_one();
   }
 }

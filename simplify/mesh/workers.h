@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -42,6 +43,7 @@ class Workers {
   /// The same for runs of at most `grain` neighbours: work(begin, end).
   void forRuns(std::size_t n, std::size_t grain,
                const std::function<void(std::size_t begin, std::size_t end)>& work) {
+    assert(grain > 0);
     forEach((n + grain - 1) / grain, 1, [&](std::size_t, std::size_t run) {
       work(run * grain, std::min(n, (run + 1) * grain));
     });

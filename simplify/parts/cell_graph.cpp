@@ -1,5 +1,7 @@
 #include "simplify/parts/cell_graph.h"
 
+#include <cassert>
+
 #include "codec/mesh/boundary.h"
 #include "codec/mesh/face_groups.h"
 #include "simplify/mesh/fusion_mesh.h"
@@ -28,6 +30,7 @@ CellGraph cellGraphOf(const FusionMesh& mesh, std::span<const CellId> cells,
   out.begins.assign(tetrahedra.size() + 1, 0);
   FaceGroups(tetrahedra).forEach([&](std::span<const FaceSide> sides) {
     if (sides.size() != 2) return;
+    assert(cellOf(sides[0]) != cellOf(sides[1]));
     std::int32_t weight = 1;
     for (const VertexId v : cellFace(tetrahedra[cellOf(sides[0])], oppositeCornerOf(sides[0])))
       if (v < old.size() && old[v]) weight += kOldVertex;
@@ -35,9 +38,11 @@ CellGraph cellGraphOf(const FusionMesh& mesh, std::span<const CellId> cells,
     ++out.begins[cellOf(sides[0]) + 1], ++out.begins[cellOf(sides[1]) + 1];
   });
   for (std::size_t i = 1; i < out.begins.size(); ++i) out.begins[i] += out.begins[i - 1];
+  assert(static_cast<std::size_t>(out.begins.back()) == 2 * faces.size());
   out.beside.resize(2 * faces.size()), out.weights.resize(2 * faces.size());
   std::vector<std::int32_t> next(out.begins.begin(), out.begins.end() - 1);
   const auto put = [&](CellId from, CellId to, std::int32_t weight) {
+    assert(next[from] < out.begins[from + std::size_t{1}]);
     const auto at = static_cast<std::size_t>(next[from]++);
     out.beside[at] = static_cast<std::int32_t>(to), out.weights[at] = weight;
   };

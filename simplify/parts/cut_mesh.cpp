@@ -20,6 +20,7 @@ class Blocks {
       for (const VertexId v : mesh.cell(c))
         for (std::size_t axis = 0; axis < 3; ++axis) cell.middle[axis] += mesh.point(v)[axis];
     }
+    assert(cells.size() == mesh.liveTetrahedra());
     cut(cells, count);
   }
 
@@ -32,6 +33,7 @@ class Blocks {
   };
 
   static std::size_t longestAxis(std::span<const Cell> cells) {
+    assert(!cells.empty());
     std::array<std::uint32_t, 3> low = cells.front().middle, high = low, length{};
     for (const Cell& cell : cells)
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -89,6 +91,7 @@ void findSeams(const FusionMesh& mesh, CutMesh& out) {
       }
   const auto used = owner.size() - static_cast<std::size_t>(std::ranges::count(owner, kNobody));
   const auto seams = static_cast<std::size_t>(std::ranges::count(out.isSeam, 1));
+  assert(seams <= used);
   if (used > 0) out.innerShare = static_cast<double>(used - seams) / static_cast<double>(used);
 }
 
@@ -97,6 +100,7 @@ void findSeams(const FusionMesh& mesh, CutMesh& out) {
 CutMesh cutMesh(const FusionMesh& mesh, const Partitioner& partition, std::size_t cellsOfAPart,
                 std::uint32_t band, std::span<const std::uint8_t> old, Workers& workers,
                 std::size_t blockCells) {
+  assert(cellsOfAPart > 0 && blockCells > 0);
   const std::size_t cells = mesh.liveTetrahedra();
   std::size_t count = (cells + blockCells - 1) / blockCells;
   if (count > 1) count += band % 2;

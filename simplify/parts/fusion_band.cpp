@@ -51,6 +51,7 @@ std::vector<PartFusions> fuseParts(const FusionState& whole, const FusionFrame& 
   std::vector<PartFusions> out(chosen.size());
   std::vector<PartNumbers> numbers(workers.count());
   workers.forEach(chosen.size(), 1, [&](std::size_t worker, std::size_t i) {
+    assert(chosen[i] < cut.parts.size() && worker < numbers.size());
     const std::vector<CellId>& cells = cut.parts[chosen[i]];
     numbers[worker].resize(whole.mesh().vertexSlots(), kGhost);
     out[i] =
@@ -72,6 +73,7 @@ float keyAt(std::span<const std::vector<PartLevel>> sampled, std::size_t cells, 
   float key = 0;
   for (const LevelOfPart& level : inOrder(sampled)) {
     if (static_cast<double>(cells) <= most) break;
+    assert(level.removed <= cells);
     cells -= level.removed;
     key = level.key;
   }
@@ -94,6 +96,7 @@ struct Sample {
 /// 1 - (1 - 1 / factor) (1 - 2 (1 - share of inner vertices)).
 Sample sampleOf(const FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
                 Workers& workers, const CutMesh& cut, double goal) {
+  assert(cut.innerShare >= 0 && cut.innerShare <= 1);
   const double inner = std::max(0.0, 1 - 2 * (1 - cut.innerShare));
   const double share = 1 - (1 - 1 / kBandFactor) * inner;
   const std::size_t step =
@@ -168,6 +171,8 @@ class Replay {
   /// False: it would meet the boundary.
   bool fuse(std::size_t part, std::uint32_t level) {
     const PartFusions& own = parts_[part];
+    assert(done_[part] < own.history.fusions.size());
+    assert(own.done.wentOutside.size() == own.history.fusions.size());
     const FusionHistory& h = own.history;
     const Fusion& fusion = h.fusions[done_[part]];
     std::vector<VertexId>& vertices = vertices_[part];
@@ -222,9 +227,11 @@ std::vector<std::vector<std::uint32_t>> levelsOfTheWhole(
   for (const LevelOfPart& level : inOrder(parts)) {
     if (static_cast<double>(removed) >= kLevelShare * static_cast<double>(cells)) {
       ++now;
+      assert(removed <= cells);
       cells -= removed;
       removed = 0;
     }
+    assert(out[level.part].size() == level.level);
     std::vector<std::uint32_t>& own = out[level.part];
     own.push_back(own.empty() ? now : std::max(now, own.back() + 1));
     removed += level.removed;
@@ -236,6 +243,7 @@ std::uint32_t fuseBand(FusionState& whole, const FusionFrame& frame, const Fusio
                        Workers& workers, const CutMesh& cut, std::size_t target,
                        std::uint32_t levels) {
   const std::vector<PartFusions> done = fuseAll(whole, frame, options, workers, cut, target);
+  assert(done.size() == cut.parts.size());
   const std::vector<std::vector<PartLevel>> ofParts = levelsOf(done);
   const auto numbers = levelsOfTheWhole(ofParts, whole.mesh().liveTetrahedra());
   Replay replay(whole, frame, done);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 #include "codec/mesh/boundary.h"
@@ -16,16 +17,19 @@ class PartMesh {
   PartMesh(const FusionMesh& whole, std::span<const CellId> cells, std::size_t regionField,
            PartNumbers& numbers)
       : whole_(whole), cells_(cells.begin(), cells.end()) {
+    assert(numbers.size() >= whole.vertexSlots());
     takeVertices(numbers);
     lattice_.lattice = whole.lattice();
     for (const VertexId v : vertices_) lattice_.points.push_back(whole.point(v));
     for (const CellId c : cells) {
+      assert(whole.isLive(c) && !whole.isGhost(c));
       Tetrahedron own;
       for (std::size_t i = 0; i < own.size(); ++i) own[i] = numbers[whole.cell(c)[i]];
       lattice_.tetrahedra.push_back(own);
     }
     lattice_.boundary = boundaryOf(lattice_.tetrahedra);
     for (const Triangle& t : lattice_.boundary) cells_.push_back(ghostOf(t));
+    assert(cells_.size() == lattice_.tetrahedra.size() + lattice_.boundary.size());
     takeValues(regionField);
     for (const VertexId v : vertices_) numbers[v] = kGhost;
   }
@@ -92,6 +96,7 @@ PartFusions fusePart(const FusionState& whole, const FusionFrame& frame,
   std::vector<VertexId> kept;
   std::vector<std::uint8_t> isOwnSeam;
   for (const VertexId v : out.vertices) {
+    assert(whole.mesh().alive(v) && v < isSeam.size());
     const auto quadric = whole.cost().quadric(v);
     quadrics.insert(quadrics.end(), quadric.begin(), quadric.end());
     isOwnSeam.push_back(isSeam[v]);
@@ -105,6 +110,7 @@ PartFusions fusePart(const FusionState& whole, const FusionFrame& frame,
   own.kept.clear();
   Workers alone(1, options.stop);
   out.done = FusionLoop(state, frame, own, alone).runPart(end, isOwnSeam);
+  assert(state.mesh().fusions() == out.done.wentOutside.size());
   out.history = state.takeHistory(static_cast<std::uint32_t>(out.done.levels.size()));
   return out;
 }

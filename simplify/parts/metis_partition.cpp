@@ -3,6 +3,7 @@
 #include <metis.h>
 
 #include <array>
+#include <cassert>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,8 @@ std::vector<std::uint32_t> partsByMetis(const CellGraph& graph, std::uint32_t pa
   std::array<idx_t, METIS_NOPTIONS> options{};
   METIS_SetDefaultOptions(options.data());
   options[METIS_OPTION_SEED] = 1;
+  assert(parts >= 2 && !graph.begins.empty());
+  assert(graph.weights.size() == graph.beside.size());
   auto vertices = static_cast<idx_t>(graph.begins.size() - 1);
   auto wanted = static_cast<idx_t>(parts);
   idx_t constraints = 1, cut = 0;

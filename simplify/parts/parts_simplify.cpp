@@ -1,5 +1,6 @@
 #include "simplify/parts/parts_simplify.h"
 
+#include <cassert>
 #include <utility>
 
 #include "proto/limits.h"
@@ -32,6 +33,7 @@ class Bands {
     CutMesh cut;
     for (const std::size_t cells : parts_.cellsOfAPart) {
       if (all / cells < parts_.minParts || !isFarFrom()) break;
+      assert(cells > 0);
       cells_ = cells;
       cut = cutAnew({});
       if (cut.innerShare >= kEnoughInner) break;
@@ -42,6 +44,7 @@ class Bands {
       levels = fuseBand(state_, frame_, options_, workers_, cut, target, levels);
       ++bands_;
       if (options_.progress) options_.progress(progressOf(all, live(), target));
+      assert(live() <= before && levels <= kMaxLevels);
       isWorth = static_cast<double>(before - live()) >= kWorthABand * static_cast<double>(before) &&
                 live() / cells_ >= parts_.minPartsLater && isFarFrom() && levels < kMaxLevels / 2;
       if (isWorth) cut = cutAnew(cut.isSeam);

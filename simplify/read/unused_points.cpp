@@ -1,6 +1,7 @@
 #include "simplify/read/unused_points.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <span>
 
@@ -34,6 +35,7 @@ bool usesOneOf(const CellMesh& mesh, const std::vector<bool>& points) {
 /// Leaves the tuples whose point stays.
 template <class T>
 void keep(std::vector<T>& values, std::size_t components, const std::vector<bool>& goes) {
+  assert(values.size() == goes.size() * components);
   std::size_t to = 0;
   for (std::size_t i = 0; i < goes.size(); ++i)
     for (std::size_t c = 0; c < components && !goes[i]; ++c)

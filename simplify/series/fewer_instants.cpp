@@ -1,6 +1,7 @@
 #include "simplify/series/fewer_instants.h"
 
 #include <algorithm>
+#include <cassert>
 #include <span>
 
 #include "proto/series.h"
@@ -15,6 +16,7 @@ std::vector<std::size_t> halvings(std::size_t instants) {
   for (const InstantStep& step : decodingOrder(instants)) {
     if (step.isAnchor) continue;
     const auto right = std::ranges::lower_bound(step.around, step.instant);
+    assert(right != step.around.begin() && right != step.around.end());
     out[step.instant] = 1 + std::max(out[*(right - 1)], out[*right]);
   }
   return out;

@@ -1,6 +1,7 @@
 #include "simplify/series/series.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace qtet {
@@ -20,6 +21,7 @@ std::vector<InstantStep> decodingOrder(std::size_t instants) {
       for (const std::size_t instant : more) {
         const auto right = std::ranges::lower_bound(known, instant);
         const auto place = static_cast<std::size_t>(right - known.begin());
+        assert(place > 0 && place < known.size());
         // two on each side, or what there is
         std::size_t first = place >= 2 ? place - 2 : 0;
         first = std::min(first, known.size() >= 4 ? known.size() - 4 : 0);
@@ -33,6 +35,7 @@ std::vector<InstantStep> decodingOrder(std::size_t instants) {
       std::ranges::sort(known);
     }
   }
+  assert(out.size() == instants);
   return out;
 }
 
@@ -47,6 +50,7 @@ std::vector<std::size_t> seriesOrder(std::span<const MeshField> fields,
       ordered.push_back(series.fields[step.instant]);
     const std::size_t head = opening ? nearestTime(series.times, *opening) : 0;
     const auto at = std::ranges::find(ordered, series.fields[head]);
+    assert(at != ordered.end());
     std::rotate(ordered.begin(), at, at + 1);
     std::vector<std::size_t> places = series.fields;
     std::ranges::sort(places);

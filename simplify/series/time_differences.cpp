@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <span>
@@ -29,6 +30,7 @@ std::int32_t differenceOf(const FusionHistory& history, std::size_t f,
                           const TimePrediction& prediction, std::size_t i) {
   const std::int32_t value = history.values[f][i];
   if (value == kMissing || prediction.isNone()) return value;
+  assert(prediction.parents[0].field < f);
   return value - predictedAt(history, prediction, i);
 }
 
@@ -61,6 +63,7 @@ class Chooser {
       : history_(history), series_(series), rows_(rows) {}
 
   void choose(const InstantStep& step) {
+    assert(step.instant < series_.fields.size());
     f_ = series_.fields[step.instant];
     if (f_ < rows_.size()) {
       anchorsInARow_ = rows_[f_];
@@ -89,6 +92,7 @@ class Chooser {
 
   void tryAround(const InstantStep& step) {
     const auto right = std::ranges::lower_bound(step.around, step.instant);
+    assert(right != step.around.begin() && right != step.around.end());
     const std::size_t before = *(right - 1), after = *right;
     const double time = series_.times[step.instant];
     const bool isLeft = time - series_.times[before] <= series_.times[after] - time;
@@ -116,6 +120,7 @@ class Chooser {
   }
 
   void tryWeights(std::span<const std::uint16_t> parents, std::span<const double> weights) {
+    assert(weights.size() == parents.size());
     const std::vector<int> rounded = roundedWeights(weights);
     TimePrediction prediction;
     for (std::size_t i = 0; i < rounded.size(); ++i)  // one that counts nothing need not be fetched
@@ -128,6 +133,7 @@ class Chooser {
 
   [[nodiscard]] std::vector<double> fitted(std::span<const std::uint16_t> parents,
                                            WeightFit fit) const {
+    assert(!parents.empty() && parents.size() <= TimePrediction::kMaxParents);
     std::array<double, TimePrediction::kMaxParents> row{};
     eachPair(history_, f_, [&](std::size_t i, std::size_t j) {
       bool isMissing = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -86,6 +87,7 @@ Status TimeStatistics::add(std::span<const MeshField> fields) {
 }
 
 Status TimeStatistics::addInstant(const MeshField& field) {
+  assert(field.name.isInstant());
   const InstantName name = *field.name.instant();
   auto sums = std::ranges::find_if(series_, [&](const Sums& known) {
     return known.kind.name == name.series && known.kind.association == field.association &&
@@ -125,6 +127,7 @@ Status TimeStatistics::addInstant(const MeshField& field) {
 }
 
 std::vector<MeshField> TimeStatistics::fieldsOf(Sums&& given) {
+  assert(given.means.size() == given.counts.size() && given.least.size() == given.counts.size());
   Sums sums = std::move(given);
   const std::string& type = sums.kind.type;
   const std::string floats = isFloatType(type) ? type : "float64";
@@ -135,6 +138,7 @@ std::vector<MeshField> TimeStatistics::fieldsOf(Sums&& given) {
       mean = square = sums.least[i] = sums.largest[i] = kNoValue;
       continue;
     }
+    assert(sums.least[i] <= sums.largest[i] && sums.counts[i] <= sums.instants);
     // rounding may leave the mean outside of the values
     mean = inType(std::clamp(mean, sums.least[i], sums.largest[i]), floats);
     square = inType(std::sqrt(square / sums.counts[i]), floats);

@@ -34,6 +34,7 @@ std::vector<double> polynomialWeights(std::span<const double> times, double time
 }
 
 void WeightFit::add(std::span<const double> parents, double target) {
+  assert(parents.size() == weights_.size());
   double miss = target;
   for (std::size_t i = 0; i < parents.size(); ++i) miss -= weights_[i] * parents[i];
   const double root = isEven_ ? 1 : 1 + std::fabs(miss), counts = 1 / (root * root);
@@ -53,6 +54,7 @@ std::vector<double> WeightFit::solve() const {
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t row = 0; row < n; ++row) {
       if (row == i) continue;
+      assert(sums[i][i] > 0);
       const double share = sums[row][i] / sums[i][i];
       for (std::size_t j = 0; j < n; ++j) sums[row][j] -= share * sums[i][j];
       sums[row].back() -= share * sums[i].back();

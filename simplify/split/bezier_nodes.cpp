@@ -1,6 +1,8 @@
 #include "simplify/split/bezier_nodes.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 
 #include "codec/coding/float_rounding.h"
 #include "simplify/split/higher_cells.h"
@@ -9,6 +11,7 @@ namespace qtet {
 namespace {
 
 double power(double base, int exponent) {
+  assert(exponent >= 0);
   double out = 1;
   for (; exponent > 0; --exponent) out *= base;
   return out;
@@ -30,6 +33,7 @@ double bernstein(const std::array<int, kCount>& exponents, const std::array<doub
 }
 
 double alongALine(int degree, int control, int place) {
+  assert(degree >= 1 && control >= 0 && control <= degree && place <= degree);
   const double t = place / static_cast<double>(degree);
   return bernstein<2>({degree - control, control}, {1 - t, t});
 }
@@ -88,6 +92,7 @@ class Mover {
                   "cell " + std::to_string(mesh_.cellId(cell)) + " is a " + cellTypeName(type) +
                       " of " + std::to_string(ids.size()) + " nodes, which no degree has");
     const HigherCell& shape = higherCell(type, *degrees);
+    assert(shape.places.size() == ids.size());
     for (std::size_t node = 0; node < ids.size(); ++node) {
       if (moved_[ids[node]]) continue;
       moved_[ids[node]] = 1;
@@ -102,6 +107,11 @@ class Mover {
                           "; weights must be positive, export the mesh again");
         sum += share_[k] = weight * weightAt(type, *degrees, shape.places[k], shape.places[node]);
       }
+      if (!(sum > 0 && std::isfinite(sum)))
+        return fail(ErrorCode::kBadInput,
+                    "cell " + std::to_string(mesh_.cellId(cell)) +
+                        " is a rational Bezier cell whose weights are infinite or too small to "
+                        "divide by; export the mesh again");
       for (double& share : share_) share /= sum;
       place(ids, ids[node]);
     }
@@ -109,6 +119,7 @@ class Mover {
   }
 
   void place(std::span<const VertexId> ids, VertexId to) {
+    assert(share_.size() == ids.size() && to < points_.size());
     for (std::size_t c = 0; c < 3; ++c)
       mesh_.points[to][c] = mean(ids, [&](VertexId v) { return points_[v][c]; });
     for (const Kept& kept : fields_) {

@@ -9,8 +9,8 @@ namespace qtet {
 /// Floating-point fields of points get the values there. The cell is then split as a Lagrange cell
 /// is. A control point of several cells depends on what they share alone, and is moved once.
 /// kWeightsField, if it is there, holds the weights of rational cells. Errors: bad-input (a number
-/// of nodes that no such cell has; weights that are not positive). REQUIRES: a mesh that
-/// checkCellMesh has passed.
+/// of nodes that no such cell has; weights that are not positive and finite, or too small to divide
+/// by). REQUIRES: a mesh that checkCellMesh has passed.
 [[nodiscard]] Status placeBezierNodes(CellMesh& mesh);
 
 }  // namespace qtet

@@ -40,6 +40,7 @@ bool hasItsFaces(std::span<const VertexId> stream, std::size_t points) {
 
 bool hasItsVertices(std::uint8_t type, std::span<const VertexId> ids, std::size_t points) {
   if (type == kPolyhedronCell) return hasItsFaces(ids, points);
+  assert(isRead(type));
   const std::uint32_t wanted = verticesOf(type);
   if (wanted > 0 ? ids.size() != wanted : ids.size() < shapeOf(type).corners) return false;
   return std::ranges::all_of(ids, [points](VertexId v) { return v < points; });

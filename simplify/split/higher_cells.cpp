@@ -21,6 +21,7 @@ Shape shapeOfHigher(std::uint8_t type) {
 
 std::size_t nodesOf(Shape shape, const Degrees& d) {
   const auto [a, b, c] = std::array{std::size_t(d[0]), std::size_t(d[1]), std::size_t(d[2])};
+  assert(std::ranges::min(d) >= 1 && std::ranges::max(d) <= kMaxDegree);
   if (shape == Shape::kTetrahedron) return (a + 1) * (a + 2) * (a + 3) / 6;
   if (shape == Shape::kPyramid) return (a + 1) * (a + 2) * (2 * a + 3) / 6;
   if (shape == Shape::kWedge) return (a + 1) * (a + 2) / 2 * (c + 1);
@@ -78,6 +79,7 @@ class Builder {
     const auto inside = [&](int x, int y, int z) {
       return isInside(shape_, cell_.degrees, i + x, j + y, k + z);
     };
+    assert(at(0, 0, 0) < cell_.places.size());
     cell_.places[at(0, 0, 0)] = {i, j, k};
     if (shape_ == Shape::kHexahedron) {
       if (inside(1, 1, 1))
@@ -134,6 +136,7 @@ bool isHigherCell(std::uint8_t type) {
 
 std::optional<Degrees> degreesOf(std::uint8_t type, std::size_t nodes,
                                  std::span<const double> stated) {
+  assert(isHigherCell(type));
   const Shape shape = shapeOfHigher(type);
   if (stated.size() == 3) {
     Degrees degrees{};

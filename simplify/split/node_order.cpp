@@ -30,6 +30,7 @@ int triangleNode(int degree, Barycentric<3> node) {
     before += 3 * degree;
     node = node.within(1);
   }
+  assert(degree >= 0 && node.b[0] + node.b[1] + node.b[2] == degree);
   if (degree == 0) return before;
   for (int corner = 0; corner < 3; ++corner)
     if (node.b[(corner + 2) % 3] == degree) return before + corner;
@@ -66,6 +67,7 @@ int tetrahedronNode(int degree, int i, int j, int k) {
     before += tetrahedronNodes(degree) - tetrahedronNodes(degree - 4);
     node = node.within(1);
   }
+  assert(degree >= 0 && node.least() == 0);
   if (degree == 0) return before;
   for (int corner = 0; corner < 4; ++corner)
     if (node.b[(corner + 3) % 4] == degree) return before + corner;

@@ -1,6 +1,7 @@
 #include "simplify/split/split_cells.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "proto/limits.h"
@@ -83,6 +84,7 @@ class Splitter {
   }
 
   TetMesh finish() {
+    assert(ends_.size() == mesh_.cells());
     out_.pointType = mesh_.pointType;
     for (MeshField& field : mesh_.fields) {
       if (isShapeField(field)) continue;
@@ -106,6 +108,7 @@ class Splitter {
 
   Status add(std::uint8_t type, std::span<const VertexId> ids, std::size_t cell) {
     if (type == kTetrahedronCell) {
+      assert(ids.size() == 4);
       out_.tetrahedra.push_back({ids[0], ids[1], ids[2], ids[3]});
       return {};
     }
@@ -125,6 +128,7 @@ class Splitter {
   /// Does what addLinear does for a hexahedron of eight vertices whose first cone fits without
   /// doubt, in a fifth of the time (tests/bench/read_bench.cpp).
   bool addUsualHexahedron(std::span<const VertexId> ids) {
+    assert(ids.size() == 8);
     const auto corner = static_cast<std::size_t>(std::ranges::min_element(ids) - ids.begin());
     const VertexId apex = ids[corner];
     std::array<Vector3, 8> at;  // seen from the apex
@@ -153,6 +157,7 @@ class Splitter {
         cone[count++] = {ids[p], ids[r], ids[q], apex};
       }
     }
+    assert(count == cone.size());
     if (positive != 6 && negative != 6) return false;
     if (negative == 6) {
       ++report_.insideOut;
@@ -163,6 +168,7 @@ class Splitter {
   }
 
   void addLinear(const CellShape& shape, std::span<const VertexId> ids) {
+    assert(ids.size() >= shape.corners);
     if (shape.corners == 4) {
       out_.tetrahedra.push_back({ids[0], ids[1], ids[2], ids[3]});
       return;
@@ -263,6 +269,7 @@ class Splitter {
 
   /// Four corner tetrahedra and the octahedron between them, which is the cell's own to cut.
   void addQuadraticTetrahedron(std::span<const VertexId> ids) {
+    assert(ids.size() == 10);
     cutOctahedron(ids.subspan(4, 6));
     for (const Tetrahedron& t : kCornerTetrahedra)
       best_.push_back({ids[t[0]], ids[t[1]], ids[t[2]], ids[t[3]]});
@@ -271,6 +278,7 @@ class Splitter {
 
   /// The best of the three cuts, into best_.
   void cutOctahedron(std::span<const VertexId> ids) {
+    assert(ids.size() == 6);
     best_.clear();
     Fit bestFit = kSomeInverted;
     for (const auto& cut : kOctahedronCuts) {
@@ -343,6 +351,7 @@ class Splitter {
     clearFaces();
     for (std::size_t f = 0; f < shape.faces.size(); ++f) addCurvedFace(shape, nodes, ids, f);
     best_.clear();
+    assert(ids.size() >= shape.corners + nodes.edges.size());
     const std::span<const VertexId> onEdges = ids.subspan(shape.corners, nodes.edges.size());
     coneFrom(nodes.centre != kNoNode ? ids[nodes.centre] : newCentre(onEdges));
     Fit fit = kSomeInverted;
@@ -353,6 +362,7 @@ class Splitter {
   void addCurvedFace(const CellShape& shape, const CurvedNodes& nodes,
                      std::span<const VertexId> ids, std::size_t f) {
     const ShapeFace& face = shape.faces[f];
+    assert(face.corners == 3 || face.corners == 4);
     const std::size_t n = face.corners;
     std::array<VertexId, 4> corner{}, mid{};
     for (std::size_t k = 0; k < n; ++k) {
@@ -522,6 +532,7 @@ class Splitter {
   }
 
   VertexId newCentre(std::span<const VertexId> around) {
+    assert(!around.empty());
     Position mean{};
     for (const VertexId v : around) {
       for (std::size_t k = 0; k < 3; ++k)
@@ -535,6 +546,7 @@ class Splitter {
   }
 
   void forgetCentre() {
+    assert(!centreEnds_.empty() && report_.centrePoints > 0);
     out_.points.pop_back();
     centreEnds_.pop_back();
     centreVertices_.resize(centreEnds_.empty() ? 0 : centreEnds_.back());
@@ -542,6 +554,7 @@ class Splitter {
   }
 
   void inherit(MeshField& field) const {
+    assert(field.values.size() == ends_.size() * field.components);
     const std::size_t n = field.components;
     std::vector<double> values;
     values.reserve((ends_.empty() ? 0 : ends_.back()) * n);
@@ -571,6 +584,7 @@ class Splitter {
       }
       begin = end;
     }
+    assert(field.values.size() == out_.points.size() * n);
   }
 
   CellMesh& mesh_;
@@ -589,6 +603,7 @@ class Splitter {
 /// Nothing to split: the vertices are the tetrahedra.
 TetMesh asTheyAre(CellMesh&& mesh) {
   TetMesh out{std::move(mesh.points), {}, std::move(mesh.fields), std::move(mesh.pointType)};
+  assert(mesh.vertices.size() == 4 * mesh.cells());
   out.tetrahedra.resize(mesh.cells());
   for (std::size_t i = 0; i < out.tetrahedra.size(); ++i)
     std::copy_n(mesh.vertices.data() + 4 * i, 4, out.tetrahedra[i].data());
@@ -603,6 +618,7 @@ void addOriginalCellIds(const CellMesh& mesh, const std::vector<CellId>& ends, T
   MeshField ids{kOriginalCellField, 1, "int32", {}, "cell"};
   ids.values.reserve(out.tetrahedra.size());
   for (std::size_t cell = 0; cell < ends.size(); ++cell) {
+    assert(ids.values.size() <= ends[cell]);
     largest = std::max(largest, mesh.cellId(cell));
     ids.values.resize(ends[cell], static_cast<double>(mesh.cellId(cell)));
   }

@@ -1,6 +1,7 @@
 #include "simplify/read/abaqus/set_members.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 #include "simplify/read/abaqus/abaqus_lines.h"
@@ -88,6 +89,7 @@ void SetMembers::addPiece(const Task& task, const AbaqusSetPiece& piece,
 
 void SetMembers::addRange(std::size_t copy, const NumberRange& range,
                           std::vector<std::uint32_t>& out) {
+  assert(copy < copies_.size() && range.step > 0);
   const AbaqusCopy& of = copies_[copy];
   const std::vector<std::uint32_t>& numbers = model_.parts[of.part].numbers.all();
   const std::vector<std::uint32_t>& cells = byNumber_[of.part];
@@ -95,6 +97,7 @@ void SetMembers::addRange(std::size_t copy, const NumberRange& range,
                                      [&](std::uint32_t cell) { return numbers[cell]; });
   for (; at != cells.end() && numbers[*at] <= range.last && look(); ++at) {
     const std::uint32_t cell = of.firstCell + *at;
+    assert(cell < taken_.size());
     if ((numbers[*at] - range.first) % range.step != 0 || taken_[cell] == call_) continue;
     taken_[cell] = call_;
     out.push_back(cell);

@@ -1,6 +1,7 @@
 #include "simplify/read/ensight/ensight_numbers.h"
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <span>
 
@@ -20,12 +21,14 @@ constexpr std::uint64_t kFrontOfSteps = 512;
 constexpr std::uint64_t kSearched = 1 << 20;
 
 std::uint32_t wordAt(std::string_view bytes, std::size_t at, std::endian order) {
+  assert(at + sizeof(std::uint32_t) <= bytes.size());
   std::uint32_t value = 0;
   std::memcpy(&value, bytes.data() + at, sizeof(value));
   return order == std::endian::native ? value : std::byteswap(value);
 }
 
 Result<std::string> rangeOf(const VtuFile& file, std::uint64_t begin, std::uint64_t end) {
+  assert(begin <= end && end <= file.size());
   std::string out(static_cast<std::size_t>(end - begin), '\0');
   if (Status done = file.read(begin, std::as_writable_bytes(std::span(out))); !done)
     return std::unexpected(done.error());
@@ -62,6 +65,7 @@ Status withoutRecordMarks(std::string& bytes, const std::filesystem::path& file,
                       " follow: the file was cut off; copy or export it "
                       "again",
                   at);
+    assert(to <= at);
     std::memmove(bytes.data() + to, bytes.data() + at + kMarkBytes, length);
     to += length;
     at += length + 2 * kMarkBytes;

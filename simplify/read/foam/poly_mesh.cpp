@@ -1,6 +1,7 @@
 #include "simplify/read/foam/poly_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <span>
 #include <string>
 #include <utility>
@@ -83,6 +84,7 @@ class MeshFolder {
     return face < neighbour_.size() && neighbour_[face] >= 0;
   }
   [[nodiscard]] std::span<const VertexId> cornersOf(std::size_t face) const {
+    assert(face < ends_.size());
     const std::size_t begin = face == 0 ? 0 : ends_[face - 1];
     return std::span(corners_).subspan(begin, ends_[face] - begin);
   }
@@ -130,6 +132,7 @@ class MeshFolder {
   }
 
   [[nodiscard]] Status checkClosed(const FoamList& file) const {
+    assert(ends_.size() == owner_.size() && neighbour_.size() <= owner_.size());
     std::vector<std::uint64_t> open(cells_);
     for (std::size_t face = 0; face < owner_.size(); ++face) {
       const std::uint64_t edges = edgesOf(cornersOf(face));

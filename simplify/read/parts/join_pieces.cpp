@@ -62,6 +62,7 @@ class Joining {
 
   /// Whether their blocks let them be one.
   [[nodiscard]] bool mayJoin(VertexId a, VertexId b) {
+    assert(a < isApart_.size() && b < isApart_.size());
     const std::vector<std::int32_t>& block = blocks_.block;
     if (block.empty() || block[a] == block[b]) return true;
     blocksMeet_ = true;
@@ -275,10 +276,12 @@ void compact(CellMesh& mesh, std::vector<VertexId>& names) {
   const std::size_t before = names.size();
   VertexId count = 0;
   for (VertexId v = 0; v < before; ++v) {
+    assert(names[v] <= v);
     if (names[v] != v) {
       names[v] = names[names[v]];  // an earlier point, which has its new name
       continue;
     }
+    assert(count <= v);
     mesh.points[count] = mesh.points[v];
     if (!mesh.pointIds.empty()) mesh.pointIds[count] = mesh.pointIds[v];
     for (MeshField& field : mesh.fields)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -129,6 +130,7 @@ NearPoints nearPoints(const CellMesh& mesh, const PieceOf& pieceOf) {
   NearPoints out{groupsOf(mesh, pieceOf)};
   const std::vector<bool> closes = closingGroups(mesh, pieceOf, out.groups);
   for (VertexId v = 0; v < out.groups.size(); ++v) {
+    assert(out.groups[v] <= v && closes.size() == out.groups.size());
     VertexId& group = out.groups[v];
     if (group == v || closes[group]) continue;
     if (mesh.points[v] != mesh.points[group]) ++out.apart;

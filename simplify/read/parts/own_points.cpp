@@ -1,6 +1,7 @@
 #include "simplify/read/parts/own_points.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -34,6 +35,7 @@ Patches patchesOf(const CellMesh& mesh) {
   for (VertexId v = 0; v < mesh.points.size(); ++v) {
     if (!isUsed[v]) continue;
     const VertexId first = sets.find(v);
+    assert(first <= v);
     out.patch[v] = first == v ? out.count++ : out.patch[first];
     ++out.points;
   }
@@ -80,11 +82,13 @@ std::vector<VertexId> sortPoints(CellMesh& mesh, const Patches& patches) {
     if (!mesh.pointIds.empty()) mesh.pointIds[v] = before.pointIds[order[v]];
     if (patches.patch[order[v]] != kGhost) ends[patches.patch[order[v]]] = v + 1;
   }
+  assert(!ends.empty());
   ends.back() = static_cast<VertexId>(order.size());
   for (MeshField& field : mesh.fields) {
     if (isCellField(field)) continue;
     const std::vector<double> values = field.values;
     const std::size_t n = field.components;
+    assert(values.size() == order.size() * n);
     for (std::size_t v = 0; v < order.size(); ++v)
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(order[v] * n), n,
                   field.values.begin() + static_cast<std::ptrdiff_t>(v * n));
@@ -102,6 +106,7 @@ OwnPoints joinOwnPoints(CellMesh& mesh, OwnJoin how) {
   countCoincident(mesh, patches, out);
   if (static_cast<double>(out.coincident) <= kMostCoincide * static_cast<double>(patches.points))
     return {};
+  assert(out.coincident < patches.points && out.differing <= out.coincident);
   out.patches = patches.count;
   const bool agree =
       static_cast<double>(out.differing) <= kFewDiffer * static_cast<double>(out.coincident);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <numeric>
 #include <span>
@@ -18,11 +19,13 @@ class PointSets {
     std::iota(parent_.begin(), parent_.end(), VertexId{0});
   }
   [[nodiscard]] VertexId find(VertexId v) {
+    assert(v < parent_.size());
     while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
     return v;
   }
   void unite(VertexId a, VertexId b) {
     a = find(a), b = find(b);
+    assert(parent_[a] == a && parent_[b] == b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
 

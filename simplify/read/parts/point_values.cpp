@@ -38,6 +38,7 @@ PointValues::PointValues(const CellMesh& mesh, std::span<const std::int32_t> blo
 }
 
 bool PointValues::agree(VertexId a, VertexId b) const {
+  assert(blocks_.empty() || (a < blocks_.size() && b < blocks_.size()));
   if (blocks_.empty() || blocks_[a] == blocks_[b]) return true;
   return std::ranges::all_of(fields_, [&](const Field& field) {
     const std::size_t n = field.values->components;

@@ -60,6 +60,7 @@ class KeptPoints {
   }
 
   void keep(VertexId v) {
+    assert(next_[v] == kGhost);
     VertexId& first = first_.try_emplace(boxOf(points_[v]), kGhost).first->second;
     next_[v] = first;
     first = v;
@@ -81,6 +82,7 @@ class KeptPoints {
     Boxes out;
     for (const double place : {x - distance_, x, x + distance_}) {
       const double box = boxOf(place);
+      assert(out.count < out.box.size());
       if (out.count == 0 || out.box[out.count - 1] != box) out.box[out.count++] = box;
     }
     return out;
@@ -125,6 +127,7 @@ std::uint64_t weldPoints(CellMesh& mesh, double distance, std::string_view motio
   std::uint64_t joined = 0;
   for (VertexId v = 0; v < names.size(); ++v) {
     const VertexId earlier = kept.near(v);
+    assert(earlier == kGhost || (earlier < v && names[earlier] == earlier));
     names[v] = earlier == kGhost ? v : earlier;
     earlier == kGhost ? kept.keep(v) : static_cast<void>(++joined);
   }

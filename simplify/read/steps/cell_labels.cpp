@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cctype>
 #include <limits>
 #include <map>
@@ -127,13 +128,16 @@ bool isCellFieldCalled(const MeshField& field, std::string_view name) {
 }  // namespace
 
 void nameNewCells(std::string_view name, std::int32_t number, CellMesh& mesh) {
+  assert(number > 0);
   CellLabel* known = find(kBlockLabel, mesh.labels);
   if (!known) known = &mesh.labels.emplace_back(std::string(kBlockLabel));
+  assert(known->values.size() <= mesh.cells());
   known->values.resize(mesh.cells(), name.empty() ? 0 : number);
   if (!name.empty() && known->names.size() < kMaxLabelNames) known->names.emplace(number, name);
 }
 
 void nameBlock(std::string_view name, std::int32_t number, CellMesh& mesh) {
+  assert(number > 0);
   if (name.empty()) return;
   CellLabel* known = find(kBlockLabel, mesh.labels);
   if (!known) return nameNewCells(name, number, mesh);

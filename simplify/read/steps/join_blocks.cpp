@@ -1,6 +1,7 @@
 #include "simplify/read/steps/join_blocks.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -258,6 +259,7 @@ class Motion {
  public:
   /// REQUIRES: steps of the same cells.
   Motion(std::span<const TimedCells> steps, const FieldNames& names, bool moves) {
+    assert(!steps.empty());
     const CellMesh& rest = steps.front().cells;
     for (const TimedCells& step : steps)
       if (!areSamePoints(rest.points, step.cells.points)) report_.moved.insert(timeOf(step));
@@ -325,6 +327,7 @@ CellMesh joinBlocks(std::vector<CellMesh> blocks, const ReadOptions& options, Re
         out.pointIds.insert(out.pointIds.end(), block.pointIds.begin(), block.pointIds.end());
       ends.emplace_back();
     }
+    assert(!ends.empty() && firstPoint <= out.points.size());
     ends.back() = static_cast<VertexId>(std::min<std::size_t>(out.points.size(), kGhost));
     last = &block.points;
     appendCells(out, block, static_cast<VertexId>(std::min<std::size_t>(firstPoint, kGhost)));
@@ -339,12 +342,15 @@ CellMesh joinBlocks(std::vector<CellMesh> blocks, const ReadOptions& options, Re
     out.otherFields.insert(out.otherFields.end(), block.otherFields.begin(),
                            block.otherFields.end());
   }
+  assert(out.cellIds.size() == out.cells() &&
+         (!haveIds || out.pointIds.size() == out.points.size()));
   join(out, ends, options, report);
   return out;
 }
 
 Result<CellMesh> joinSteps(std::vector<TimedCells> steps, const std::filesystem::path& path,
                            const FieldNames& names, ReadReport& report, bool moves) {
+  assert(!steps.empty());
   StepOrder order(steps.front().cells);
   for (TimedCells& step : steps) {
     report.series.times.insert(timeOf(step));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <map>
 #include <vector>
 
@@ -141,6 +142,7 @@ class GmshOrder {
 };
 
 std::vector<NodePlace> gmshPlaces(std::uint8_t type, int n) {
+  assert(n >= 1 && n <= kMaxDegree);
   GmshOrder order;
   if (type == kLagrangeTetrahedronCell)
     order.tetrahedron(n, {{{0, 0, 0}, {n, 0, 0}, {0, n, 0}, {0, 0, n}}});
@@ -163,6 +165,7 @@ GmshElement higherElement(std::uint8_t type, int degree) {
   const HigherCell& cell = higherCell(type, degrees);
   if (nodeOf.empty()) {
     const std::vector<NodePlace> places = gmshPlaces(type, degree);
+    assert(places.size() == cell.places.size());
     for (const NodePlace& place : cell.places)
       nodeOf.push_back(
           static_cast<std::uint16_t>(std::ranges::find(places, place) - places.begin()));

@@ -60,6 +60,7 @@ Status StoredRun::read(const VtuFile& file, std::uint64_t at, std::span<std::byt
                         from + 4 * i);
       decoded += got;
     }
+    assert(skip < 3 && decoded <= 3 * groups);
     const std::size_t wanted = std::min(into.size(), 3 * groups - skip);
     if (decoded < skip + wanted) return endsWithin(from + 4 * ((decoded + 2) / 3));
     std::memcpy(into.data(), bytes.data() + skip, wanted);
@@ -166,6 +167,7 @@ Status ArrayBytes::openBlocks() {
 }
 
 std::uint64_t ArrayBytes::bytesOfBlock(std::uint64_t block) const {
+  assert(block < ends_.size());
   return block + 1 == ends_.size() ? lastBytes_ : blockBytes_;
 }
 
@@ -177,6 +179,7 @@ std::uint64_t ArrayBytes::certain() const {
 }
 
 Status ArrayBytes::loadBlock(std::uint64_t block) {
+  assert(block < ends_.size() && inflater_);
   const std::uint64_t from = block == 0 ? 0 : ends_[block - 1];
   compressed_.resize(ends_[block] - from);
   loaded_ = ~std::uint64_t{0};
@@ -196,6 +199,7 @@ Status ArrayBytes::read(std::uint64_t at, std::span<std::byte> into) {
     if (loaded_ != block) {
       if (Status loaded = loadBlock(block); !loaded) return loaded;
     }
+    assert(block_.size() == bytesOfBlock(block) && at % blockBytes_ < block_.size());
     const std::uint64_t within = at % blockBytes_;
     const auto bytes =
         static_cast<std::size_t>(std::min<std::uint64_t>(into.size(), block_.size() - within));

@@ -5,6 +5,7 @@
 #include <lzma.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace qtet {
@@ -36,6 +37,7 @@ bool inflateLzma(std::span<const std::byte> block, std::uint64_t bytes,
   stream.avail_in = block.size();
   into.clear();
   while (true) {
+    assert(into.size() <= bytes);
     const std::size_t before = into.size();
     const auto step = static_cast<std::size_t>(std::min<std::uint64_t>(kLzmaStep, bytes - before));
     into.resize(before + step);
@@ -76,6 +78,8 @@ BlockInflater::~BlockInflater() = default;
 
 bool BlockInflater::inflate(std::span<const std::byte> block, std::uint64_t bytes,
                             std::vector<std::byte>& into) {
+  assert(compressor_ != VtuCompressor::kNone);
+  assert(bytes <= maxInflated(compressor_, block.size()));
   if (compressor_ == VtuCompressor::kLzma) return inflateLzma(block, bytes, into);
   into.resize(bytes);
   if (compressor_ == VtuCompressor::kLz4) return inflateLz4(block, into);

@@ -1,6 +1,7 @@
 #include "simplify/read/vtu/vtu_cells.h"
 
 #include <algorithm>
+#include <cassert>
 #include <ranges>
 #include <span>
 #include <string_view>
@@ -185,6 +186,7 @@ class CellIntake {
 
   /// The same as readVertices and close of each cell, in bulk.
   Status readAlike() {
+    assert(ends_.size() == types_.size());
     const std::uint64_t first = out_->vertices.size();
     const Status done = readVertices([&](std::span<const std::int64_t> ids) {
       const auto names = ids | std::views::transform([this](auto id) { return shifted(id); });
@@ -202,6 +204,7 @@ class CellIntake {
     while (!ids.empty() && status_) {
       while (cell_ < types_.size() && at_ == ends_[cell_] && status_) close();
       if (cell_ == types_.size() || !status_) return;
+      assert(at_ < ends_[cell_]);
       const auto count = static_cast<std::size_t>(
           std::min<std::int64_t>(ends_[cell_] - at_, static_cast<std::int64_t>(ids.size())));
       if (isKept(cell_) && types_[cell_] != kPolyhedronCell)
@@ -223,6 +226,7 @@ class CellIntake {
 
   /// Ends the present cell, whose vertices are there.
   void close() {
+    assert(cell_ < types_.size());
     const std::uint8_t type = types_[cell_];
     const bool isVolume = dimensionOf(type) == 3, kept = isKept(cell_);
     if (!isVolume) ++report_->ignoredCells;

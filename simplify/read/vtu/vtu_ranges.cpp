@@ -94,6 +94,7 @@ Result<CellMesh> readVtuCellRange(const VtuFile& file, const VtuDocument& docume
   }
   const auto ids = integersOf(file, document, piece, "connectivity", {told, begin, end - begin});
   if (!ids) return std::unexpected(ids.error());
+  assert(ids->size() == end - begin && types->size() == range.count);
   out.vertices.reserve(ids->size());
   for (const std::int64_t id : *ids)
     out.vertices.push_back(std::cmp_less(id, piece.points) ? narrowedId(id) : kGhost);

@@ -102,7 +102,10 @@ TEST_F(Proposed, whatAVertexIsOffByAlreadyIsNoFusionsCost) {
     std::vector<double> values(cost_.components());
     const double cost = cost_.valuesAt(proposal.prey, proposal.where.point, values);
     if (!(cost > 0)) continue;
-    std::vector<std::int32_t> integers(5 * values.size());
+    std::size_t components = 0;  // of point fields
+    for (const FieldInfo& field : lattice_.fields)
+      if (!isCellField(field)) components += field.components;
+    const std::vector<std::int32_t> integers(components);
     const VertexId fused =
         mesh_.fuse(proposal.prey, {proposal.where.point, integers}, proposal.star, 0);
     cost_.makeRoom(mesh_.vertexSlots());

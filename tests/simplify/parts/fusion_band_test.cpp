@@ -78,7 +78,8 @@ class PartAndWhole : public ::testing::Test {
                                 .runPart({.key = 1e6f, .leastShare = 0}, cut.isSeam);
     ASSERT_GT(alone.history.fusions.size(), 10u);
     EXPECT_EQ(alone.done.levels.size(), done.levels.size());
-    const FusionHistory all = other.state.takeHistory(1);
+    const FusionHistory all =
+        other.state.takeHistory(other.levels + static_cast<std::uint32_t>(done.levels.size()));
     std::vector<VertexId> numbers = alone.vertices;
     for (std::size_t i = 0; i < alone.history.fusions.size(); ++i) {
       ASSERT_LT(before + i, all.fusions.size());

@@ -332,10 +332,20 @@ TEST(SplitCells, aRationalBezierCellComesToLieOnItsCircles) {
       << "x and the cells' numbers; the shape's own fields mean nothing of tetrahedra";
   EXPECT_EQ(split.fields[0].name, "x");
 
-  mesh.fields[1].values[3] = 0;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  for (const double weight : {0.0, -1.0, kNone, kInfinity}) {
+    CellMesh bad = mesh;
+    bad.fields[1].values[3] = weight;
+    const Result<TetMesh> refused = splitCells(std::move(bad), {}, report);
+    ASSERT_FALSE(refused) << weight;
+    EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(refused.error().message.find("weight"), std::string::npos);
+  }
+  std::ranges::fill(mesh.fields[1].values, std::numeric_limits<double>::denorm_min());
   const Result<TetMesh> refused = splitCells(CellMesh(mesh), {}, report);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("weight"), std::string::npos);
+  ASSERT_FALSE(refused) << "half of each is 0";
+  EXPECT_NE(refused.error().message.find("weights"), std::string::npos);
 }
 
 TEST(SplitCells, aNumberOfNodesThatNoDegreeHasIsLinearisedOnRequestAlone) {
