@@ -300,13 +300,13 @@ export class ViewerPage {
     // Twice, because the last command may not have reached the worker that draws.
     for (let i = 0; i < 2; ++i) {
       await this.settle();
-      const isAtRest = ({volume, frame, moved}) =>
-        volume?.hasCells && volume.atRest && frame === 0 && !moved;
+      const isAtRest = ({scene: {volume}, frames: {requested, moved}}) =>
+        volume?.hasCells && volume.atRest && requested === 0 && !moved;
       await this.waitInView(isAtRest).catch(async (error) => {
-        const state = await this.inView(({volume, frame, moved}) => {
+        const state = await this.inView(({scene: {volume}, frames: {requested, moved}}) => {
           const {whole, busy, interrupted, waiting, timer, wholeMs} = volume ?? {};
           const waits = timer !== undefined;
-          return {whole, busy, interrupted, waiting, waits, wholeMs, frame, moved};
+          return {whole, busy, interrupted, waiting, waits, wholeMs, requested, moved};
         });
         throw new Error(`${error.message}; it is ${JSON.stringify(state)}`);
       });

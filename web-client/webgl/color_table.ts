@@ -6,17 +6,17 @@ import {Texture} from './gl/texture';
 
 export class ColorTable {
   readonly texture: Texture;
-  private readonly entries = new Uint8Array(4 * kColorMapEntries);
+  private readonly values = new Uint8Array(4 * kColorMapEntries);
   private shown = '';
 
   constructor(graphics: Graphics) {
-    this.texture = new Texture(graphics, this.entries, kColorMapEntries, 1, 'rgba8');
+    this.texture = new Texture(graphics, this.values, kColorMapEntries, 1, 'rgba8');
   }
 
   show(map: ColorMapName, reversed: boolean): void {
     const name = `${map} ${reversed}`;
     if (name === this.shown) return;
-    this.entries.set(colorTable(map, reversed));
+    this.values.set(colorTable(map, reversed));
     this.texture.update();
     this.shown = name;
   }

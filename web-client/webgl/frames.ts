@@ -11,11 +11,12 @@ export class Frames {
   private moved = false;
   /** The requested frame; 0: none is. */
   private requested = 0;
-  /** Of setPlaying. */
+  /** Between two pictures; 0: nothing plays. */
   everyMs = 0;
   /** The pictures without a volume learn and use it. */
   private readonly budget = new FrameBudget();
-  private waiting: ((ms: number) => void)[] = [];
+  /** They are called with the time of drawing, once the next one is drawn. */
+  waiting: ((ms: number) => void)[] = [];
 
   /** `drawn` is called after each one. */
   constructor(
@@ -29,11 +30,6 @@ export class Frames {
     if (everyMs === this.everyMs) return;
     this.everyMs = everyMs;
     if (everyMs === 0 && !this.scene.hasVolume) this.invalidate();
-  }
-
-  /** Calls `drawn` with the time of drawing, once the next one is drawn. */
-  afterNext(drawn: (ms: number) => void): void {
-    this.waiting.push(drawn);
   }
 
   /** `moved`: the user did it and should see something at once. */

@@ -10,7 +10,7 @@ import {kFieldFragmentShader, kFieldVertexShader} from './field_shaders';
 import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
 import {isOutside, type Eye} from './lens';
-import {LineParts, type LineLook} from './line_parts';
+import {LineParts} from './line_parts';
 import type {Matrix} from './matrix';
 import type {Size} from './pose';
 import {kSoupAttributes, Soup} from './soup';
@@ -158,7 +158,9 @@ export class MeshParts {
     const hidesInside = this.isClosed && isOutside(this.bounds, toEye);
     const isClear = ({look}: Soup): boolean => Number(look.opacity) < 1;
     const visible = this.all.filter((soup) => soup.visible);
-    const {pixelRatio, lines} = this;
+    const {lines} = this;
+    const ground = this.frame ?? this.look;
+    const pixelRatio = Math.max(1, Number(ground.pixelRatio));
     const seen = {...this.look, pixelRatio, modelViewMatrix: toEye, projectionMatrix: toCube};
     const drawSoup = (soup: Soup): void => {
       const clear = isClear(soup);
@@ -176,22 +178,10 @@ export class MeshParts {
       soup.draw();
     };
     visible.filter((soup) => !isClear(soup)).forEach(drawSoup);
-    this.restEdges.draw({toEye, toCube}, this.lineLook);
+    const onDark = Boolean(ground.onDark);
+    this.restEdges.draw({toEye, toCube}, {onDark, opacity: lines.creaseFade, pixelRatio});
     // Soups that can be seen through come last, and hide nothing.
     visible.filter(isClear).forEach(drawSoup);
-  }
-
-  private get pixelRatio(): number {
-    return Math.max(1, Number((this.frame ?? this.look).pixelRatio));
-  }
-
-  private get lineLook(): LineLook {
-    const {onDark} = this.frame ?? this.look;
-    return {
-      onDark: Boolean(onDark),
-      opacity: this.lines.creaseFade,
-      pixelRatio: this.pixelRatio,
-    };
   }
 
   private get all(): Soup[] {

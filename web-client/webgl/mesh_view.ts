@@ -62,10 +62,11 @@ export class MeshView implements View {
 
   /** Makes the graphics' programs before there is a mesh: that takes as long as many pictures. */
   warmUp(): void {
-    const {frames, scene} = this;
-    scene.parts.warmUp();
+    const {frames} = this;
+    const {parts} = this.scene;
+    parts.warmUp();
     frames.draw();
-    scene.parts.clear();
+    parts.clear();
     frames.invalidate(false);
   }
 
@@ -81,7 +82,7 @@ export class MeshView implements View {
           this.show(loaded ? snapshot : {...snapshot, volume: null}, drawn, change),
         );
     if (change) scene.changeLattice(change);
-    frames.afterNext(drawn);
+    frames.waiting.push(drawn);
     // While a series plays, each instant has its turn: the next one would interrupt it.
     const isAwaited = scene.isMerelyFiner(snapshot) || frames.everyMs > 0;
     frames.invalidate(snapshot.volume == null || !isAwaited);
