@@ -37,7 +37,7 @@ const read =
 function displayFor(attributes: Record<string, string>): ReturnType<typeof displayOf> {
   const shown = new ShownMesh();
   shown.manifest = manifest;
-  shown.bounds = [0, 0, 0, 1, 1, 1];
+  shown.base.bounds = [0, 0, 0, 1, 1, 1];
   return displayOf(settingsFor(shown, read(attributes)), shown, read(attributes));
 }
 
