@@ -97,13 +97,13 @@ class WorkerView implements View {
     };
     worker.postMessage(begin, [surface]);
     const first = await answerOf(worker);
-    if (first.type !== 'drawn') {
+    if (first.type !== 'begun') {
       worker.terminate();
       throw new Error(
         first.type === 'failed' ? first.message : 'the worker that draws does not answer',
       );
     }
-    return new WorkerView(worker, canvas, listeners, first.pose);
+    return new WorkerView(worker, canvas, listeners, first.pose, first.renderer);
   }
 
   private constructor(
@@ -111,6 +111,7 @@ class WorkerView implements View {
     readonly canvas: HTMLCanvasElement,
     private readonly listeners: ViewListeners,
     public pose: Pose,
+    readonly renderer: string,
   ) {
     worker.onmessage = (event: MessageEvent<FromView>) => {
       this.noteUnanswered(0);
@@ -260,6 +261,7 @@ class WorkerView implements View {
       case 'coarse':
         return void this.coarse(message.id, message.have);
       case 'hello':
+      case 'begun':
       case 'pong':
         return;
     }
