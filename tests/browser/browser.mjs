@@ -3,7 +3,7 @@
 import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join} from 'node:path';
-import {PagePool} from './page_pool.mjs';
+import {PagePool, toldContext} from './page_pool.mjs';
 import {readPng} from './png.mjs';
 
 const require = createRequire(new URL('../../web-client/package.json', import.meta.url));
@@ -119,12 +119,17 @@ export class Browser {
 
   /** An empty page, with a cache of its own. */
   async blank(device = kDesktop) {
+    return (await toldContext(this.#browser, device)).newPage();
+  }
+
+  /** An empty page whose viewer has not said yet that the graphics are software. */
+  async untold(device = kDesktop) {
     return (await this.#browser.newContext(device)).newPage();
   }
 
   /** Opens a page that is not ours; `receive` receives the console's errors. */
   async page(url, receive = () => undefined) {
-    const page = await (await this.#browser.newContext(kDesktop)).newPage();
+    const page = await this.blank();
     page.on('console', (message) => message.type() === 'error' && receive(message.text()));
     await page.goto(url);
     return page;

@@ -169,6 +169,10 @@ export class MeshView implements View {
     this.frames.invalidate();
   }
 
+  get renderer(): string {
+    return this.graphics.renderer;
+  }
+
   /** The pose of now, drawn or not. */
   get pose(): Pose {
     return this.camera.pose(this.frames.ms);

@@ -68,13 +68,13 @@ async function begin(
   };
   worker.postMessage(message, [surface]);
   const first = await answerOf(worker);
-  if (first.type !== 'drawn') {
+  if (first.type !== 'begun') {
     worker.terminate();
     throw new Error(
       first.type === 'failed' ? first.message : 'the worker that draws does not answer',
     );
   }
-  return new WorkerView(worker, canvas, listeners, first.pose);
+  return new WorkerView(worker, canvas, listeners, first.pose, first.renderer);
 }
 
 class WorkerView implements View {
@@ -91,6 +91,7 @@ class WorkerView implements View {
     readonly canvas: HTMLCanvasElement,
     private readonly listeners: ViewListeners,
     public pose: Pose,
+    readonly renderer: string,
   ) {
     const {signal} = this.ended;
     const answered = watchWorker(
@@ -225,6 +226,7 @@ class WorkerView implements View {
             ),
           );
       case 'hello':
+      case 'begun':
       case 'pong':
         return;
     }
