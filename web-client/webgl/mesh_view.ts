@@ -170,7 +170,7 @@ export class MeshView implements View {
   }
 
   get renderer(): string {
-    return this.graphics.renderer;
+    return this.scene.graphics.renderer;
   }
 
   /** The pose of now, drawn or not. */
