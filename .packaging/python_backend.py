@@ -20,6 +20,7 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/release"
+LIBRARY = BUILD / "package/qtet/libqtet.so"
 NAME = "qtet"
 # Members carry one date: that of the last change, or this one, the earliest that a zip can hold.
 _EARLIEST = 315532800
@@ -47,11 +48,11 @@ def date():
 
 
 def _metadata():
-    return f"""Metadata-Version: 2.1
+    return f"""Metadata-Version: 2.4
 Name: {NAME}
 Version: {version()}
 Summary: Tetrahedral meshes as small logs that a browser shows coarse-first
-License: Apache-2.0
+License-Expression: Apache-2.0
 License-File: LICENSE
 License-File: third-party.txt
 Classifier: Operating System :: POSIX :: Linux
@@ -65,7 +66,12 @@ Description-Content-Type: text/markdown
 
 
 def _tag():
-    return f"py3-none-linux_{platform.machine()}"
+    """Names the oldest glibc that has what the library needs (PEP 600)."""
+    told = subprocess.run(
+        ["readelf", "-VW", LIBRARY], capture_output=True, text=True, check=True
+    ).stdout
+    needed = max(map(int, re.findall(r"GLIBC_2\.(\d+)", told)))
+    return f"py3-none-manylinux_2_{needed}_{platform.machine()}"
 
 
 def _notices():
@@ -82,13 +88,12 @@ def _notices():
 
 def _members():
     """(name in the wheel, bytes, whether it may be executed), without the record."""
-    library = BUILD / "package/qtet/libqtet.so"
     viewer = BUILD / "share/qtet/viewer"
-    for needed in (library, viewer / "index.html"):
+    for needed in (LIBRARY, viewer / "index.html"):
         if not needed.is_file():
             raise SystemExit(f"{needed} is missing; run make wheel")
     without = json.loads((viewer / "viewer.json").read_text())["simplifier"]
-    members = [(f"{NAME}/libqtet.so", library.read_bytes(), True)]
+    members = [(f"{NAME}/libqtet.so", LIBRARY.read_bytes(), True)]
     for path in sorted((ROOT / "codec/python/qtet").iterdir()):
         if path.suffix == ".py" or path.name == "py.typed":
             members.append((f"{NAME}/{path.name}", path.read_bytes(), False))
