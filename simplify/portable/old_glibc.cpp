@@ -27,10 +27,10 @@
 
 // Defines a function as that of the same name and of the first version. It is hidden, so that the C
 // library does not take it in place of its own.
-#define QTET_AS_AT_FIRST(result, name, parameters, arguments)                       \
-  result first_##name parameters;                                                   \
-  asm(".symver first_" #name ", " #name "@" QTET_FIRST_VERSION);                    \
-  __attribute__((visibility("hidden"))) result our_##name parameters asm(#name);    \
+#define QTET_AS_AT_FIRST(result, name, parameters, arguments)                    \
+  result first_##name parameters;                                                \
+  asm(".symver first_" #name ", " #name "@" QTET_FIRST_VERSION);                 \
+  __attribute__((visibility("hidden"))) result our_##name parameters asm(#name); \
   result our_##name parameters { return first_##name arguments; }
 
 // NOLINTBEGIN(readability-identifier-naming): the C library's names
@@ -65,9 +65,7 @@ int stat(const char* path, struct stat* out) {
 int lstat(const char* path, struct stat* out) {
   return static_cast<int>(::syscall(SYS_newfstatat, AT_FDCWD, path, out, AT_SYMLINK_NOFOLLOW));
 }
-int fstat(int file, struct stat* out) {
-  return static_cast<int>(::syscall(SYS_fstat, file, out));
-}
+int fstat(int file, struct stat* out) { return static_cast<int>(::syscall(SYS_fstat, file, out)); }
 int fstat64(int file, struct stat64* out) {
   return static_cast<int>(::syscall(SYS_fstat, file, out));
 }
@@ -122,7 +120,8 @@ int _dl_find_object(void* at, dl_find_object* out) {
     bool isIt = false;
     const ElfW(Phdr)* tables = nullptr;
     std::uintptr_t first = UINTPTR_MAX, end = 0;
-    for (const ElfW(Phdr)* h = object->dlpi_phdr; h != object->dlpi_phdr + object->dlpi_phnum; ++h) {
+    for (const ElfW(Phdr)* h = object->dlpi_phdr; h != object->dlpi_phdr + object->dlpi_phnum;
+         ++h) {
       if (h->p_type == PT_GNU_EH_FRAME) tables = h;
       if (h->p_type != PT_LOAD) continue;
       const std::uintptr_t begin = object->dlpi_addr + h->p_vaddr;
