@@ -7,6 +7,7 @@ import base64
 import gzip
 import hashlib
 import io
+import json
 import os
 import pathlib
 import platform
@@ -86,6 +87,7 @@ def _members():
     for needed in (library, viewer / "index.html"):
         if not needed.is_file():
             raise SystemExit(f"{needed} is missing; run make wheel")
+    without = json.loads((viewer / "viewer.json").read_text())["simplifier"]
     members = [(f"{NAME}/libqtet.so", library.read_bytes(), True)]
     for path in sorted((ROOT / "codec/python/qtet").iterdir()):
         if path.suffix == ".py" or path.name == "py.typed":
@@ -94,8 +96,8 @@ def _members():
         # Compressed copies are made again where the viewer is published. Meshes are simplified by
         # the library, not in the browser.
         is_copy = path.suffix in (".gz", ".br", ".zst")
-        if path.is_file() and not is_copy and not path.name.startswith("qtet-simplify"):
-            name = path.relative_to(viewer).as_posix()
+        name = path.relative_to(viewer).as_posix()
+        if path.is_file() and not is_copy and name not in without:
             members.append((f"{NAME}/viewer/{name}", path.read_bytes(), False))
     info = f"{NAME}-{version()}.dist-info"
     wheel = (

@@ -1,6 +1,7 @@
 #include "simplify/publish/single_page.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "codec/log/log_index.h"
@@ -16,11 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPageScript = "single_page.js";
-/// Scripts, workers and WebAssembly from the page itself; no address outside of it.
-constexpr const char* kPolicy =
-    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; base-uri 'none'; "
-    "script-src 'unsafe-inline' blob: 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
-    "img-src data: blob:; connect-src blob:; worker-src blob:\">\n  ";
+/// The page's policy and files, and their types (web-client/viewer_files.ts).
+constexpr const char* kViewerFiles = "viewer.json";
+constexpr std::string_view kLogType = "application/octet-stream";
 /// For the list of meshes and what stands around the parts, in bytes.
 constexpr std::uint64_t kOverhead = 8 << 10;
 
@@ -41,21 +40,13 @@ std::string base64(ByteView bytes) {
   return out;
 }
 
-const char* typeOf(const std::string& ending) {
-  if (ending == ".js") return "text/javascript";
-  if (ending == ".wasm") return "application/wasm";
-  if (ending == ".json") return "application/json";
-  if (ending == ".txt") return "text/plain";
-  return ending == ".qtet" ? "application/octet-stream" : nullptr;
-}
-
 /// A script element that no browser runs: the packed file. (A log is compressed already.)
-Result<std::string> partOf(const std::string& name, ByteView content) {
-  const bool isPacked = !name.ends_with(".qtet");
+Result<std::string> partOf(const std::string& name, std::string_view type, ByteView content) {
+  const bool isPacked = type != kLogType;
   Result<Bytes> packed = isPacked ? gzipped(content) : Bytes();
   if (!packed) return std::unexpected(packed.error());
   return "<script type=\"application/octet-stream\" data-name=\"" + htmlEscaped(name) +
-         "\" data-type=\"" + typeOf(fs::path(name).extension().string()) + "\" data-size=\"" +
+         "\" data-type=\"" + std::string(type) + "\" data-size=\"" +
          std::to_string(content.size()) + (isPacked ? "\" data-coding=\"gzip" : "") + "\">" +
          base64(isPacked ? ByteView(*packed) : content) + "</script>\n";
 }
@@ -101,16 +92,29 @@ Result<nlohmann::json> listOf(const fs::path& site) {
   return nlohmann::json::parse(*text);
 }
 
-/// Whether a file of the folder is of no use in the page, or stands in it otherwise.
-bool isLeftOut(const std::string& name) {
-  const std::string ending = fs::path(name).extension().string();
-  const std::string file = fs::path(name).filename().string();
-  // A page to mail does without what simplifies the meshes that are dropped on it.
-  for (const std::string_view of : {"qtet-simplify", "simplify_worker", "mesh_drop"})
-    if (file.starts_with(of)) return true;
-  const bool isKnown = ending == ".css" || ending == ".svg" || typeOf(ending) != nullptr;
-  return !isKnown || ending == ".qtet" || name == kSiteList || name == "README.txt" ||
-         name == "viewer.json" || name == "first.js" || name == kPageScript;
+Error lacks(const char* file) {
+  return {ErrorCode::kBadInput,
+          std::string("the viewer has no ") + file + "; give that of this version"};
+}
+
+struct ViewerFiles {
+  std::string policy;
+  std::map<std::string, std::string> types;  ///< of each file that the page holds
+};
+
+Result<ViewerFiles> viewerFilesOf(const fs::path& site) {
+  const Result<Bytes> text = readWhole(site / kViewerFiles);
+  if (!text) return std::unexpected(lacks(kViewerFiles));
+  const nlohmann::json files = nlohmann::json::parse(*text, nullptr, false);
+  const auto has = [&](const char* key) { return files.is_object() && files.contains(key); };
+  if (!has("policy") || !files["policy"].is_string() || !has("page") || !files["page"].is_object())
+    return std::unexpected(lacks(kViewerFiles));
+  ViewerFiles out{files["policy"], {}};
+  for (const auto& [name, type] : files["page"].items()) {
+    if (!type.is_string()) return std::unexpected(lacks(kViewerFiles));
+    out.types.emplace(name, type);
+  }
+  return out;
 }
 
 /// A page in pieces: what stands in its head, and the packed files.
@@ -118,14 +122,13 @@ struct Pieces {
   std::string styles, icon, parts;
   std::size_t count = 0;
 
-  Status add(const std::string& name, ByteView content) {
-    const std::string ending = fs::path(name).extension().string();
-    if (ending == ".css") {
+  Status add(const std::string& name, std::string_view type, ByteView content) {
+    if (type == "text/css") {
       (styles += "<style>").append(content.begin(), content.end()) += "</style>\n  ";
-    } else if (ending == ".svg") {
+    } else if (type == "image/svg+xml") {
       icon = "<link rel=\"icon\" href=\"data:image/svg+xml;base64," + base64(content) + "\">\n  ";
     } else {
-      const Result<std::string> part = partOf(name, content);
+      const Result<std::string> part = partOf(name, type, content);
       if (!part) return std::unexpected(part.error());
       parts += *part;
       ++count;
@@ -174,26 +177,26 @@ Result<SinglePage> singlePage(const fs::path& site, const SinglePageOptions& opt
   Result<nlohmann::json> list = listOf(site);
   const Result<Bytes> viewer = readWhole(site / "index.html");
   const Result<Bytes> first = readWhole(site / kPageScript);
+  const Result<ViewerFiles> files = viewerFilesOf(site);
   if (!list) return std::unexpected(list.error());
   if (!viewer) return std::unexpected(viewer.error());
-  if (!first)
-    return fail(ErrorCode::kBadInput,
-                std::string("the viewer has no ") + kPageScript + "; give that of this version");
+  if (!first) return std::unexpected(lacks(kPageScript));
+  if (!files) return std::unexpected(files.error());
   std::string page = textOf(*viewer);
   const std::string entry =
       fs::path(attributeOf(takeOut(page, "<script", "</script>"), "src")).filename().string();
   takeOut(page, "<link", ">");
 
   Pieces pieces;
-  std::string logName;
-  for (const std::string name : list->at("files")) {
-    if (name.ends_with(".qtet")) logName = name;
-    std::error_code unknown;
-    if (isLeftOut(name) || !fs::exists(site / name, unknown)) continue;
+  for (const auto& [name, type] : files->types) {
     const Result<Bytes> content = readWhole(site / name);
     if (!content) return std::unexpected(content.error());
-    if (Status added = pieces.add(name, *content); !added) return std::unexpected(added.error());
+    if (Status added = pieces.add(name, type, *content); !added)
+      return std::unexpected(added.error());
   }
+  std::string logName;
+  for (const std::string name : list->at("files"))
+    if (name.ends_with(".qtet")) logName = name;
   const std::string poster = list->at("meshes").at(0).at("links").at("poster");
   if (Status inlined = inlinePoster(page, site, poster); !inlined)
     return std::unexpected(inlined.error());
@@ -206,11 +209,14 @@ Result<SinglePage> singlePage(const fs::path& site, const SinglePageOptions& opt
                               htmlEscaped(options.view).size() + kOverhead;
   const Result<std::uint32_t> chunks = cutLog(*log, site / logName, most, other, *list);
   if (!chunks) return std::unexpected(chunks.error());
-  if (Status added = pieces.add(kSiteList, viewOf(list->dump())); !added)
+  if (Status added = pieces.add(kSiteList, "application/json", viewOf(list->dump())); !added)
     return std::unexpected(added.error());
-  if (Status added = pieces.add(logName, *log); !added) return std::unexpected(added.error());
+  if (Status added = pieces.add(logName, kLogType, *log); !added)
+    return std::unexpected(added.error());
 
-  insertBefore(page, "<meta name", kPolicy);
+  insertBefore(
+      page, "<meta name",
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"" + files->policy + "\">\n  ");
   if (!options.view.empty())
     insertBefore(page, "</head>",
                  "<meta name=\"qtet-view\" content=\"" + htmlEscaped(options.view) + "\">\n  ");

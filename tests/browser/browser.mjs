@@ -3,7 +3,7 @@
 import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {join} from 'node:path';
-import {PagePool} from './page_pool.mjs';
+import {PagePool, toldContext} from './page_pool.mjs';
 import {readPng} from './png.mjs';
 
 const require = createRequire(new URL('../../web-client/package.json', import.meta.url));
@@ -119,12 +119,17 @@ export class Browser {
 
   /** An empty page, with a cache of its own. */
   async blank(device = kDesktop) {
+    return (await toldContext(this.#browser, device)).newPage();
+  }
+
+  /** An empty page whose viewer has not said yet that the graphics are software. */
+  async untold(device = kDesktop) {
     return (await this.#browser.newContext(device)).newPage();
   }
 
   /** Opens a page that is not ours; `receive` receives the console's errors. */
   async page(url, receive = () => undefined) {
-    const page = await (await this.#browser.newContext(kDesktop)).newPage();
+    const page = await this.blank();
     page.on('console', (message) => message.type() === 'error' && receive(message.text()));
     await page.goto(url);
     return page;
@@ -300,13 +305,13 @@ export class ViewerPage {
     // Twice, because the last command may not have reached the worker that draws.
     for (let i = 0; i < 2; ++i) {
       await this.settle();
-      const isAtRest = ({volume, frame, moved}) =>
-        volume?.hasCells && volume.atRest && frame === 0 && !moved;
+      const isAtRest = ({scene: {volume}, frames: {requested, moved}}) =>
+        volume?.hasCells && volume.atRest && requested === 0 && !moved;
       await this.waitInView(isAtRest).catch(async (error) => {
-        const state = await this.inView(({volume, frame, moved}) => {
+        const state = await this.inView(({scene: {volume}, frames: {requested, moved}}) => {
           const {whole, busy, interrupted, waiting, timer, wholeMs} = volume ?? {};
           const waits = timer !== undefined;
-          return {whole, busy, interrupted, waiting, waits, wholeMs, frame, moved};
+          return {whole, busy, interrupted, waiting, waits, wholeMs, requested, moved};
         });
         throw new Error(`${error.message}; it is ${JSON.stringify(state)}`);
       });

@@ -329,7 +329,7 @@ async function cardsNeverMoveTheMesh({server, browser}, device, name) {
   assert.equal(await viewer.text('.tool-hint'), 'Point at a place on the mesh.');
   const [x, y] = await page.evaluate(() => {
     const {meshView, viewing} = window.qtetViewer;
-    const {bounds} = viewing.mesh;
+    const {bounds} = viewing.mesh.base;
     const at = meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2));
     return [at.x, at.y];
   });
@@ -438,7 +438,7 @@ async function comesBackFromLostGraphics({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const before = await viewer.screenshot('graphics-before');
-  await viewer.inView(({graphics}) => {
+  await viewer.inView(({scene: {graphics}}) => {
     globalThis.qtetLoss = graphics.gl.getExtension('WEBGL_lose_context');
     globalThis.qtetLoss.loseContext();
   });

@@ -14,19 +14,18 @@ const isInSponge = (x, y, z) => (x + y + z) % 2 === 0 || (7 * x + 3 * y + 5 * z)
  * anything, and those that differ from the sum of the cubes on their line of sight.
  */
 function compareWithCubes(view, sizes, cubes) {
+  const {volume, graphics} = view.scene;
   const {
-    volume: {
-      drawer: {
-        deep,
-        caster: {look, ray},
-      },
-      fine: {
-        of: {vertices},
-      },
+    drawer: {
+      deep,
+      caster: {look, ray},
     },
-    graphics: {gl},
-    pose: {fromCanvas: m},
-  } = view;
+    fine: {
+      of: {vertices},
+    },
+  } = volume;
+  const {gl} = graphics;
+  const {fromCanvas: m} = view.pose;
   const {width, height} = deep.volume;
   deep.volume.begin();
   const drawn = new Float32Array(4 * width * height);

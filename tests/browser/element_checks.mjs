@@ -322,12 +322,16 @@ async function leavesNothingBehind({server, browser}) {
 /** After an error in one picture, the next ones are drawn. */
 async function drawsOnAfterAPictureThatFailed({server, browser}) {
   for (const breakOnce of [
-    ({parts: {surface}}) =>
+    ({
+      scene: {
+        parts: {surface},
+      },
+    }) =>
       void (surface.show = () => {
         delete surface.show;
         throw new Error('broken on purpose');
       }),
-    ({parts}) => {
+    ({scene: {parts}}) => {
       parts.draw = () => {
         delete parts.draw;
         throw new Error('broken on purpose');
@@ -349,7 +353,13 @@ async function drawsOnAfterAPictureThatFailed({server, browser}) {
       viewer.setAttribute('clip', 'x:0.3');
       viewer.look('-y');
     });
-    await viewer.waitInView(({parts: {cuts}}) => cuts[0].visible);
+    await viewer.waitInView(
+      ({
+        scene: {
+          parts: {cuts},
+        },
+      }) => cuts[0].visible,
+    );
     await viewer.settle();
     const other = await viewer.screenshot('broken-after');
     assert.ok(
@@ -436,7 +446,7 @@ async function drawsOnlyWhatChanges({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   await viewer.inView((view) => {
-    const {parts} = view;
+    const {parts} = view.scene;
     const draw = parts.draw.bind(parts);
     view.drawnByCheck = 0;
     parts.draw = (...words) => {

@@ -98,7 +98,7 @@ async function outlinesTheCell(context) {
   const viewer = await opened(context, 'mesh=box&clip=none');
   const {page} = viewer;
   const {x, y} = await page.evaluate(() => {
-    const {bounds} = window.qtetViewer.viewing.mesh;
+    const {bounds} = window.qtetViewer.viewing.mesh.base;
     const middle = [0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2);
     return window.qtetViewer.meshView.project(middle);
   });

@@ -67,13 +67,13 @@ async function showsAwkwardFieldsLegibly(context) {
   // A tap moves nothing: the mesh stays fitted to the free space. Moving a finger turns it.
   await page.touchscreen.tap(195, 350);
   await viewer.settle();
-  assert.equal(await viewer.inView(({orbit}) => orbit.fitted), true);
+  assert.equal(await viewer.inView(({camera}) => camera.orbit.fitted), true);
   await page.mouse.move(195, 350);
   await page.mouse.down();
   await page.mouse.move(260, 350, {steps: 3});
   await page.mouse.up();
   await viewer.settle();
-  assert.equal(await viewer.inView(({orbit}) => orbit.fitted), false);
+  assert.equal(await viewer.inView(({camera}) => camera.orbit.fitted), false);
   assert.deepEqual(viewer.problems, []);
 }
 
@@ -92,7 +92,7 @@ async function keepsTheMeshOutOfTheLegend({server, browser}) {
   const {card} = await placesOf(viewer);
   const lowest = await viewer.page.evaluate(() => {
     const {meshView, viewing} = window.qtetViewer;
-    const {bounds} = viewing.mesh;
+    const {bounds} = viewing.mesh.base;
     return Math.max(
       ...Array.from(
         {length: 8},
@@ -109,7 +109,7 @@ async function plotAcrossTheMiddle(viewer) {
   const {page} = viewer;
   await page.getByText('Line', {exact: true}).click();
   const {x, y} = await page.evaluate(() => {
-    const {bounds} = window.qtetViewer.viewing.mesh;
+    const {bounds} = window.qtetViewer.viewing.mesh.base;
     const middle = [0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2);
     return window.qtetViewer.meshView.project(middle);
   });
@@ -216,7 +216,7 @@ async function movesAndCentresByKeys({server, browser}) {
   const places = () =>
     page.evaluate(() => {
       const {meshView, viewing} = window.qtetViewer;
-      const {bounds} = viewing.mesh;
+      const {bounds} = viewing.mesh.base;
       const point = viewing.later?.panels.inspect.pointed;
       const [x, y] = viewing.shell.cards.middle;
       return {

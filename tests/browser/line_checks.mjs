@@ -40,7 +40,7 @@ const onScreen = (viewer, points) =>
   viewer.page.evaluate((its) => {
     const {meshView, viewing} = window.qtetViewer;
     const {left, top} = meshView.canvas.getBoundingClientRect();
-    const {bounds} = viewing.mesh;
+    const {bounds} = viewing.mesh.base;
     return its.map((shares) => {
       const point = shares.map((share, i) => bounds[i] + share * (bounds[i + 3] - bounds[i]));
       const {x, y} = meshView.project(point);

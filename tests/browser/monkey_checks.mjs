@@ -120,7 +120,14 @@ async function staysSoundWhateverIsDone({server, browser, logs}) {
     lose: () =>
       viewer
         .inView(
-          async ({graphics: {gl}}, ms) => {
+          async (
+            {
+              scene: {
+                graphics: {gl},
+              },
+            },
+            ms,
+          ) => {
             const loss = gl.getExtension('WEBGL_lose_context');
             if (!loss || gl.isContextLost()) return;
             loss.loseContext();
@@ -186,7 +193,8 @@ async function staysSoundWhateverIsDone({server, browser, logs}) {
           'qtet-viewer::part(result) { display: none }',
       });
       await its.waitInView(
-        ({frame, moved, volume}) => frame === 0 && !moved && (!volume?.hasCells || volume.atRest),
+        ({scene: {volume}, frames: {requested, moved}}) =>
+          requested === 0 && !moved && (!volume?.hasCells || volume.atRest),
       );
       await its.settle();
     };

@@ -48,11 +48,24 @@ export class PagePool {
   }
 
   async #make(device, kind) {
-    const context = await this.#browser.newContext(device);
+    const context = await toldContext(this.#browser, device);
     const page = await context.newPage();
     this.#used.set(page, {page, devtools: await context.newCDPSession(page), kind});
     return page;
   }
+}
+
+/** A context whose viewers have said already that the graphics are software. */
+export async function toldContext(browser, device) {
+  const context = await browser.newContext(device);
+  await context.addInitScript(() => {
+    try {
+      sessionStorage.setItem('qtet-software-graphics', 'told');
+    } catch {
+      // some pages may keep nothing
+    }
+  });
+  return context;
 }
 
 async function reset({page, devtools}) {

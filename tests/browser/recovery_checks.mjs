@@ -1,6 +1,7 @@
 // Ways out of trouble that keep the view.
 
 import assert from 'node:assert/strict';
+import {kDesktop, kPhone, kTimeoutMs} from './browser.mjs';
 import {expectWhole} from './expect.mjs';
 import {differingShare} from './png.mjs';
 import {PoorLine} from './poor_line.mjs';
@@ -106,4 +107,38 @@ async function drawsAnewWhereTheDrawingWorkerEnded({server, browser}) {
   assert.deepEqual(viewer.problems, []);
 }
 
-export const recoveryChecks = {triesAgainWithTheSameView, drawsAnewWhereTheDrawingWorkerEnded};
+/** The checks' browser draws in software. */
+async function saysOnceThatTheGraphicsAreSoftware({server, browser}) {
+  for (const [device, isOwnThread] of [
+    [kDesktop, false],
+    [kPhone, false],
+    [kDesktop, true],
+  ]) {
+    const page = await browser.untold(device);
+    page.setDefaultTimeout(kTimeoutMs);
+    if (isOwnThread)
+      await page.addInitScript(() => delete HTMLCanvasElement.prototype.transferControlToOffscreen);
+    await page.goto(`${server.url}?mesh=fin`);
+    const note = page.locator('qtet-viewer').getByRole('status').getByText('graphics card');
+    await note.waitFor();
+    await browser.picture(
+      page,
+      `software-${device === kPhone ? 'phone' : isOwnThread ? 'own-thread' : 'desktop'}`,
+    );
+    await page.getByRole('status').getByRole('button', {name: 'Close'}).click();
+    await note.waitFor({state: 'detached'});
+    const focused = await page.evaluate(() => window.qtetViewer.shadowRoot.activeElement.className);
+    assert.equal(focused, 'scene');
+    await page.reload();
+    await page.waitForFunction(() => window.qtetViewer?.state === 'complete');
+    await page.locator('qtet-viewer').getByRole('toolbar', {name: 'Look along an axis'}).waitFor();
+    assert.equal(await note.count(), 0, 'it is said twice in a session');
+    await page.context().close();
+  }
+}
+
+export const recoveryChecks = {
+  triesAgainWithTheSameView,
+  drawsAnewWhereTheDrawingWorkerEnded,
+  saysOnceThatTheGraphicsAreSoftware,
+};

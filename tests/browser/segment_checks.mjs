@@ -48,7 +48,7 @@ function makeSegments({bin, out, viewer}) {
 
 /** Counts the frames from now on, and those without a mesh. */
 const countFrames = (view) => {
-  const {parts} = view;
+  const {parts} = view.scene;
   const {draw} = parts;
   globalThis.framesSeen = {all: 0, blank: 0};
   parts.draw = function drawCounted(eye) {
@@ -180,7 +180,7 @@ const drawSlowly = (view, frameMs) => {
   const {show} = view;
   view.show = function showCounted(...words) {
     show.apply(this, words);
-    globalThis.mostWaiting = Math.max(globalThis.mostWaiting, this.afterFrame.length);
+    globalThis.mostWaiting = Math.max(globalThis.mostWaiting, this.frames.waiting.length);
   };
 };
 

@@ -157,7 +157,8 @@ async function playsASeries({server, browser, out, bin}) {
     .allInnerTexts();
   assert.deepEqual(options, ['Density']);
   const few = (await viewer.statistics()).bytes;
-  const here = () => viewer.page.evaluate(() => window.qtetViewer.viewing.mesh.here.length);
+  const here = () =>
+    viewer.page.evaluate(() => window.qtetViewer.viewing.mesh.progress.here.length);
   const hereBefore = await here();
   const fromServer = await plotOverTime(viewer);
   assert.match(fromServer.status, /^\d+\sB from the server, exact, level (\d+) of \1\.$/);

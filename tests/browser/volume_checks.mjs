@@ -60,7 +60,7 @@ ${array('Int64', 'offsets', offsets)}${array('UInt8', 'types', types)}</Cells>
 export function pixelsAt(viewer, places) {
   return viewer.page.evaluate(async (shares) => {
     const {meshView, viewing} = window.qtetViewer;
-    const {bounds} = viewing.mesh;
+    const {bounds} = viewing.mesh.base;
     const picture = await createImageBitmap(await meshView.picture('transparent'));
     const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
     context.drawImage(picture, 0, 0);
@@ -127,7 +127,7 @@ async function drawsAVolumeAsTheFormulaSays(context) {
   await viewer.page.evaluate(() => window.qtetViewer.setAttribute('clip', 'x:0.6'));
   await viewer.restVolume();
   const [low, high] = await viewer.page.evaluate(() =>
-    [0, 3].map((i) => window.qtetViewer.viewing.mesh.bounds[i]),
+    [0, 3].map((i) => window.qtetViewer.viewing.mesh.base.bounds[i]),
   );
   const cut = (Math.floor(low + 0.6 * (high - low)) + 0.5 - low) / (high - low);
   expectClose(
@@ -275,7 +275,7 @@ async function drawsFewCellsWhileSomethingMoves({server, browser}) {
   await viewer.waitForPicture();
   await viewer.restVolume();
   const before = await viewer.screenshot('volume-rest');
-  await viewer.inView(({volume}) => {
+  await viewer.inView(({scene: {volume}}) => {
     const seen = (globalThis.qtetSeen = {coarse: 0, cells: 0, strips: 0});
     const {drawer} = volume;
     const {caster, drawAtOnce} = drawer;
@@ -322,17 +322,17 @@ async function drawsFewCellsOfANewVolumeFirst({server, browser}) {
   const viewer = await browser.open(`${server.url}?mesh=fin&clip=none`, kSmallDesktop);
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
-  await viewer.inView((view) => {
-    const {loadVolume} = view;
-    view.loadVolume = async () => {
-      const loaded = await loadVolume.call(view);
-      const {drawer} = view.volume;
+  await viewer.inView(({scene}) => {
+    const {loadVolume} = scene;
+    scene.loadVolume = async () => {
+      const loaded = await loadVolume.call(scene);
+      const {drawer} = scene.volume;
       for (const way of ['drawAtOnce', 'drawStrips']) {
         const draw = drawer[way];
         drawer[way] = async (picture, its, ...words) => {
-          globalThis.qtetDrawn.push(its === view.volume.coarse ? 'few' : 'all');
+          globalThis.qtetDrawn.push(its === scene.volume.coarse ? 'few' : 'all');
           const done = await draw.call(drawer, picture, its, ...words);
-          if (way === 'drawStrips') setTimeout(() => (view.volume.wholeMs = Infinity));
+          if (way === 'drawStrips') setTimeout(() => (scene.volume.wholeMs = Infinity));
           return done;
         };
       }
@@ -368,11 +368,9 @@ async function drawsFewCellsOfANewVolumeFirst({server, browser}) {
  * drawn, and once as a sum. The sum is that of all cells on the line of sight, searched one by one.
  */
 function compareWithEveryCell(view, level) {
-  const {
-    volume,
-    graphics: {gl},
-    pose: {fromCanvas: m},
-  } = view;
+  const {volume, graphics} = view.scene;
+  const {gl} = graphics;
+  const {fromCanvas: m} = view.pose;
   const {
     drawer: {
       deep,

@@ -148,7 +148,7 @@ async function deformsABeam(context) {
   );
   assert.ok(Math.hypot(...way) > 0.1, `the middle moves by ${way}`);
 
-  const lineCount = () => viewer.inView(({parts}) => parts.restEdges.lines.length / 6);
+  const lineCount = () => viewer.inView(({scene}) => scene.parts.restEdges.lines.length / 6);
   assert.equal(await lineCount(), 0);
   await page.getByRole('switch', {name: 'Edges at rest'}).click();
   await viewer.settle();

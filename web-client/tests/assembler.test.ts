@@ -40,8 +40,8 @@ test('aFieldWaitsForThoseThatItIsPredictedFrom', () => {
   assembler = new Assembler(codec, kFakeValues);
   assembler.take(parseFrame(headFrame(1, {fields: ['a', 'b', 'c'], chunks: 2})));
   const fields = [2];
-  expect(assembler.withParents(fields)).toEqual([0, 1, 2]);
-  expect(assembler.withParents(fields)).toBe(assembler.withParents(fields));
+  expect(assembler.parents.order(fields)).toEqual([0, 1, 2]);
+  expect(assembler.parents.order(fields)).toBe(assembler.parents.order(fields));
   const step = (): number[] => {
     while (assembler.step([2], true)) continue;
     return [0, 1, 2].map((field) => codec.fieldChunksApplied(field));
@@ -56,7 +56,7 @@ test('aFieldWaitsForThoseThatItIsPredictedFrom', () => {
   expect(step()).toEqual([2, 2, 2]);
   expect(assembler.wholeFields).toEqual([0, 1, 2]);
   assembler.forget();
-  expect([assembler.wholeFields, assembler.withParents(fields)]).toEqual([[], [2]]);
+  expect([assembler.wholeFields, assembler.parents.order(fields)]).toEqual([[], [2]]);
 });
 
 test('thePlanTellsOfEachChunkWithItsBytesAndItsLevel', () => {

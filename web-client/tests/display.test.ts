@@ -9,7 +9,7 @@ import {
   type Display,
   type MeshArrays,
 } from '../core/picture/display';
-import {isosurfaces} from '../core/layers/isosurfaces';
+import {isosurfacesWork} from '../core/layers/isosurfaces';
 import {fieldsOf, keptCells} from '../core/layers/shown';
 import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/fields';
@@ -138,7 +138,7 @@ describe('isosurfaces', () => {
   });
 
   test('ofSeveralValuesAreOneSoupColouredByAnotherField', () => {
-    const soup = isosurfaces.make(
+    const soup = isosurfacesWork.make(
       mesh,
       display({
         color: {field: 1, component: kMagnitude},

@@ -1,4 +1,4 @@
-// A new layer costs a file of its own, here toy_layer.ts, and a line in the list.
+// A new layer costs a file of its own, here toy_layer.ts, and a line in each of two lists.
 
 import {readdirSync, readFileSync} from 'node:fs';
 import {expect, test, vi} from 'vitest';
@@ -24,6 +24,12 @@ vi.mock('../core/layers/layers', async (original) => {
   return {kLayers: all, fieldLayers: () => all.filter((layer) => 'control' in layer)};
 });
 
+vi.mock('../core/layers/layer_work', async (original) => {
+  const {kLayerWork: shipped} = await original<{kLayerWork: object[]}>();
+  const {toyWork} = await import('./toy_layer');
+  return {kLayerWork: [...shipped, toyWork]}; // the other line
+});
+
 const kFields: FieldInfo[] = [
   {name: 'p', components: 1, association: 'point', step: 1, minimum: [0], range: [0, 10]},
   {name: 'c', components: 1, association: 'cell', step: 1, minimum: [0], range: [0, 10]},
@@ -37,7 +43,7 @@ const read =
 function displayFor(attributes: Record<string, string>): ReturnType<typeof displayOf> {
   const shown = new ShownMesh();
   shown.manifest = manifest;
-  shown.bounds = [0, 0, 0, 1, 1, 1];
+  shown.base.bounds = [0, 0, 0, 1, 1, 1];
   return displayOf(settingsFor(shown, read(attributes)), shown, read(attributes));
 }
 
@@ -81,7 +87,7 @@ test('notAskedForItIsNotInTheDisplay', () => {
   expect(displayFor({})).not.toHaveProperty('layers');
 });
 
-/** Nothing but a layer's own file names it, so that nothing but a file and a line adds one. */
+/** Nothing but a layer's own file names it, so that nothing but a file and two lines add one. */
 test('noOtherFileNamesALayer', () => {
   const root = new URL('../', import.meta.url);
   const paths = ['core', 'webgl', 'three', 'viewer'].flatMap((room) =>

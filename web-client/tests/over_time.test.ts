@@ -97,7 +97,7 @@ describe('a plot over time', () => {
   test('fetchesItsInstantsAndShowsThoseThatAreHere', async () => {
     await overTime.begin(kPlace);
     await settled();
-    expect([mesh.ahead, asked]).toEqual([[1, 0], [[1, 0]]]);
+    expect([mesh.ahead.request(mesh.progress.here), asked]).toEqual([[1, 0], [[1, 0]]]);
     expect(curve).toEqual({
       at: [0, 1],
       values: [5, NaN],
@@ -107,7 +107,7 @@ describe('a plot over time', () => {
       status: '1 of 2 instants are here, 0\u00a0B so far.',
     });
     here.set(0, [6, 8]);
-    mesh.received = 1500;
+    mesh.progress.received = 1500;
     overTime.takeProgress();
     await settled();
     const status = '2 of 2 instants are here, 1.50\u00a0kB so far.';
@@ -118,7 +118,7 @@ describe('a plot over time', () => {
     await overTime.begin(kPlace);
     await settled();
     here.clear();
-    mesh.aheadEnded = true;
+    mesh.progress.aheadEnded = true;
     overTime.takeProgress();
     await settled();
     expect(curve!.values).toEqual([5, NaN]);
@@ -134,7 +134,7 @@ describe('a plot over time', () => {
     color = {field: 2, component: -1};
     overTime.update();
     await settled();
-    expect([mesh.ahead, asked.at(-1), curve!.values]).toEqual([
+    expect([mesh.ahead.request(mesh.progress.here), asked.at(-1), curve!.values]).toEqual([
       [2, 3],
       [2, 3],
       [NaN, NaN],
@@ -157,13 +157,17 @@ describe('a plot over time', () => {
   });
 
   test('endsWithAFieldThatIsNoSeriesAndLeavesWhatPlays', async () => {
-    mesh.playing = [1];
+    mesh.ahead.playing = [1];
     await overTime.begin(kPlace);
-    expect(mesh.ahead).toEqual([1, 0]);
+    expect(mesh.ahead.request(mesh.progress.here)).toEqual([1, 0]);
     color = {field: 4, component: -1};
     overTime.update();
     overTime.takeProgress();
-    expect([overTime.isOpen, curve, mesh.ahead]).toEqual([false, null, [1]]);
+    expect([overTime.isOpen, curve, mesh.ahead.request(mesh.progress.here)]).toEqual([
+      false,
+      null,
+      [1],
+    ]);
   });
 
   test('thatIsNotWantedAnyMoreIsNotMade', async () => {
@@ -230,7 +234,11 @@ describe('a plot over time from a server', () => {
       status: '18.0\u00a0kB from the server, rms error at most 1\u202f%, level 3 of 7.',
     });
     expect([isExactOffered, announced]).toEqual([true, [curve!.status]]);
-    expect([asked, mesh.ahead, fake.requests.length]).toEqual([[], [], 1]);
+    expect([asked, mesh.ahead.request(mesh.progress.here), fake.requests.length]).toEqual([
+      [],
+      [],
+      1,
+    ]);
     const values = [
       [3, 4],
       [NaN, 1],
@@ -287,7 +295,11 @@ describe('a plot over time from a server', () => {
     await fake.answer(new Response(null, {status: 404}));
     await fake.answer(new Response(null, {status: 404}));
     await settled();
-    expect([asked, mesh.ahead, fake.requests.length]).toEqual([[[1, 0]], [1, 0], 2]);
+    expect([asked, mesh.ahead.request(mesh.progress.here), fake.requests.length]).toEqual([
+      [[1, 0]],
+      [1, 0],
+      2,
+    ]);
   });
 
   test.each([
@@ -305,7 +317,7 @@ describe('a plot over time from a server', () => {
   ])('goesOnWithBlocksIfTheServerFails', async (answer) => {
     await fake.answer(answer);
     await settled();
-    expect([asked, mesh.ahead]).toEqual([[[1, 0]], [1, 0]]);
+    expect([asked, mesh.ahead.request(mesh.progress.here)]).toEqual([[[1, 0]], [1, 0]]);
     expect(curve!.values).toEqual([5, NaN]);
     expect(curve!.status).toMatch(/^1 of 2 instants are here, /);
     expect([isExactOffered, fake.requests.length]).toEqual([false, 1]);
@@ -340,7 +352,11 @@ describe('a plot over time from a server', () => {
     await vi.advanceTimersByTimeAsync(1000);
     await fake.answer(busy(429, '1'));
     await vi.advanceTimersByTimeAsync(kMaxPauseMs);
-    expect([fake.requests.length, asked, mesh.ahead]).toEqual([2, [[1, 0]], [1, 0]]);
+    expect([fake.requests.length, asked, mesh.ahead.request(mesh.progress.here)]).toEqual([
+      2,
+      [[1, 0]],
+      [1, 0],
+    ]);
   });
 
   test('doesNotAskABusyServerAgainOnceItIsClosed', async () => {
@@ -375,7 +391,12 @@ describe('a plot over time from a server', () => {
     expect(curve!.at).toEqual([]);
     overTime.end();
     await fake.answer(answerOf(3, [[1], [2]]));
-    expect([curve, asked, mesh.ahead, announced]).toEqual([null, [], [], []]);
+    expect([curve, asked, mesh.ahead.request(mesh.progress.here), announced]).toEqual([
+      null,
+      [],
+      [],
+      [],
+    ]);
   });
 
   test('showsTheTimeOfAnInstantThatTheManifestDoesNotHaveYet', async () => {

@@ -41,7 +41,7 @@ beforeEach(() => {
   };
   ends = new AbortController();
   apply();
-  mesh.here = [0, 2];
+  mesh.progress.here = [0, 2];
   arrive(0);
 });
 afterEach(() => {
@@ -89,7 +89,7 @@ test('aMovieHasThePartThatPlays', () => {
 test('aFieldWithoutInstantsHasNoMovie', () => {
   arrive(1);
   expect(() => stageOf()).toThrow(/No series is shown/);
-  host.mesh.here = [];
+  host.mesh.progress.here = [];
   arrive(0);
   expect(() => stageOf(true)).toThrow(/No instant is loaded/);
 });
@@ -97,27 +97,27 @@ test('aFieldWithoutInstantsHasNoMovie', () => {
 test('anInstantIsShownWithoutTheAttributeAndThenTheOneBefore', async () => {
   const stage = stageOf();
   const done = stage.show(1, ends.signal);
-  expect([shown(), host.mesh.ahead]).toEqual([3, [2, 3, 0]]);
-  host.mesh.here = [3];
+  expect([shown(), host.mesh.ahead.request(host.mesh.progress.here)]).toEqual([3, [2, 3, 0]]);
+  host.mesh.progress.here = [3];
   arrive(3);
   await vi.advanceTimersByTimeAsync(20);
   await done;
   stage.restore();
-  expect([shown(), host.mesh.ahead]).toEqual([0, []]);
+  expect([shown(), host.mesh.ahead.request(host.mesh.progress.here)]).toEqual([0, []]);
 });
 
 test('onlyAWholePictureOnTheScreenCounts', async () => {
   expect(await showing(1)).toBe('waits'); // the last one stays
   arrive(3);
   expect(await showing(1)).toBe('waits'); // not all values are here
-  host.mesh.here = [3];
+  host.mesh.progress.here = [3];
   expect(await showing(1)).toBe('whole');
   host.mesh.drawn = figures(100);
   expect(await showing(1)).toBe('waits'); // a newer picture is not drawn
   arrive(3, 60);
-  host.mesh.statistics = figures(80);
+  host.mesh.progress.statistics = figures(80);
   expect(await showing(1)).toBe('waits'); // a finer one follows
-  host.mesh.statistics = figures(60);
+  host.mesh.progress.statistics = figures(60);
   host.stream.state = 'held';
   expect(await showing(1)).toBe('whole');
   host.stream.state = 'streaming';
@@ -138,7 +138,7 @@ test('aHiddenPageAndBytesThatComeProlongTheWait', async () => {
   vi.stubGlobal('document', {hidden: true});
   expect(await showing(1, 61000)).toBe('waits');
   vi.stubGlobal('document', {hidden: false});
-  const more = setTimeout(() => (host.mesh.statistics = figures(50)), 30000);
+  const more = setTimeout(() => (host.mesh.progress.statistics = figures(50)), 30000);
   expect(await showing(1, 61000)).toBe('waits');
   clearTimeout(more);
 });
@@ -154,7 +154,7 @@ test('aCancelledAnOtherMeshAndAnOtherFieldEndTheWait', async () => {
   host.mesh = new ShownMesh();
   await expect(stage.show(1, ends.signal)).rejects.toThrow(/Another mesh/);
   stage.restore();
-  expect(mesh.filmed).toBeNull();
+  expect(mesh.ahead.filmed).toBeNull();
   ends.abort();
   await expect(stage.show(1, ends.signal)).rejects.toThrow(/abort/i);
 });

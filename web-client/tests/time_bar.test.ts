@@ -111,11 +111,11 @@ const shownTime = (): string | null => part('.track input').getAttribute('aria-v
 
 test('onlyASeriesThatPlaysHasFieldsAhead', () => {
   bar.step(1);
-  expect(mesh.ahead).toEqual([]);
+  expect(mesh.ahead.request(mesh.progress.here)).toEqual([]);
   bar.toggle();
-  expect([bar.isPlaying, mesh.ahead]).toEqual([true, [0, 1]]);
+  expect([bar.isPlaying, mesh.ahead.request(mesh.progress.here)]).toEqual([true, [0, 1]]);
   bar.toggle();
-  expect([bar.isPlaying, mesh.ahead]).toEqual([false, []]);
+  expect([bar.isPlaying, mesh.ahead.request(mesh.progress.here)]).toEqual([false, []]);
 });
 
 test('theTimeBeginsAtTheOpeningAndGoesOnFromThere', () => {
@@ -136,9 +136,9 @@ test('theTimeBeginsAtTheOpeningAndGoesOnFromThere', () => {
 test('anotherSeriesHasOtherFieldsAheadAndAFieldOfNoneHasNone', () => {
   bar.toggle();
   write('field', 'S');
-  expect(mesh.ahead).toEqual([2, 3]);
+  expect(mesh.ahead.request(mesh.progress.here)).toEqual([2, 3]);
   write('field', 'p');
-  expect(mesh.ahead).toEqual([]);
+  expect(mesh.ahead.request(mesh.progress.here)).toEqual([]);
 });
 
 test('eachChangeOfTheTimeAndOfPlayingIsToldOnce', () => {
@@ -163,10 +163,10 @@ test('aListenerMaySetTheTimeThatItIsTold', () => {
 });
 
 test('theInstantsOfAMovieAreShownAndNotTold', () => {
-  mesh.filmed = {time: 1, ahead: [1]};
+  mesh.ahead.filmed = {time: 1, ahead: [1]};
   write('range', '0,1');
-  expect([shownTime(), mesh.ahead]).toEqual(['t = 1', [1]]);
-  mesh.filmed = null;
+  expect([shownTime(), mesh.ahead.request(mesh.progress.here)]).toEqual(['t = 1', [1]]);
+  mesh.ahead.filmed = null;
   write('range', '0,2');
   expect([attributes.get('time'), told]).toEqual([undefined, []]);
 });
@@ -197,7 +197,7 @@ function showSeries(here: readonly number[]): void {
   const fields = Array.from({length: 10}, (_, i) => field(`T@${i}`));
   markSeries(fields);
   mesh.manifest = {fields} as Manifest;
-  mesh.here = here;
+  mesh.progress.here = here;
   write('range', '0,1');
   drawn();
 }
@@ -264,7 +264,7 @@ test('aPartIsMarkedAtTheShownInstantsAndItsInstantsAreFetchedAhead', () => {
   expect([mark(3, '.from'), mark(5, '.to')]).toEqual(['3,9', '3,5']);
   expect([part('.to').getAttribute('aria-pressed'), mark(7, '.from')]).toEqual(['true', '7,9']);
   bar.toggle();
-  expect(mesh.playing).toEqual([7, 8, 9]);
+  expect(mesh.ahead.playing).toEqual([7, 8, 9]);
   expect(mark(7, '.from')).toBeUndefined();
 });
 
@@ -300,7 +300,7 @@ function showSegments(): void {
   const fields = ['T@0', 'T@1'].map(field);
   markSeries(fields);
   mesh.manifest = {fields} as Manifest;
-  mesh.here = [0, 1];
+  mesh.progress.here = [0, 1];
   write('range', '0,1');
   drawn();
 }
@@ -311,7 +311,7 @@ function openSecond(): void {
   const fields = ['T@3', 'T@2', 'T@4'].map(field);
   markSeries(fields, 1);
   mesh.manifest = {fields} as Manifest;
-  mesh.here = [0, 1, 2];
+  mesh.progress.here = [0, 1, 2];
   mesh.snapshot = {color: {field: 1, component: -1}} as Snapshot;
   opening = null;
   write('range', '0,1');
@@ -339,7 +339,7 @@ test('aListsTimeMayLackTheLastDigitsOfItsLogs', () => {
   mesh.manifest = {fields} as Manifest;
   write('range', '0,1');
   bar.toggle();
-  expect(mesh.playing).toContain(1);
+  expect(mesh.ahead.playing).toContain(1);
 });
 
 test('playingWaitsUntilASegmentIsOnTheScreenAndGoesOnInIt', () => {
@@ -355,7 +355,7 @@ test('playingWaitsUntilASegmentIsOnTheScreenAndGoesOnInIt', () => {
   vi.advanceTimersByTime(5000);
   expect(attributes.get('time')).toBe('2');
   drawn();
-  expect([bar.isPlaying, mesh.ahead]).toEqual([true, [1, 0, 2]]);
+  expect([bar.isPlaying, mesh.ahead.request(mesh.progress.here)]).toEqual([true, [1, 0, 2]]);
   expect(attributes.get('time')).toBe('3');
 });
 
@@ -371,7 +371,7 @@ test('slowPicturesDoNotLeaveOutTheNextSegment', () => {
 
 test('aLateInstantIsPassedOverForTheNextSegment', () => {
   showSegments();
-  mesh.here = [0];
+  mesh.progress.here = [0];
   bar.toggle();
   vi.advanceTimersByTime(100);
   expect(attributes.get('time')).toBe('1');

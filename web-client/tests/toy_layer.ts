@@ -1,7 +1,7 @@
 // A layer that nobody ships: a triangle at the first value.
 
 import {fieldLayer} from '../core/layers/field_layer';
-import type {Control, FieldLayer} from '../core/layers/layer';
+import type {Control, FieldLayer, LayerWork} from '../core/layers/layer';
 import type {Display, MeshArrays} from '../core/picture/display';
 import type {TriangleSoup} from '../core/picture/triangle_soup';
 
@@ -24,10 +24,14 @@ export const toy = {
   expected: 'a field, "=" and a number',
   control,
   draw: {edges: true},
+} as const satisfies FieldLayer;
+
+export const toyWork = {
+  layer: toy,
   make(mesh: MeshArrays, display: Display): TriangleSoup | null {
     const request = display.layers?.toy;
     if (!request || !mesh.scale(request.scalar)) return null;
     const positions = new Float32Array(9).fill(request.values[0]!);
     return {positions, values: new Float32Array(0), firstHalf: 1};
   },
-} as const satisfies FieldLayer;
+} satisfies LayerWork;

@@ -17,7 +17,8 @@ class FakeWorker {
   }
   postMessage(message: ToView): void {
     this.posted.push(message);
-    if (message.type === 'begin') queueMicrotask(() => this.say({type: 'drawn', pose: {} as Pose}));
+    const begun = {type: 'begun', pose: {} as Pose, renderer: 'a card'} as const;
+    if (message.type === 'begin') queueMicrotask(() => this.say(begun));
   }
   say(message: FromView): void {
     this.onmessage!({data: message});

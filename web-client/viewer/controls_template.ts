@@ -15,6 +15,7 @@ const closeIcon =
 /** Over the picture. */
 export const kCards = `
 <div class="hover" part="hint" aria-hidden="true" hidden></div>
+<div class="software-note" role="status"></div>
 <p class="card tool-hint" part="hint" hidden></p>
 <section class="card result" part="result" aria-label="What was pointed at" hidden>
   <div class="row">

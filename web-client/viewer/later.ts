@@ -12,6 +12,7 @@ import {Actions, type ActionsHost} from './page/actions';
 import {find} from './page/find';
 import {bindKeys} from './page/keys';
 import type {Page} from './page/page';
+import {tellOfSoftwareGraphics} from './page/software_graphics';
 import {adopt, insertMarkup, setMarkup} from './page/trusted';
 import {Undo} from './page/undo';
 import {ErrorCurve} from './panels/error_curve';
@@ -138,6 +139,7 @@ export class Later {
   /** Must be called with each new view. */
   attach(view: View): void {
     bindKeys(find(this.page.root, '.scene'), this.actions.keys(view));
+    tellOfSoftwareGraphics(this.page.root, view.renderer);
     this.follow();
   }
 

@@ -113,7 +113,7 @@ export class QtetViewer extends HTMLElement {
     return state === 'complete' && isAhead ? 'streaming' : state;
   }
   get statistics(): Statistics {
-    return this.viewing?.mesh.statistics ?? kNoStatistics;
+    return this.viewing?.mesh.progress.statistics ?? kNoStatistics;
   }
   get counts(): Counts {
     const {tetrahedra, vertices, boundaryTriangles} = this.statistics;
@@ -246,40 +246,24 @@ export class QtetViewer extends HTMLElement {
   /** Who moves an element takes it out and puts it in at once: then everything stays. */
   disconnectedCallback(): void {
     queueMicrotask(() => {
-      if (!this.isConnected) this.end();
+      if (this.isConnected) return;
+      const {meshView, client, viewing} = this;
+      if (meshView && !meshView.pose.fitted) this.kept.start = meshView.cameraState;
+      client?.dispose();
+      viewing?.dispose();
+      this.client = this.viewing = null;
+      this.timeGroup?.leave();
+      this.timeGroup = null;
     });
-  }
-
-  private end(): void {
-    const {meshView, client, viewing} = this;
-    if (meshView && !meshView.pose.fitted) this.kept.start = meshView.cameraState;
-    client?.dispose();
-    viewing?.dispose();
-    this.client = this.viewing = null;
-    this.timeGroup?.leave();
-    this.timeGroup = null;
   }
 
   /** Leaves the one before. */
   private joinTimeGroup(): void {
     this.timeGroup?.leave();
     const name = this.getAttribute('time-group');
-    this.timeGroup = name ? joinTimeGroup(this.ownerDocument, name, this.asMember()) : null;
-  }
-
-  private asMember(): TimeMember {
-    const time = (): string | null =>
-      this.getAttribute('time') ?? this.viewing?.mesh.firstTime?.text ?? null;
-    return {
-      get time() {
-        return time();
-      },
-      take: (text) => {
-        if (text === null) this.removeAttribute('time');
-        else this.setAttribute('time', text);
-      },
-      stop: () => void (this.playing = false),
-    };
+    const first = (): string | null => this.viewing?.mesh.firstTime?.text ?? null;
+    const member = memberOf(this, first);
+    this.timeGroup = name ? joinTimeGroup(this.ownerDocument, name, member) : null;
   }
 
   attributeChangedCallback(name: string, before: string | null, after: string | null): void {
@@ -299,6 +283,20 @@ export class QtetViewer extends HTMLElement {
     if (name === 'transport') viewing.apply();
     if (!isOfStream) this.page.dispatch('view-change', {name, value: after});
   }
+}
+
+/** `first` is the time without an attribute. */
+function memberOf(element: QtetViewer, first: () => string | null): TimeMember {
+  return {
+    get time() {
+      return element.getAttribute('time') ?? first();
+    },
+    take: (text) => {
+      if (text === null) element.removeAttribute('time');
+      else element.setAttribute('time', text);
+    },
+    stop: () => void (element.playing = false),
+  };
 }
 
 function pageOf(element: QtetViewer, root: ShadowRoot): Page {

@@ -31,7 +31,7 @@ export class Requests {
 }
 
 /** The clip planes in lattice coordinates; none before there are bounds. */
-export function planesOf({planes}: Settings, {bounds}: ShownMesh): Plane[] {
+export function planesOf({planes}: Settings, {base: {bounds}}: ShownMesh): Plane[] {
   return bounds.length > 0 ? planes.map((plane) => planeOf(plane, bounds)) : [];
 }
 
@@ -42,6 +42,7 @@ export function displayOf(
   read: (name: ViewAttribute) => string | null,
 ): Display {
   const {fields} = mesh.manifest!;
+  const ahead = mesh.ahead.request(mesh.progress.here);
   const color = shownScalar(read('field'), fields, mesh.firstField);
   const display: Display = {
     ...kPlainDisplay,
@@ -50,10 +51,10 @@ export function displayOf(
     body: settings.surface && settings.volume === null,
     mode: settings.planes.length > 0 ? settings.mode : 'cut',
     planes: planesOf(settings, mesh),
-    warp: warpOf(settings, mesh),
+    warp: warpOf(settings, {manifest: mesh.manifest, ...mesh.base}),
     restEdges: settings.restEdges,
     volume: settings.volume !== null,
-    ...(mesh.ahead.length > 0 && {ahead: mesh.ahead}),
+    ...(ahead.length > 0 && {ahead}),
   };
   for (const layer of fieldLayers()) {
     const request = layer.read(read(layer.name), fields);

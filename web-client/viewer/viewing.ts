@@ -1,21 +1,21 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
-import type {BaseFigures} from '../core/picture/base_figures';
-import {latticeChange, type LatticeChange} from '../core/protocol/geometry';
 import {isEqual} from '../core/protocol/equal';
 import type {CoarseCells} from '../core/picture/volume';
 import type {Client} from '../core/session/client';
-import type {FromWorker, Snapshot, StreamState} from '../core/session/worker_messages';
+import type {FromWorker, Progress, Snapshot, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
 import type {View} from '../webgl/view';
 import {Graphics, type ViewStart} from './graphics';
 import {CameraWatch} from './page/camera_watch';
+import {kMaxAhead} from './page/fields_ahead';
 import {find} from './page/find';
 import {isOnDark, watchGround} from './page/ground';
 import {Hurry} from './page/hurry';
 import {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
-import {kMaxAhead, settingsFor, ShownMesh, type SegmentPlace} from './page/shown_mesh';
+import {settingsFor, type SegmentPlace, type ShownMesh} from './page/shown_mesh';
+import {Succession} from './page/succession';
 import {Shell} from './panels/shell';
 import {displayOf, Requests} from './requests';
 import {readSettings, type Settings, type ShownRange} from './settings/settings';
@@ -30,12 +30,9 @@ import {StreamControl} from './stream_control';
 const kLaterMs = 5000;
 
 type Head = Extract<FromWorker, {type: 'manifest'}>;
-type Progress = Extract<FromWorker, {type: 'progress'}>;
 
 export class Viewing implements LaterHost {
-  mesh = new ShownMesh();
-  /** Another segment of the list, until it has a picture; null: none is opened. */
-  private next: ShownMesh | null = null;
+  private readonly meshes = new Succession();
   settings: Settings;
   /** The values that the colours span; null if nothing is coloured. */
   range: ShownRange | null = null;
@@ -83,7 +80,7 @@ export class Viewing implements LaterHost {
     this.stream = new StreamControl(page, kept, client, {
       limit: () => this.settings.limit,
       time: () => this.settings.time,
-      keptField: () => this.coming.keptField,
+      keptField: () => this.meshes.coming.keptField,
       opens: (isSame, place) => this.opens(isSame, place),
       changed: (state, attempt, delayMs) => this.showState(state, attempt, delayMs),
       failed: (code, message) => this.failed(code, message),
@@ -114,6 +111,9 @@ export class Viewing implements LaterHost {
     this.shell = this.later = null;
   }
 
+  get mesh(): ShownMesh {
+    return this.meshes.shown;
+  }
   get view(): View | null {
     return this.graphics.view;
   }
@@ -191,7 +191,7 @@ export class Viewing implements LaterHost {
   }
 
   get opening(): StreamState | null {
-    return this.next ? this.stream.state : null;
+    return this.meshes.next ? this.stream.state : null;
   }
 
   timeChanged(time: number, playing: boolean): void {
@@ -212,10 +212,11 @@ export class Viewing implements LaterHost {
       case 'manifest':
         return this.takeManifest(message);
       case 'plan':
-        this.coming.plan = message.plan;
+        this.meshes.coming.plan = message.plan;
         return this.shell?.progress.takePlan(message.plan);
       case 'base':
-        return this.takeBase(message.figures);
+        this.meshes.coming.base = message.figures;
+        return this.apply();
       case 'snapshot':
         return this.takePicture(message.snapshot);
       case 'progress':
@@ -231,35 +232,31 @@ export class Viewing implements LaterHost {
 
   private takeManifest({manifest, digest, isMore}: Head): void {
     // another log has taken its name
-    if (this.coming.manifest && !isMore) this.replace(true, this.coming.place);
-    Object.assign(this.coming, {manifest, digest});
+    const {coming} = this.meshes;
+    if (coming.manifest && !isMore) this.replace(true, coming.place);
+    Object.assign(this.meshes.coming, {manifest, digest});
     if (isMore) {
       this.shell?.progress.takeFields(manifest);
       return this.apply();
     }
-    if (!this.next) this.view?.setFocus(manifest.focus ?? null);
+    if (!this.meshes.next) this.view?.setFocus(manifest.focus ?? null);
     this.shell?.progress.begin(manifest);
     this.apply();
   }
 
-  private takeBase(figures: BaseFigures): void {
-    this.coming.takeBase(figures);
-    this.apply();
-  }
-
-  private takeProgress({statistics, received, here, aheadEnded}: Progress): void {
-    const {coming: mesh, next} = this;
-    const isMore = here.length !== mesh.here.length;
-    Object.assign(mesh, {statistics, received, here, aheadEnded});
-    if (isMore && mesh.plotted.length > kMaxAhead) this.apply(); // asks for the next ones
+  private takeProgress(progress: Progress): void {
+    const {coming: mesh, next} = this.meshes;
+    const isMore = progress.here.length !== mesh.progress.here.length;
+    mesh.progress = progress;
+    if (isMore && mesh.ahead.plotted.length > kMaxAhead) this.apply(); // asks for the next ones
     this.later?.time.follow();
     if (!next) this.later?.panels.inspect.takeProgress();
-    this.shell?.progress.show(statistics);
-    this.page.dispatch('progress', statistics);
+    this.shell?.progress.show(progress.statistics);
+    this.page.dispatch('progress', progress.statistics);
   }
 
   private takePicture(snapshot: Snapshot): void {
-    this.coming.waiting = this.view ? null : snapshot;
+    this.meshes.waiting = this.view ? null : snapshot;
     if (this.view) this.draw(snapshot, this.view);
   }
 
@@ -271,14 +268,15 @@ export class Viewing implements LaterHost {
     view.setFocus(this.mesh.manifest?.focus ?? null);
     this.apply();
     this.shell?.cards.repeat();
-    const {waiting} = this.coming;
-    this.coming.waiting = null;
+    const {waiting} = this.meshes;
+    this.meshes.waiting = null;
     if (waiting) this.draw(waiting, view);
   }
 
   private draw(snapshot: Snapshot, view: View): void {
-    const change = this.takeNext();
+    const change = this.meshes.takeNext();
     const {mesh, page} = this;
+    if (change) this.later?.panels.clear();
     const isFirst = mesh.snapshot === null;
     const amounts = mesh.snapshot?.amounts?.join();
     mesh.take(snapshot);
@@ -289,7 +287,7 @@ export class Viewing implements LaterHost {
       snapshot,
       (drawingMs) => {
         if (mesh !== this.mesh) return; // it belongs to the previous mesh
-        if (!this.next) this.client.shown(drawingMs);
+        if (!this.meshes.next) this.client.shown(drawingMs);
         page.dispatch(mesh.drawn ? 'refine' : 'load', snapshot.statistics);
         mesh.drawn = snapshot.statistics;
         page.element.classList.add('loaded');
@@ -339,30 +337,14 @@ export class Viewing implements LaterHost {
   /** Returns true if the picture stays, because another segment of its list comes. */
   private replace(isSame: boolean, place: SegmentPlace | null): boolean {
     const stays = isSame && place !== null && this.view !== null && this.mesh.snapshot !== null;
-    this.next = stays ? this.mesh.successor(place) : null;
+    this.meshes.open(place, stays);
     this.requests.forget();
-    if (!stays) this.forget(isSame, place);
+    if (!stays) this.forget(isSame);
     return stays;
   }
 
-  /** The mesh to which the worker's messages belong. */
-  private get coming(): ShownMesh {
-    return this.next ?? this.mesh;
-  }
-
-  /** The next segment takes the place of the shown one. Null if there is none. */
-  private takeNext(): LatticeChange | null {
-    const {mesh: before, next} = this;
-    if (!next) return null;
-    this.mesh = next;
-    this.next = null;
-    this.later?.panels.clear();
-    return latticeChange(before.manifest!.lattice, next.manifest!.lattice);
-  }
-
   /** With `isSame` the camera stays where the user has moved it. */
-  private forget(isSame: boolean, place: SegmentPlace | null): void {
-    this.mesh = new ShownMesh(place);
+  private forget(isSame: boolean): void {
     const {view} = this;
     if (view) {
       const {cameraState, pose} = view;
@@ -375,9 +357,10 @@ export class Viewing implements LaterHost {
   }
 
   private showDisplay(): void {
-    const {coming: mesh, next, page, shell} = this;
+    const {page, shell} = this;
+    const {coming: mesh, next} = this.meshes;
     // A picture without its planes would show what the address hides.
-    if (!mesh.manifest || mesh.bounds.length === 0) return;
+    if (!mesh.manifest || mesh.base.bounds.length === 0) return;
     const read = page.read.bind(page);
     const settings = next ? settingsFor(next, read) : this.settings;
     const display = displayOf(settings, mesh, read);
@@ -405,7 +388,7 @@ export class Viewing implements LaterHost {
     if (state === 'paused' || state === 'failed') void this.loadLater(); // no picture is due
     this.tellComplete();
     if (!this.shell) return;
-    this.shell.progress.showState(state, attempt, delayMs, this.coming.isSuccessor);
+    this.shell.progress.showState(state, attempt, delayMs, this.meshes.coming.isSuccessor);
     this.later?.panels.showState(state);
     if (state === 'streaming' || state === 'complete') this.notices.endOf('stream');
   }
@@ -413,7 +396,8 @@ export class Viewing implements LaterHost {
   /** Both the decoder and the picture must be complete. */
   private tellComplete(): void {
     const {mesh, stream} = this;
-    if (stream.state !== 'complete' || this.completeTold || this.next || !mesh.isDrawn) return;
+    if (stream.state !== 'complete' || this.completeTold || this.meshes.next || !mesh.isDrawn)
+      return;
     this.completeTold = true;
     this.page.dispatch('complete', mesh.drawn);
   }

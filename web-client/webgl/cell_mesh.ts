@@ -1,7 +1,7 @@
 // The cells of a volume and their textures.
 
 import type {VolumeCells} from '../core/picture/volume';
-import {CellTextures} from './cell_textures';
+import {CellTextures, kRow, maxRows} from './cell_textures';
 import type {Graphics} from './gl/graphics';
 
 export class CellMesh {
@@ -17,6 +17,20 @@ export class CellMesh {
   layers = 1;
 
   constructor(private readonly graphics: Graphics) {}
+
+  /** Reports an error, and requests none, if the cells do not fit into the graphics' textures. */
+  request(cells: VolumeCells | null): void {
+    const maxSize = this.graphics.maxTextureSize;
+    const fits = !cells || maxRows(cells) <= maxSize;
+    this.requested = fits ? cells : null;
+    if (fits) return;
+    const most = ((maxSize * kRow) / 4e6).toFixed(1);
+    reportError(
+      new Error(
+        `the graphics take no volume of more than ${most} million cells; set Refine to fewer`,
+      ),
+    );
+  }
 
   /** Takes the requested cells. REQUIRES: no picture is being drawn. */
   update(): void {

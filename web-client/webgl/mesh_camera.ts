@@ -39,6 +39,12 @@ interface Room {
   boxed: Boxed | null;
 }
 
+/** Lattice coordinates, scaled and moved, lie in a ball of radius 1 round the origin. */
+interface Placing {
+  scale: number;
+  offset: Vector;
+}
+
 type Seen = Pick<Snapshot, 'bounds' | 'surface' | 'warp'>;
 
 /** Cards that cover more of a small page cover the mesh. */
@@ -49,9 +55,7 @@ const kNoReach = {bounds: [] as number[], scale: 0, isAtRestToo: false};
 export class MeshCamera {
   readonly orbit = new OrbitCamera();
   private readonly controls: OrbitControls;
-  /** Lattice coordinates, scaled and moved, lie in a ball of radius 1 round the origin. */
-  private scale = 1;
-  private offset: Vector = [0, 0, 0];
+  private placing: Placing = {scale: 1, offset: [0, 0, 0]};
   /** Those of the largest mesh at rest so far, in lattice coordinates; empty: there is no mesh. */
   bounds: number[] = [];
   focus: number[] | null = null;
@@ -106,7 +110,7 @@ export class MeshCamera {
     this.outline = isMoving ? farthestOf([...this.outline, ...outline]) : outline;
     this.bounds = bounds;
     this.reach = {bounds: reach, scale, isAtRestToo};
-    const before = {scale: this.scale, offset: this.offset};
+    const before = this.placing;
     this.placeLattice();
     if (!isFirst) {
       if (this.isSuccessor) this.stayInPlace(before);
@@ -165,7 +169,7 @@ export class MeshCamera {
   /** The canvas's camera as if no card covered it for a while. */
   uncovered(): Lens {
     const lens = this.orbit.lens.clone();
-    this.place(lens, this.room.insets);
+    placeBetween(this.room.insets, lens, this.size);
     return lens;
   }
 
@@ -267,7 +271,7 @@ export class MeshCamera {
 
   /** From where a camera sees lattice coordinates. */
   eyeOf({toEye, toCube}: Lens): Eye {
-    const {scale, offset} = this;
+    const {scale, offset} = this.placing;
     const placed = [scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0, ...offset, 1];
     return {toEye: product(toEye, placed), toCube};
   }
@@ -275,13 +279,14 @@ export class MeshCamera {
   /** The lines of sight of a camera in this scene. */
   sightOf(lens: Lens): Sight {
     const {toEye, toCube} = this.eyeOf(lens);
+    const {scale, offset} = this.placing;
     const toCanvas = product(toCube, toEye);
     return {
       toCanvas,
       fromCanvas: inverse(toCanvas),
-      eye: scaled(difference(lens.eye, this.offset), 1 / this.scale),
+      eye: scaled(difference(lens.eye, offset), 1 / scale),
       // the length of the bounds' diagonal, in lattice steps
-      diagonal: 2 / this.scale,
+      diagonal: 2 / scale,
     };
   }
 
@@ -306,29 +311,18 @@ export class MeshCamera {
     this.controls.dispose();
   }
 
-  private stayInPlace(before: {scale: number; offset: Vector}): void {
-    const factor = this.scale / before.scale;
-    this.orbit.goWith(factor, difference(this.offset, scaled(before.offset, factor)));
+  private stayInPlace(before: Placing): void {
+    const {scale, offset} = this.placing;
+    const factor = scale / before.scale;
+    this.orbit.goWith(factor, difference(offset, scaled(before.offset, factor)));
   }
 
   private placePicture(): void {
-    const {orbit} = this;
+    const {size} = this;
+    const {lens} = this.orbit;
     const {covered, insets} = this.room;
-    this.place(orbit.lens, insets);
-    if (covered) this.place(orbit.lens, covered, this.shrunkBy(covered));
-  }
-
-  /** Puts the centre of a picture of `scale` times the canvas's size between the insets. */
-  private place(lens: Lens, {left, right, top, bottom}: Insets, scale = 1): void {
-    const {width, height} = this.size;
-    lens.setPart({
-      fullWidth: scale * width,
-      fullHeight: scale * height,
-      x: ((scale - 1 + right - left) / 2) * width,
-      y: ((scale - 1 + bottom - top) / 2) * height,
-      width,
-      height,
-    });
+    placeBetween(insets, lens, size);
+    if (covered) placeBetween(covered, lens, size, this.shrunkBy(covered));
   }
 
   /**
@@ -358,15 +352,16 @@ export class MeshCamera {
   private placeLattice(): void {
     const low = this.bounds.slice(0, 3) as Vector;
     const high = this.bounds.slice(3, 6) as Vector;
-    this.scale = 2 / Math.max(lengthOf(difference(high, low)), 1);
-    this.offset = scaled(sum(low, high), -this.scale / 2);
+    const scale = 2 / Math.max(lengthOf(difference(high, low)), 1);
+    this.placing = {scale, offset: scaled(sum(low, high), -scale / 2)};
     const corners = cornersOf(this.reach.bounds).map((corner) => this.placed(corner));
     this.orbit.reachTo(Math.max(...corners.map(lengthOf)));
   }
 
   /** A lattice point's place in the scene. */
   private placed(point: Vector): Vector {
-    return sum(scaled(point, this.scale), this.offset);
+    const {scale, offset} = this.placing;
+    return sum(scaled(point, scale), offset);
   }
 
   /**
@@ -413,6 +408,23 @@ const middleOf = (
   width: number,
   height: number,
 ): [number, number] => [((1 + left - right) / 2) * width, ((1 + top - bottom) / 2) * height];
+
+/** Puts the centre of a picture of `scale` times the canvas's size between the insets. */
+function placeBetween(
+  {left, right, top, bottom}: Insets,
+  lens: Lens,
+  {width, height}: {width: number; height: number},
+  scale = 1,
+): void {
+  lens.setPart({
+    fullWidth: scale * width,
+    fullHeight: scale * height,
+    x: ((scale - 1 + right - left) / 2) * width,
+    y: ((scale - 1 + bottom - top) / 2) * height,
+    width,
+    height,
+  });
+}
 
 const endsOf = (places: number[]): [number, number] => [Math.min(...places), Math.max(...places)];
 

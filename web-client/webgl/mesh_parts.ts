@@ -1,17 +1,16 @@
 // The triangles of a picture: surface, cuts and layers, with the look that they share. The lines of
 // the mesh at rest lie among them.
 
-import {colorTable, kColorMapEntries} from '../core/picture/color_maps';
 import {linearPart} from '../core/picture/log_scale';
 import {kMaxPlanes} from '../core/picture/display';
 import type {Snapshot} from '../core/session/worker_messages';
+import {ColorTable} from './color_table';
 import {fadesOf} from './edge_fade';
 import {kFieldFragmentShader, kFieldVertexShader} from './field_shaders';
 import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
-import {Texture} from './gl/texture';
 import {isOutside, type Eye} from './lens';
-import {LineParts, type LineLook} from './line_parts';
+import {LineParts} from './line_parts';
 import type {Matrix} from './matrix';
 import type {Size} from './pose';
 import {kSoupAttributes, Soup} from './soup';
@@ -41,14 +40,11 @@ export class MeshParts {
   private readonly cuts: readonly Soup[];
   private readonly restEdges: LineParts;
   private readonly program: Program;
-  private readonly table = new Uint8Array(4 * kColorMapEntries);
-  private readonly colorMap: Texture;
-  private tableName = '';
-  private edgeStrength = 0;
-  private creaseStrength = 0;
-  private creaseFade = 1;
-  /** That below a picture that is drawn apart from the canvas; null: none is drawn. */
-  groundOfFrame: {onDark: boolean} | null = null;
+  private readonly colors: ColorTable;
+  /** The darkness of edges and creases, and the share of it that creases have now. */
+  private readonly lines = {edges: 0, creases: 0, creaseFade: 1};
+  /** As Frame, of a picture that is drawn apart from the canvas; null: none is drawn. */
+  frame: {onDark: boolean; pixelRatio: number} | null = null;
   /** The surface's, in lattice coordinates. */
   private bounds: readonly number[] = [];
   /** No plane cuts the surface. */
@@ -66,9 +62,9 @@ export class MeshParts {
       `${kFragmentHead}${kFieldFragmentShader}`,
       kSoupAttributes,
     );
-    this.colorMap = new Texture(graphics, this.table, kColorMapEntries, 1, 'rgba8');
+    this.colors = new ColorTable(graphics);
     this.look = {
-      colorMap: this.colorMap,
+      colorMap: this.colors.texture,
       plainColor: [0.72, 0.74, 0.78],
       range: [0, 1],
       scaleRange: [0, 1],
@@ -114,14 +110,9 @@ export class MeshParts {
   }
 
   setLook({map, reversed, edges, creases, opacity, beyond, onDark = false}: Look): void {
-    const table = `${map} ${reversed}`;
-    if (table !== this.tableName) {
-      this.table.set(colorTable(map, reversed));
-      this.colorMap.update();
-    }
-    this.tableName = table;
-    this.edgeStrength = edges ? kEdgeStrength : 0;
-    this.creaseStrength = creases ? kCreaseStrength : 0;
+    this.colors.show(map, reversed);
+    this.lines.edges = edges ? kEdgeStrength : 0;
+    this.lines.creases = creases ? kCreaseStrength : 0;
     this.look.onDark = onDark;
     for (const [i, name] of (['below', 'above'] as const).entries()) {
       const color = beyond?.[i]?.map((channel) => channel / 255);
@@ -154,11 +145,11 @@ export class MeshParts {
     const lined = [this.surface, ...this.cuts].map(({shown}) => shown);
     const {edges, creases} = fadesOf(lined, toCanvas, canvas);
     this.look.edgeFade = edges;
-    this.creaseFade = creases;
+    this.lines.creaseFade = creases;
   }
 
   setPixelRatio(ratio: number): void {
-    this.look.pixelRatio = Math.max(1, ratio);
+    this.look.pixelRatio = ratio;
   }
 
   /** Draws all onto an empty target, or canvas. */
@@ -167,7 +158,10 @@ export class MeshParts {
     const hidesInside = this.isClosed && isOutside(this.bounds, toEye);
     const isClear = ({look}: Soup): boolean => Number(look.opacity) < 1;
     const visible = this.all.filter((soup) => soup.visible);
-    const seen = {...this.look, modelViewMatrix: toEye, projectionMatrix: toCube};
+    const {lines} = this;
+    const ground = this.frame ?? this.look;
+    const pixelRatio = Math.max(1, Number(ground.pixelRatio));
+    const seen = {...this.look, pixelRatio, modelViewMatrix: toEye, projectionMatrix: toCube};
     const drawSoup = (soup: Soup): void => {
       const clear = isClear(soup);
       this.graphics.use({
@@ -178,24 +172,16 @@ export class MeshParts {
       this.program.use({
         ...seen,
         ...soup.look,
-        edgeStrength: soup.hasEdges ? this.edgeStrength : 0,
-        creaseStrength: soup.hasEdges ? this.creaseStrength * this.creaseFade : 0,
+        edgeStrength: soup.hasEdges ? lines.edges : 0,
+        creaseStrength: soup.hasEdges ? lines.creases * lines.creaseFade : 0,
       });
       soup.draw();
     };
     visible.filter((soup) => !isClear(soup)).forEach(drawSoup);
-    this.restEdges.draw({toEye, toCube}, this.lineLook);
+    const onDark = Boolean(ground.onDark);
+    this.restEdges.draw({toEye, toCube}, {onDark, opacity: lines.creaseFade, pixelRatio});
     // Soups that can be seen through come last, and hide nothing.
     visible.filter(isClear).forEach(drawSoup);
-  }
-
-  private get lineLook(): LineLook {
-    const {onDark} = this.groundOfFrame ?? this.look;
-    return {
-      onDark: Boolean(onDark),
-      opacity: this.creaseFade,
-      pixelRatio: Number(this.look.pixelRatio),
-    };
   }
 
   private get all(): Soup[] {
@@ -212,6 +198,6 @@ export class MeshParts {
     for (const soup of this.all) soup.dispose();
     this.restEdges.dispose();
     this.program.dispose();
-    this.colorMap.dispose();
+    this.colors.texture.dispose();
   }
 }

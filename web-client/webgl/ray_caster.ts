@@ -3,7 +3,7 @@
 // boundary faces and casts rays from there, until no pixel has such a face.
 
 import {linearPart} from '../core/picture/log_scale';
-import type {TransferTables} from '../core/picture/transfer';
+import {transferTables} from '../core/picture/transfer';
 import type {Plane} from '../core/protocol/geometry';
 import {kMinNear} from './camera';
 import type {CellTextures} from './cell_textures';
@@ -35,6 +35,8 @@ export class RayCaster {
     linear: 0,
     clipPlanes: clipValues([]),
   };
+  /** The last words of setTransfer, as a text. */
+  private transfer = '';
   private tables: Texture[] = [];
   /** The entries of this layer, and of the one before. */
   private targets: [Target, Target];
@@ -47,7 +49,11 @@ export class RayCaster {
     this.targets = [target(), target()];
   }
 
-  setTransfer({density, integral}: TransferTables): void {
+  setTransfer(...words: Parameters<typeof transferTables>): void {
+    const text = JSON.stringify(words);
+    if (text === this.transfer) return;
+    this.transfer = text;
+    const {density, integral} = transferTables(...words);
     for (const table of this.tables) table.dispose();
     const tableOf = (values: Float32Array): Texture =>
       new Texture(this.graphics, values, values.length / 4, 1, 'rgba32f');

@@ -93,6 +93,8 @@ export interface ViewListeners {
 export interface View {
   readonly canvas: Size;
   readonly pose: Pose;
+  /** As Graphics.renderer. */
+  readonly renderer: string;
   /** Six numbers. If they are set before there is a mesh, they wait for one. */
   cameraState: CameraState;
   /**

@@ -45,6 +45,8 @@ export type Wanted = {type: 'picture'; background: string} | {type: 'render'; fr
 export type FromView =
   /** The worker is running. It tells its own address, and whether it can draw with WebGL 2. */
   | {type: 'hello'; url: string; draws: boolean}
+  /** Answers `begin`. */
+  | {type: 'begun'; pose: Pose; renderer: string}
   | {type: 'drawn'; pose: Pose}
   | {type: 'shown'; id: number; drawingMs: number}
   | {type: 'pong'}

@@ -50,12 +50,12 @@ function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}
   canvas.resize(size);
   try {
     view = globalThis.qtetView = new MeshView(canvas, {
-      drawn: (pose) => post({type: 'drawn', pose}),
+      drawn: (pose) => view && post({type: 'drawn', pose}), // `begun` comes first
       lost: (lost) => post({type: 'lost', lost}),
       works: (working) => post({type: 'works', working}),
       ...(answers ? {coarse} : {}),
     });
-    post({type: 'drawn', pose: view.pose});
+    post({type: 'begun', pose: view.pose, renderer: view.renderer});
     view.warmUp();
   } catch (thrown) {
     post({type: 'failed', message: errorText(thrown)});

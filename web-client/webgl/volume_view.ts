@@ -2,11 +2,10 @@
 // pixels while something moves, and all cells with all pixels once it rests. They draw in strips of
 // pixels, so that the next movement waits for a strip and not for the picture.
 
-import {transferTables} from '../core/picture/transfer';
+import type {transferTables} from '../core/picture/transfer';
 import {kCoarseCells, type CoarseCells, type VolumeCells} from '../core/picture/volume';
 import {CellDrawer, type Picture} from './cell_drawer';
 import {CellMesh} from './cell_mesh';
-import {kRow, maxRows} from './cell_textures';
 import {CoarseMesh} from './coarse_mesh';
 import {FrameBudget, kMovingMs} from './frame_budget';
 import type {Graphics} from './gl/graphics';
@@ -22,8 +21,6 @@ export interface VolumeLook {
 }
 
 export class VolumeView {
-  /** The last words of transferTables, as a text. */
-  private transfer = '';
   private readonly fine: CellMesh;
   private readonly coarse: CoarseMesh;
   private readonly drawer: CellDrawer;
@@ -39,7 +36,7 @@ export class VolumeView {
 
   /** `changed` asks for another picture. `askCoarse` and `works` are those of ViewListeners. */
   constructor(
-    private readonly graphics: Graphics,
+    graphics: Graphics,
     private readonly changed: (moved: boolean) => void,
     askCoarse?: (have: number) => Promise<CoarseCells>,
     private readonly works: (working: boolean) => void = () => undefined,
@@ -62,7 +59,7 @@ export class VolumeView {
   }
 
   take(cells: VolumeCells | null): void {
-    this.fine.requested = cells && this.fitting(cells);
+    this.fine.request(cells);
     this.whole = false;
     this.coarse.expire();
     if (this.hasCells) return;
@@ -74,9 +71,7 @@ export class VolumeView {
   setLook({transfer, range}: VolumeLook): void {
     const {caster} = this.drawer;
     if (range) caster.setRange(...range);
-    const text = JSON.stringify(transfer);
-    if (transfer && text !== this.transfer) caster.setTransfer(transferTables(...transfer));
-    this.transfer = text;
+    if (transfer) caster.setTransfer(...transfer);
   }
   setClip(...words: Parameters<RayCaster['setClip']>): void {
     this.drawer.caster.setClip(...words);
@@ -132,19 +127,6 @@ export class VolumeView {
     this.fine.requested = this.coarse.requested = null;
     this.update();
     this.drawer.dispose();
-  }
-
-  /** Returns null and reports an error if the cells do not fit into the graphics' textures. */
-  private fitting(cells: VolumeCells): VolumeCells | null {
-    const maxSize = this.graphics.maxTextureSize;
-    if (maxRows(cells) <= maxSize) return cells;
-    reportError(
-      new Error(
-        `the graphics take no volume of more than ${((maxSize * kRow) / 4e6).toFixed(1)} million ` +
-          'cells; set Refine to fewer',
-      ),
-    );
-    return null;
   }
 
   /** Takes the new cells. REQUIRES: no picture is being drawn. */

@@ -3,6 +3,9 @@
 
 import {watchDensity} from './density';
 
+/** More than two pixels a point cost more than they show. */
+const kMaxPixelRatio = 2;
+
 /** The forwarded part of a pointer, wheel or key event. Places count from the canvas's corner. */
 export interface CanvasEvent {
   type: string;
@@ -64,8 +67,18 @@ export type ViewCanvas = HTMLCanvasElement | WorkerCanvas;
 
 export const surfaceOf = (canvas: ViewCanvas): HTMLCanvasElement | OffscreenCanvas =>
   canvas instanceof WorkerCanvas ? canvas.surface : canvas;
-export const pixelRatioOf = (canvas: ViewCanvas): number =>
-  canvas instanceof WorkerCanvas ? canvas.pixelRatio : window.devicePixelRatio;
+
+/** Gives the surface this share of the canvas's pixels, each way. Returns its pixels a point. */
+export function usePixels(canvas: ViewCanvas, share: number): number {
+  const surface = surfaceOf(canvas);
+  const density = canvas instanceof WorkerCanvas ? canvas.pixelRatio : window.devicePixelRatio;
+  const ratio = Math.min(density, kMaxPixelRatio) * share;
+  const width = Math.floor(Math.max(canvas.clientWidth, 1) * ratio) || 1;
+  const height = Math.floor(Math.max(canvas.clientHeight, 1) * ratio) || 1;
+  // Setting a size clears the canvas, even if it is the same.
+  if (surface.width !== width || surface.height !== height) Object.assign(surface, {width, height});
+  return ratio;
+}
 
 /** Calls `resized` whenever the canvas's size changes. Returns a function that ends this. */
 export function watchSize(canvas: ViewCanvas, resized: () => void): () => void {

@@ -9,31 +9,16 @@ import type {Snapshot} from '../core/session/worker_messages';
 import type {CameraState} from './camera';
 import {watchDensity} from './density';
 import {checkedDirection, type Direction} from './directions';
-import type {CanvasEvent, CanvasSize} from './worker_canvas';
+import {forwardEvents} from './canvas_events';
+import type {CanvasSize} from './worker_canvas';
 import {checkedCamera, project, rayAt, type Pose} from './pose';
 import type {Boxed, Frame, Insets, Look, Rendered, View, ViewListeners} from './view';
 import type {Command, FromView, ToView, Wanted} from './view_messages';
+import {watchWorker} from './worker_watch';
 
-/**
- * The canvas's events that a view needs. Moves are forwarded only while a button or a finger is
- * down.
- */
-const kCanvasEvents = [
-  'pointerdown',
-  'pointermove',
-  'pointerup',
-  'pointercancel',
-  'wheel',
-  'contextmenu',
-] as const;
-
-/** The worker that draws is asked this often whether it responds, while the page is visible. */
-const kPingMs = 5000;
-/**
- * So many unanswered questions are allowed: software graphics may block a worker for seconds, and a
- * page that slept has asked only once.
- */
-const kMaxUnanswered = 6;
+interface ViewPort {
+  postMessage(message: ToView, transfer?: Transferable[]): void;
+}
 
 /**
  * A view of `canvas`, drawn by a worker if workers can draw, else on this thread. Throws if the
@@ -41,8 +26,7 @@ const kMaxUnanswered = 6;
  */
 export async function openView(canvas: HTMLCanvasElement, listeners: ViewListeners): Promise<View> {
   const {worker, url, draws} = await retry(startWorker);
-  if (draws && 'transferControlToOffscreen' in canvas)
-    return WorkerView.begin(worker, canvas, listeners);
+  if (draws && 'transferControlToOffscreen' in canvas) return begin(worker, canvas, listeners);
   worker.terminate();
   // the same script again, so that nobody downloads it in two builds
   await import(/* @vite-ignore */ url);
@@ -70,6 +54,29 @@ function answerOf(worker: Worker): Promise<FromView> {
   });
 }
 
+async function begin(
+  worker: Worker,
+  canvas: HTMLCanvasElement,
+  listeners: ViewListeners,
+): Promise<WorkerView> {
+  const surface = canvas.transferControlToOffscreen();
+  const message: ToView = {
+    type: 'begin',
+    canvas: surface,
+    size: sizeOf(canvas),
+    answers: listeners.coarse !== undefined,
+  };
+  worker.postMessage(message, [surface]);
+  const first = await answerOf(worker);
+  if (first.type !== 'begun') {
+    worker.terminate();
+    throw new Error(
+      first.type === 'failed' ? first.message : 'the worker that draws does not answer',
+    );
+  }
+  return new WorkerView(worker, canvas, listeners, first.pose, first.renderer);
+}
+
 class WorkerView implements View {
   private readonly shown = new Map<number, (ms: number) => void>();
   private readonly pictures = new Map<
@@ -77,66 +84,33 @@ class WorkerView implements View {
     {resolve(picture: unknown): void; reject(why: Error): void}
   >();
   private readonly ended = new AbortController();
-  private readonly resizes: ResizeObserver;
-  private readonly timer: ReturnType<typeof setInterval>;
-  private unanswered = 0;
   private nextId = 0;
-  private pressed = 0;
 
-  static async begin(
-    worker: Worker,
-    canvas: HTMLCanvasElement,
-    listeners: ViewListeners,
-  ): Promise<WorkerView> {
-    const surface = canvas.transferControlToOffscreen();
-    const begin: ToView = {
-      type: 'begin',
-      canvas: surface,
-      size: sizeOf(canvas),
-      answers: listeners.coarse !== undefined,
-    };
-    worker.postMessage(begin, [surface]);
-    const first = await answerOf(worker);
-    if (first.type !== 'drawn') {
-      worker.terminate();
-      throw new Error(
-        first.type === 'failed' ? first.message : 'the worker that draws does not answer',
-      );
-    }
-    return new WorkerView(worker, canvas, listeners, first.pose);
-  }
-
-  private constructor(
-    private readonly worker: Worker,
+  constructor(
+    private readonly worker: Omit<Worker, 'postMessage'> & ViewPort,
     readonly canvas: HTMLCanvasElement,
     private readonly listeners: ViewListeners,
     public pose: Pose,
+    readonly renderer: string,
   ) {
+    const {signal} = this.ended;
+    const answered = watchWorker(
+      () => worker.postMessage({type: 'ping'}),
+      (silent) => listeners.silent?.(silent),
+      signal,
+    );
     worker.onmessage = (event: MessageEvent<FromView>) => {
-      this.noteUnanswered(0);
+      answered();
       this.receive(event.data);
     };
     worker.onerror = (event) => listeners.failed?.(event.message);
     worker.onmessageerror = () => listeners.failed?.('a message cannot be read');
-    this.timer = setInterval(() => this.ping(), kPingMs);
-    canvas.style.touchAction = 'none';
-    for (const type of kCanvasEvents)
-      canvas.addEventListener(type, (event) => this.pass(event), {
-        passive: false,
-        signal: this.ended.signal,
-      });
-    for (const type of ['keydown', 'keyup'] as const) {
-      document.addEventListener(
-        type,
-        (event) =>
-          event.key === 'Control' && this.send({type: 'event', event: farEvent(event, canvas)}),
-        {signal: this.ended.signal},
-      );
-    }
-    const resized = (): void => this.send({type: 'size', size: sizeOf(canvas)});
-    this.resizes = new ResizeObserver(resized);
-    this.resizes.observe(canvas);
-    this.ended.signal.addEventListener('abort', watchDensity(resized));
+    forwardEvents(canvas, (event) => worker.postMessage({type: 'event', event}), signal);
+    const resized = (): void => worker.postMessage({type: 'size', size: sizeOf(canvas)});
+    const resizes = new ResizeObserver(resized);
+    resizes.observe(canvas);
+    signal.addEventListener('abort', () => resizes.disconnect());
+    signal.addEventListener('abort', watchDensity(resized));
   }
 
   get cameraState(): CameraState {
@@ -144,13 +118,13 @@ class WorkerView implements View {
   }
   set cameraState(state: CameraState) {
     this.pose = {...this.pose, camera: checkedCamera(state), fitted: false};
-    this.send({type: 'camera', state});
+    this.worker.postMessage({type: 'camera', state});
   }
 
   show(snapshot: Snapshot, drawn: (ms: number) => void, change: LatticeChange | null = null): void {
     const id = this.nextId++;
     this.shown.set(id, drawn);
-    this.send({type: 'show', id, snapshot, change}, buffersOf(snapshot));
+    this.worker.postMessage({type: 'show', id, snapshot, change}, buffersOf(snapshot));
   }
   clear(): void {
     this.command('clear');
@@ -212,9 +186,7 @@ class WorkerView implements View {
   }
 
   dispose(): void {
-    clearInterval(this.timer);
     this.ended.abort();
-    this.resizes.disconnect();
     this.worker.terminate();
     for (const picture of this.pictures.values())
       picture.reject(new Error('the graphics have ended'));
@@ -223,23 +195,10 @@ class WorkerView implements View {
 
   private take<Picture>(wanted: Wanted): Promise<Picture> {
     const id = this.nextId++;
-    this.send({...wanted, id});
+    this.worker.postMessage({...wanted, id});
     return new Promise<unknown>((resolve, reject) =>
       this.pictures.set(id, {resolve, reject}),
     ) as Promise<Picture>;
-  }
-
-  private ping(): void {
-    if (document.hidden) return;
-    this.noteUnanswered(this.unanswered + 1);
-    this.send({type: 'ping'});
-  }
-
-  private noteUnanswered(unanswered: number): void {
-    const was = this.unanswered > kMaxUnanswered,
-      is = unanswered > kMaxUnanswered;
-    this.unanswered = unanswered;
-    if (was !== is) this.listeners.silent?.(is);
   }
 
   private receive(message: FromView): void {
@@ -258,37 +217,23 @@ class WorkerView implements View {
       case 'works':
         return this.listeners.works?.(message.working);
       case 'coarse':
-        return void this.coarse(message.id, message.have);
+        return void this.listeners.coarse!(message.have)
+          .catch(() => null)
+          .then((answer) =>
+            this.worker.postMessage(
+              {type: 'coarse', id: message.id, answer},
+              answer?.cells ? buffersOfVolume(answer.cells) : [],
+            ),
+          );
       case 'hello':
+      case 'begun':
       case 'pong':
         return;
     }
   }
 
-  private async coarse(id: number, have: number): Promise<void> {
-    const answer = await this.listeners.coarse!(have).catch(() => null);
-    this.send({type: 'coarse', id, answer}, answer?.cells ? buffersOfVolume(answer.cells) : []);
-  }
-
-  /** Captures the pointer for a drag that began on the canvas, as OrbitControls would. */
-  private pass(event: PointerEvent | WheelEvent | MouseEvent): void {
-    if (event.type === 'wheel' || event.type === 'contextmenu') event.preventDefault();
-    if (event.type === 'pointerdown') {
-      ++this.pressed;
-      this.canvas.setPointerCapture((event as PointerEvent).pointerId);
-    }
-    if (event.type === 'pointermove' && this.pressed === 0) return;
-    if (event.type === 'pointerup' || event.type === 'pointercancel')
-      this.pressed = Math.max(0, this.pressed - 1);
-    this.send({type: 'event', event: farEvent(event, this.canvas)});
-  }
-
   private command<Name extends Command>(name: Name, ...words: Parameters<View[Name]>): void {
-    this.send({type: 'command', name, words} as ToView);
-  }
-
-  private send(message: ToView, transfer: Transferable[] = []): void {
-    this.worker.postMessage(message, transfer);
+    this.worker.postMessage({type: 'command', name, words} as ToView);
   }
 }
 
@@ -304,42 +249,5 @@ function sizeOf({clientWidth, clientHeight}: HTMLCanvasElement): CanvasSize {
     width: Math.max(1, clientWidth),
     height: Math.max(1, clientHeight),
     pixelRatio: window.devicePixelRatio,
-  };
-}
-
-function farEvent(
-  event: Partial<PointerEvent & WheelEvent & KeyboardEvent> & {type: string},
-  canvas: HTMLElement,
-): CanvasEvent {
-  const {left, top} = canvas.getBoundingClientRect();
-  const clientX = (event.clientX ?? 0) - left,
-    clientY = (event.clientY ?? 0) - top;
-  const {
-    type,
-    button = 0,
-    pointerId = 0,
-    pointerType = '',
-    deltaY = 0,
-    deltaMode = 0,
-    ctrlKey = false,
-    metaKey = false,
-    shiftKey = false,
-    key = '',
-  } = event;
-  return {
-    type,
-    clientX,
-    clientY,
-    pageX: clientX,
-    pageY: clientY,
-    button,
-    pointerId,
-    pointerType,
-    deltaY,
-    deltaMode,
-    ctrlKey,
-    metaKey,
-    shiftKey,
-    key,
   };
 }

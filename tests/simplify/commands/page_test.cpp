@@ -23,6 +23,10 @@ class Page : public Tool {
     put("viewer/assets/app-1a2b.js", std::string(2000, 'a') + "()");
     put("viewer/assets/a.css", "a{b:c}");
     put("viewer/single_page.js", "first()");
+    put("viewer/assets/mesh_drop-1a2b.js", "drop()");
+    put("viewer/viewer.json",
+        R"({"policy": "default-src 'none'", "page": {"assets/app-1a2b.js": "text/javascript",)"
+        R"( "assets/a.css": "text/css"}, "simplifier": ["assets/mesh_drop-1a2b.js"]})");
   }
   Ran page(const std::string& words) { return run("page --viewer viewer " + words); }
 };
@@ -36,7 +40,7 @@ TEST_F(Page, holdsTheViewerTheLogAndItsPoster) {
         "data-name=\"assets/app-1a2b.js\"", "data-name=\"index.json\"", "data-name=\"box.qtet\"",
         "src=\"data:image/webp;base64,UklGR", "\">box"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
-  for (const char* other : {"<link", "href=", "http:", "https:", " src=\"./"})
+  for (const char* other : {"mesh_drop", "<link", "href=", "http:", "https:", " src=\"./"})
     EXPECT_EQ(html.find(other), std::string::npos) << other;
   ASSERT_EQ(page("box.qtet -o again.html").code, 0);
   EXPECT_EQ(contentOf(folder_ / "again.html"), html);
@@ -94,6 +98,12 @@ TEST_F(Page, whatItCannotTakeIsToldBeforeAnythingIsWritten) {
   put("broken.qtet", "no log");
   for (const char* words : {"nothing.vtu -o box.html", "broken.qtet -o box.html"})
     EXPECT_EQ(page(words).code, 1) << words;
+  for (const char* list : {"[\"assets/a.css\"]", "{", R"({"policy": 1, "page": {}})",
+                           R"({"policy": "", "page": {"a.css": 1}})"}) {
+    put("viewer/viewer.json", list);
+    const Ran old = page("box.qtet -o box.html");
+    EXPECT_NE(old.err.find("viewer.json; give that of this version"), std::string::npos) << list;
+  }
   fs::remove(folder_ / "viewer/single_page.js");
   const Ran old = page("box.qtet -o box.html");
   EXPECT_NE(old.err.find("single_page.js; give that of this version"), std::string::npos);

@@ -9,8 +9,10 @@ import {fieldKeys} from '../protocol/fields';
 import {addLater, readManifest, type LevelColumns, type Manifest} from '../protocol/manifest';
 import type {Frame, Target} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart, kPositionsPart, kStructurePart} from '../protocol/parts';
+import {Blocks} from './blocks';
 import type {BlockValues, Codec} from './codec';
 import type {ValueDecoder} from './draco';
+import {FieldParents} from './field_parents';
 import {targetOf, planOf, type LevelBytes} from './plan';
 import {Ledger, kNoStatistics, statisticsOf, type Statistics} from './statistics';
 import {readValueBlock} from './value_block';
@@ -27,13 +29,9 @@ export class Assembler implements LogTable {
   private head: Uint8Array | null = null;
   /** The part of later instants, once it is here. */
   private later: Uint8Array | null = null;
-  /** By chunk and part. */
-  private blocks: (Uint8Array | undefined)[][] = [];
-  private received: number[] = [];
-  /** By field: those that it is predicted from. */
-  private parents: number[][] = [];
-  /** Results of withParents, which every step asks for. */
-  private orders = new WeakMap<readonly number[], number[]>();
+  private blocks = new Blocks(0);
+  parents = new FieldParents([]);
+
   constructor(
     readonly codec: Codec,
     private readonly values: ValueDecoder,
@@ -41,9 +39,8 @@ export class Assembler implements LogTable {
 
   forget(): void {
     this.manifest = this.ledger = this.head = this.later = null;
-    this.blocks = [];
-    this.received = [];
-    this.useParents([]);
+    this.blocks = new Blocks(0);
+    this.parents = new FieldParents([]);
   }
 
   // ---- LogTable
@@ -68,32 +65,17 @@ export class Assembler implements LogTable {
 
   /** How many leading chunks are here: of the mesh, and of one field. */
   get receivedChunks(): number {
-    return Math.min(this.leading(kStructurePart), this.leading(kPositionsPart));
+    const {blocks} = this;
+    return Math.min(blocks.leading(kStructurePart), blocks.leading(kPositionsPart));
   }
   receivedOfField(field: number): number {
-    return Math.min(this.leading(kFirstFieldPart + field), this.receivedChunks);
-  }
-
-  /** These fields, each behind those that it is predicted from, each once. */
-  withParents(fields: readonly number[]): readonly number[] {
-    const known = this.orders.get(fields);
-    if (known) return known;
-    const out = new Set<number>();
-    const add = (field: number): void => {
-      if (out.has(field)) return;
-      for (const parent of this.parents[field] ?? []) add(parent);
-      out.add(field);
-    };
-    for (const field of fields) add(field);
-    const order = [...out];
-    this.orders.set(fields, order);
-    return order;
+    return Math.min(this.blocks.leading(kFirstFieldPart + field), this.receivedChunks);
   }
 
   /** The mesh's figures with these fields. */
   statistics(fields: readonly number[]): Statistics {
     return this.manifest && this.ledger
-      ? statisticsOf(this.codec, this.manifest, this.ledger, this.withParents(fields))
+      ? statisticsOf(this.codec, this.manifest, this.ledger, this.parents.order(fields))
       : kNoStatistics;
   }
 
@@ -103,7 +85,7 @@ export class Assembler implements LogTable {
     const chunks = codec.chunksApplied;
     return chunks === 0
       ? []
-      : this.parents.flatMap((_, field) =>
+      : this.parents.of.flatMap((_, field) =>
           codec.fieldChunksApplied(field) === chunks ? [field] : [],
         );
   }
@@ -111,14 +93,14 @@ export class Assembler implements LogTable {
   /** Where the limit lies for these fields; null means at the end. */
   target(limit: Limit, fields: readonly number[]): Target | null {
     return this.manifest && this.head
-      ? targetOf(limit, this.codec, this.manifest, this.withParents(fields), this.head.length)
+      ? targetOf(limit, this.codec, this.manifest, this.parents.order(fields), this.head.length)
       : null;
   }
 
   /** planOf for this log. */
   plan(fields: readonly number[]): LevelBytes[] {
     return this.manifest && this.head
-      ? planOf(this.codec, this.manifest, this.withParents(fields), this.head.length)
+      ? planOf(this.codec, this.manifest, this.parents.order(fields), this.head.length)
       : [];
   }
 
@@ -127,10 +109,12 @@ export class Assembler implements LogTable {
    * false when neither is here. Throws the codec's errors.
    */
   step(fields: readonly number[], refine: boolean): boolean {
-    for (const field of this.withParents(fields)) if (this.stepField(field)) return true;
-    const chunk = refine ? this.nextChunk() : -1;
-    if (chunk < 0) return false;
-    const [structure, positions] = this.blocks[chunk] as [Uint8Array, Uint8Array];
+    for (const field of this.parents.order(fields)) if (this.stepField(field)) return true;
+    const chunk = this.codec.chunksApplied;
+    const isDue = refine && (this.codec.isWhole || chunk === 0);
+    const next = isDue ? this.blocks.mesh(chunk) : null;
+    if (!next) return false;
+    const [structure, positions] = next;
     this.codec.apply(chunk, structure, this.decode(chunk, kPositionsPart, positions, 3));
     this.ledger!.addChunk(chunk);
     return true;
@@ -149,19 +133,6 @@ export class Assembler implements LogTable {
     this.codec.open(this.head);
     if (this.later) this.codec.readLater(this.later);
     this.ledger!.clear();
-  }
-
-  /** Structure and positions are here. */
-  private isHere(chunk: number): boolean {
-    const parts = this.blocks[chunk];
-    return parts?.[kStructurePart] !== undefined && parts[kPositionsPart] !== undefined;
-  }
-
-  /** The next chunk, if it is here; else -1. */
-  private nextChunk(): number {
-    if (!this.codec.isWhole && this.codec.chunksApplied > 0) return -1;
-    const next = this.codec.chunksApplied;
-    return this.isHere(next) ? next : -1;
   }
 
   /**
@@ -190,7 +161,9 @@ export class Assembler implements LogTable {
           `Chunk ${frame.chunk} arrived in a size that differs from the chunk table's.`,
         );
       }
-      this.keep(frame.chunk, part, frame.payload.subarray(at, at + size));
+      const bytes = frame.payload.subarray(at, at + size);
+      this.codec.checkBlock(frame.chunk, part, bytes);
+      this.blocks.keep(frame.chunk, part, bytes);
       at += size;
     }
   }
@@ -204,9 +177,8 @@ export class Assembler implements LogTable {
     this.later = null;
     this.ledger = new Ledger(this.codec, head.length);
     this.head = head.slice();
-    this.useParents(this.manifest.fields.map((_, field) => this.codec.parents(field)));
-    this.blocks = Array.from({length: this.codec.chunkCount}, () => []);
-    this.received = [];
+    this.readParents();
+    this.blocks = new Blocks(this.codec.chunkCount);
   }
 
   private readonly levelColumns: LevelColumns = (bytes, errors, fields, columns) =>
@@ -232,23 +204,12 @@ export class Assembler implements LogTable {
     this.codec.readLater(part);
     this.later = part.slice();
     addLater(this.manifest!, part, this.levelColumns, this.leastInstants);
-    this.useParents(this.manifest!.fields.map((_, field) => this.codec.parents(field)));
+    this.readParents();
   }
 
-  private useParents(parents: number[][]): void {
-    this.parents = parents;
-    this.orders = new WeakMap();
-  }
-
-  private keep(chunk: number, part: number, bytes: Uint8Array): void {
-    this.codec.checkBlock(chunk, part, bytes);
-    this.blocks[chunk]![part] = bytes;
-  }
-
-  private leading(part: number): number {
-    let count = this.received[part] ?? 0;
-    while (this.blocks[count]?.[part]) ++count;
-    return (this.received[part] = count);
+  private readParents(): void {
+    const {fields} = this.manifest!;
+    this.parents = new FieldParents(fields.map((_, field) => this.codec.parents(field)));
   }
 
   private stepField(field: number): boolean {
@@ -261,7 +222,7 @@ export class Assembler implements LogTable {
       this.decode(
         chunk,
         part,
-        this.blocks[chunk]![part]!,
+        this.blocks.at(chunk, part)!,
         this.manifest!.fields[field]!.components,
       ),
     );
@@ -278,8 +239,8 @@ export class Assembler implements LogTable {
     const next = codec.fieldChunksApplied(field);
     const isDue =
       next < codec.chunksApplied &&
-      this.blocks[next]?.[kFirstFieldPart + field] !== undefined &&
-      this.parents[field]!.every((parent) => codec.fieldChunksApplied(parent) > next);
+      this.blocks.at(next, kFirstFieldPart + field) !== undefined &&
+      this.parents.of[field]!.every((parent) => codec.fieldChunksApplied(parent) > next);
     return isDue ? next : -1;
   }
 }

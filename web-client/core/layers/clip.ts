@@ -5,7 +5,7 @@ import type {Ray, Stretch} from '../picture/cell_ray';
 import {kClipModes, kMaxPlanes, type Display, type MeshArrays} from '../picture/display';
 import {dot, type Plane} from '../protocol/geometry';
 import {parseNumbers} from './field_values';
-import type {Layer} from './layer';
+import type {Layer, LayerWork} from './layer';
 
 /**
  * A plane at a share of the mesh's extent along its normal, which is an axis or any direction of
@@ -96,6 +96,10 @@ export const clip = {
   ],
 
   requestOf: ({mode, planes}: Display): Plane[] | null => (mode === 'cells' ? planes : null),
+} as const satisfies Layer;
+
+export const clipWork = {
+  layer: clip,
 
   hiding(mesh: MeshArrays, {mode, planes}: Display): ((kept: Uint8Array) => void) | null {
     if (mode !== 'cells' || planes.length === 0) return null;
@@ -113,4 +117,4 @@ export const clip = {
     }
     return t;
   },
-} as const satisfies Layer;
+} satisfies LayerWork;

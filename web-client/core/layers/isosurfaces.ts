@@ -6,7 +6,7 @@ import {isosurface} from '../picture/slice';
 import {joinSoups, type TriangleSoup} from '../picture/triangle_soup';
 import {fieldLayer} from './field_layer';
 import type {FieldValues} from './field_values';
-import type {Control, FieldLayer} from './layer';
+import type {Control, FieldLayer, LayerWork} from './layer';
 
 const control: Control = {
   title: 'Isosurfaces',
@@ -32,6 +32,10 @@ export const isosurfaces = {
     display.isosurfaces = request;
   },
   requestOf: ({isosurfaces: request}: Display) => request,
+} as const satisfies FieldLayer;
+
+export const isosurfacesWork = {
+  layer: isosurfaces,
 
   make(mesh: MeshArrays, display: Display, kept: Uint8Array | null): TriangleSoup | null {
     const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
@@ -54,4 +58,4 @@ export const isosurfaces = {
     }
     return t;
   },
-} as const satisfies FieldLayer;
+} satisfies LayerWork;

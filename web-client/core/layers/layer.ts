@@ -1,5 +1,6 @@
 // A layer is one way of drawing the mesh, beside its surface. It holds the meaning of its
-// attribute, the worker's part, and how it is drawn and controlled. The list is in layers.ts.
+// attribute, and how it is drawn and controlled. The list is in layers.ts. Its LayerWork stands in
+// the same file; pages do without it.
 
 import type {Ray, Stretch} from '../picture/cell_ray';
 import type {Display, MeshArrays} from '../picture/display';
@@ -19,21 +20,21 @@ export interface Attribute {
 export interface Layer extends Attribute {
   /** Further attributes. */
   readonly more?: readonly Attribute[];
-
-  // ---- in the worker
-
   /** The display's request to the layer; null if there is none. */
   requestOf(display: Display): unknown;
+  /** How its triangles are drawn. */
+  readonly draw?: Drawing;
+}
+
+/** The worker's part of a layer. The list is in layer_work.ts. */
+export interface LayerWork {
+  readonly layer: Layer;
   /** Clears the cells that it hides; null if it hides none. */
   hiding?(mesh: MeshArrays, display: Display): ((kept: Uint8Array) => void) | null;
   /** Its triangles, of the kept cells only; null if there are none. */
   make?(mesh: MeshArrays, display: Display, kept: Uint8Array | null): TriangleSoup | null;
   /** The t at which the ray first sees its triangles in this stretch; Infinity if it never does. */
   seenFrom?(mesh: MeshArrays, display: Display, ray: Ray, stretch: Stretch): number;
-  // ---- in the page
-
-  /** How its triangles are drawn. */
-  readonly draw?: Drawing;
 }
 
 /** A layer whose attribute is a field and values of it; its controls are made from `control`. */

@@ -1,4 +1,5 @@
-// The layers, in the order of a link. A new one is a file beside this and a line here.
+// The layers, in the order of a link. A new one is a file beside this, a line here, and one in
+// layer_work.ts.
 
 import {clip} from './clip';
 import {isosurfaces} from './isosurfaces';

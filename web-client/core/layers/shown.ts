@@ -5,7 +5,8 @@ import type {Scalar} from '../picture/field_scale';
 import {noSoup, type TriangleSoup} from '../picture/triangle_soup';
 import type {FieldInfo} from '../protocol/fields';
 import type {Layer} from './layer';
-import {fieldLayers, kLayers, type LayerAttribute} from './layers';
+import {kLayerWork} from './layer_work';
+import {fieldLayers, type LayerAttribute} from './layers';
 
 /** The part of a snapshot that layers make. Parts that have not changed are absent. */
 export interface LayerSoups {
@@ -39,8 +40,8 @@ export function markedValues(
 
 /** The cells that no layer hides; null means all. */
 export function keptCells(mesh: MeshArrays, display: Display): Uint8Array | null {
-  const hiding = kLayers
-    .map((layer) => layer.hiding?.(mesh, display) ?? null)
+  const hiding = kLayerWork
+    .map((work) => work.hiding?.(mesh, display) ?? null)
     .filter((hide) => hide !== null);
   if (hiding.length === 0) return null;
   const kept = new Uint8Array(mesh.tetrahedra.length / 4).fill(1);
@@ -50,7 +51,7 @@ export function keptCells(mesh: MeshArrays, display: Display): Uint8Array | null
 
 /** Two displays with the same key hide the same cells. */
 export function hidingKey(display: Display): string {
-  return JSON.stringify(kLayers.map((layer) => layer.hiding && layer.requestOf(display)));
+  return JSON.stringify(kLayerWork.map((work) => work.hiding && work.layer.requestOf(display)));
 }
 
 /** The triangles of all layers that have some; no triangles for those that are not shown. */
@@ -60,10 +61,11 @@ export function layerSoups(
   kept: Uint8Array | null,
 ): LayerSoups {
   const soups: LayerSoups = {};
-  for (const layer of kLayers) {
-    if (!layer.make || !layer.draw) continue;
+  for (const work of kLayerWork) {
+    const {layer} = work;
+    if (!work.make || !layer.draw) continue;
     const {edges, member} = layer.draw;
-    const soup = {...(layer.make(mesh, display, kept) ?? noSoup()), edges};
+    const soup = {...(work.make(mesh, display, kept) ?? noSoup()), edges};
     if (member) soups[member] = soup;
     else soups.layers = {...soups.layers, [layer.name]: soup};
   }

@@ -4,7 +4,7 @@ import {keepWithin} from '../picture/cell_choice';
 import type {Display, MeshArrays} from '../picture/display';
 import {fieldLayer} from './field_layer';
 import type {FieldValues} from './field_values';
-import type {Control, FieldLayer} from './layer';
+import type {Control, FieldLayer, LayerWork} from './layer';
 
 const control: Control = {
   title: 'Threshold',
@@ -28,6 +28,10 @@ export const threshold = {
     display.threshold = request && {scalar: request.scalar, low: low!, high: high!};
   },
   requestOf: ({threshold: request}: Display) => request,
+} as const satisfies FieldLayer;
+
+export const thresholdWork = {
+  layer: threshold,
 
   hiding(mesh: MeshArrays, {threshold: request}: Display): ((kept: Uint8Array) => void) | null {
     const scale = request && mesh.scale(request.scalar);
@@ -35,4 +39,4 @@ export const threshold = {
       ? (kept) => keepWithin(kept, mesh.tetrahedra, scale, request.low, request.high)
       : null;
   },
-} as const satisfies FieldLayer;
+} satisfies LayerWork;

@@ -5,7 +5,7 @@ import type {Ray, Stretch} from '../picture/cell_ray';
 import type {Display, MeshArrays} from '../picture/display';
 import {kMaxOpacity, kOpacityPath} from '../picture/transfer';
 import {parseNumbers} from './field_values';
-import type {Layer} from './layer';
+import type {Layer, LayerWork} from './layer';
 
 export interface VolumeSetting {
   /** Opacities at even shares of the shown range; null: the volume is not shown. */
@@ -95,6 +95,11 @@ export const volume = {
   isRight,
   expected: `2 to ${kMaxOpacities} opacities from 0 to 1, or ${kAutoVolume}`,
   requestOf: (display: Display): true | null => display.volume || null,
+} as const satisfies Layer;
+
+export const volumeWork = {
+  layer: volume,
+
   seenFrom: (_: MeshArrays, display: Display, __: Ray, stretch: Stretch): number =>
     display.volume ? stretch.from : Infinity,
-} as const satisfies Layer;
+} satisfies LayerWork;

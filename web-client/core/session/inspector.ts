@@ -2,7 +2,7 @@
 // field along a line.
 
 import type {Assembler} from '../decode/assembler';
-import {kLayers} from '../layers/layers';
+import {kLayerWork} from '../layers/layer_work';
 import {keptCells} from '../layers/shown';
 import {
   along,
@@ -249,7 +249,7 @@ function firstSeen(mesh: MeshArrays, ray: Ray, stretch: Stretch, display: Displa
   if (!visible) return Infinity;
   return Math.min(
     display.body && display.mode !== 'slice' ? visible.from : Infinity,
-    ...kLayers.map((layer) => layer.seenFrom?.(mesh, display, ray, visible) ?? Infinity),
+    ...kLayerWork.map((work) => work.seenFrom?.(mesh, display, ray, visible) ?? Infinity),
   );
 }
 

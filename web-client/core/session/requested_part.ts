@@ -79,12 +79,12 @@ export class RequestedPart {
 
   /** Whether the shown mesh needs this field. */
   shows(field: number): boolean {
-    return this.assembler.withParents(this.fields).includes(field);
+    return this.assembler.parents.order(this.fields).includes(field);
   }
 
   /** All fields that have to come, those that others are predicted from among them. */
   private get needed(): readonly number[] {
-    return this.assembler.withParents([...this.fields, ...this.ahead]);
+    return this.assembler.parents.order([...this.fields, ...this.ahead]);
   }
 
   /**
@@ -160,8 +160,8 @@ export class RequestedPart {
     return (
       assembler.manifest !== null &&
       assembler.receivedChunks >= chunks &&
-      assembler
-        .withParents(this.fields)
+      assembler.parents
+        .order(this.fields)
         .every((field) => assembler.receivedOfField(field) >= chunks)
     );
   }

@@ -115,6 +115,17 @@ export type Posted = FromWorker & {run?: number};
 export type Answer =
   string | Pick | Probe | LineValues[] | number[][] | Histogram | CoarseCells | null;
 
+/** The newest figures of a log. */
+export interface Progress {
+  statistics: Statistics;
+  /** Its bytes that have come. */
+  received: number;
+  /** The fields whose values are decoded for all of the present mesh. */
+  here: readonly number[];
+  /** An error keeps fields ahead from coming. */
+  aheadEnded: boolean;
+}
+
 export type FromWorker =
   /** `isMore`: the same log's once more, with its later fields. */
   | {type: 'manifest'; manifest: Manifest; digest: string; fields: number[]; isMore?: boolean}
@@ -129,17 +140,7 @@ export type FromWorker =
    */
   | {type: 'base'; figures: BaseFigures}
   | {type: 'snapshot'; snapshot: Snapshot}
-  /**
-   * `here`: the fields whose values are decoded for all of the present mesh. `aheadEnded`: an error
-   * keeps fields ahead from coming.
-   */
-  | {
-      type: 'progress';
-      statistics: Statistics;
-      received: number;
-      here: number[];
-      aheadEnded: boolean;
-    }
+  | ({type: 'progress'} & Progress)
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
   | {type: 'answer'; id: number; answer: Answer};

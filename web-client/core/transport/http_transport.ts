@@ -7,6 +7,7 @@ import type {OpenRequest, Target} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart, kStructurePart} from '../protocol/parts';
 import {reconnectDelayMs} from './backoff';
 import type {BlockSource, Piece} from './block_source';
+import {RequestSize} from './request_size';
 import type {Transport, TransportHandlers} from './transport';
 
 /**
@@ -14,28 +15,17 @@ import type {Transport, TransportHandlers} from './transport';
  * others want some of them.
  */
 const kAhead = 3;
-/**
- * A request asks for what the line brings in so many seconds, within the bounds below. Requests are
- * few, and progress is steady.
- */
-const kRequestSeconds = 0.4;
-const kMinBytes = 32 << 10;
-const kMaxBytes = 512 << 10;
-
 export class HttpTransport implements Transport {
   isConnected = false;
   private stream = 0;
-  private credit = 0;
-  private target: Target | null = null;
-  /** The pieces that remain to be fetched, in this order. */
-  private pieces: Piece[] = [];
+  /** How far the stream may go: so many bytes more, and to this target. */
+  private allowed: {credit: number; target: Target | null} = {credit: 0, target: null};
   private attempt = 0;
   private source: BlockSource;
   private abort = new AbortController();
   private timer: ReturnType<typeof setTimeout> | undefined;
   private creditCame: () => void = () => undefined;
-  private requestBytes = kMinBytes;
-  private arrived = {at: 0, bytes: 0};
+  private readonly size = new RequestSize();
 
   /** `makeSource` is called again when the log has been replaced. */
   constructor(
@@ -60,8 +50,7 @@ export class HttpTransport implements Transport {
     this.stop();
     this.abort = new AbortController();
     const {signal} = this.abort;
-    this.credit = request.credit;
-    this.target = request.target ?? null;
+    this.allowed = {credit: request.credit, target: request.target ?? null};
     this.run(++this.stream, request, signal).catch((thrown: unknown) => {
       if (!signal.aborted) this.lost(thrown); // else another stream has taken its place
     });
@@ -78,12 +67,12 @@ export class HttpTransport implements Transport {
   }
 
   aim(target: Target | null): void {
-    this.target = target;
+    this.allowed.target = target;
     this.creditCame();
   }
 
   applied(bytes: number): void {
-    this.credit += bytes;
+    this.allowed.credit += bytes;
     this.creditCame();
   }
 
@@ -95,7 +84,7 @@ export class HttpTransport implements Transport {
 
   private async run(stream: number, request: OpenRequest, signal: AbortSignal): Promise<void> {
     const deliver = (piece: Piece, payload: Uint8Array): void => {
-      this.credit -= payload.length;
+      this.allowed.credit -= payload.length;
       this.attempt = 0;
       this.handlers.frame({stream, ...piece, payload});
     };
@@ -118,12 +107,13 @@ export class HttpTransport implements Transport {
     });
     if (!this.table.isKnown) deliver({chunk: 0, firstPart: kHeadPart, parts: 0}, head);
     if (isOver()) return; // the manifest made the session open another stream
-    this.pieces = piecesOf(this.table, request);
-    await this.fetchAll(deliver, signal);
+    await this.fetchAll(piecesOf(this.table, request), deliver, signal);
     if (!isOver()) this.handlers.message({type: 'done', stream});
   }
 
+  /** Fetches the pieces in this order. */
   private async fetchAll(
+    pieces: Piece[],
     deliver: (piece: Piece, payload: Uint8Array) => void,
     signal: AbortSignal,
   ): Promise<void> {
@@ -132,11 +122,11 @@ export class HttpTransport implements Transport {
     let underWay = 0;
     for (;;) {
       for (
-        let near = this.wantedNext();
-        near.length > 0 && ahead.length < kAhead && underWay < this.credit;
-        near = this.wantedNext()
+        let near = this.wantedNext(pieces);
+        near.length > 0 && ahead.length < kAhead && underWay < this.allowed.credit;
+        near = this.wantedNext(pieces)
       ) {
-        const wanted = this.pieces.splice(0, this.source.together(near, this.requestBytes));
+        const wanted = pieces.splice(0, this.source.together(near, this.size.bytes));
         const payloads = this.source.fetch(wanted, signal);
         payloads.catch(() => undefined); // awaited below, in its turn
         const size = wanted.reduce((sum, piece) => sum + sizeOf(this.table, piece), 0);
@@ -144,36 +134,22 @@ export class HttpTransport implements Transport {
         underWay += size;
       }
       const next = ahead.shift();
-      if (!next && this.pieces.length === 0) return;
+      if (!next && pieces.length === 0) return;
       if (!next) await new Promise<void>((resolve) => void (this.creditCame = resolve));
       if (isOver()) return;
       if (!next) continue;
       const payloads = await next.payloads;
       underWay -= next.size;
-      this.measure(next.size);
+      this.size.measure(next.size);
       for (const [i, piece] of next.pieces.entries()) if (!isOver()) deliver(piece, payloads[i]!);
     }
   }
 
   /** The next pieces before the target. */
-  private wantedNext(): Piece[] {
-    const near = this.pieces.slice(0, kMaxPieces);
-    const {target} = this;
+  private wantedNext(pieces: Piece[]): Piece[] {
+    const near = pieces.slice(0, kMaxPieces);
+    const {target} = this.allowed;
     return target ? near.filter(({chunk}) => chunk < target.chunks) : near;
-  }
-
-  /** Adapts the size of requests to the line. */
-  private measure(bytes: number): void {
-    const now = performance.now();
-    const seconds = (now - this.arrived.at) / 1000;
-    if (this.arrived.at > 0 && seconds > 0) {
-      const fitting = (bytes / seconds) * kRequestSeconds;
-      this.requestBytes = Math.min(
-        kMaxBytes,
-        Math.max(kMinBytes, (this.requestBytes + fitting) / 2),
-      );
-    }
-    this.arrived = {at: now, bytes};
   }
 
   private lost(thrown: unknown): void {

@@ -1,42 +1,38 @@
 // One HTML file with the viewer and a log in it, as `qtet page` makes it
 // (simplify/publish/single_page.cpp). Loaded when such a page is saved.
 
-/** The viewer's files, which the build lists (viewer_files.ts). */
 const kList = 'viewer.json';
 const kFirstScript = 'single_page.js';
-/** Scripts, workers and WebAssembly from the page itself; no address outside of it. */
-const kPolicy =
-  "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; base-uri 'none'; " +
-  "script-src 'unsafe-inline' blob: 'wasm-unsafe-eval'; style-src 'unsafe-inline'; " +
-  'img-src data: blob:; connect-src blob:; worker-src blob:">\n  ';
-const kTypes: Readonly<Record<string, string>> = {
-  js: 'text/javascript',
-  wasm: 'application/wasm',
-  json: 'application/json',
-  txt: 'text/plain',
-  qtet: 'application/octet-stream',
-};
+const kLogType = 'application/octet-stream';
+
+/** A part of viewer.json, which the build writes (viewer_files.ts). */
+interface ViewerFiles {
+  /** The Content-Security-Policy of a page. */
+  policy: string;
+  /** The type of each file that a page holds. */
+  page: Record<string, string>;
+}
 
 /**
  * The page of a log; `view` is what it shows without a query. Rejects where the viewer's files do
  * not lie beside this script, as in a bundle of another page.
  */
 export async function singlePage(log: Blob, name: string, view: string): Promise<Blob> {
-  const files = (await (await file(kList)).json()) as string[];
+  const {policy, page: files} = (await (await file(kList)).json()) as ViewerFiles;
+  const ofType = (wanted: RegExp): string[] =>
+    Object.keys(files).filter((its) => wanted.test(files[its]!));
   const index = await (await file('index.html')).text();
   const entry = /<script type="module"[^>]* src="([^"]*)"/.exec(index)?.[1] ?? '';
   const list = {meshes: [{id: name, links: {log: `${name}.qtet`}}]};
   const parts = [
-    part('index.json', new Blob([JSON.stringify(list)])),
-    part(`${name}.qtet`, log),
-    ...files.filter((its) => /\.(js|wasm|txt)$/.test(its)).map(fetchedPart),
+    part('index.json', 'application/json', new Blob([JSON.stringify(list)])),
+    part(`${name}.qtet`, kLogType, log),
+    ...ofType(/javascript|wasm|plain/).map((its) => fetchedPart(its, files[its]!)),
   ];
-  const styles = files
-    .filter((its) => its.endsWith('.css'))
-    .map(async (its) => {
-      return `<style>${await (await file(its)).text()}</style>\n  `;
-    });
-  const icon = files.find((its) => its.endsWith('.svg'));
+  const styles = ofType(/css/).map(async (its) => {
+    return `<style>${await (await file(its)).text()}</style>\n  `;
+  });
+  const [icon] = ofType(/svg/);
   const head = [
     icon ? `<link rel="icon" href="data:image/svg+xml;base64,${await iconOf(icon)}">\n  ` : '',
     ...(await Promise.all(styles)),
@@ -50,7 +46,10 @@ export async function singlePage(log: Blob, name: string, view: string): Promise
     .replace(/<script[^>]*>[^]*?<\/script>\s*|<link[^>]*>\s*/g, '')
     .replace(/<img slot="poster"[^>]*>\s*|<meta name="qtet-[^>]*>\s*/g, '')
     .replace(/<h1>[^<]*<\/h1>/, () => `<h1>${escaped(name)}</h1>`)
-    .replace('<meta name', () => `${kPolicy}<meta name`)
+    .replace(
+      '<meta name',
+      () => `<meta http-equiv="Content-Security-Policy" content="${policy}">\n  <meta name`,
+    )
     .replace('</head>', () => `${head.join('')}</head>`);
   const at = page.lastIndexOf('</body>');
   return new Blob([page.slice(0, at), ...(await Promise.all(parts)), page.slice(at)], {
@@ -70,14 +69,13 @@ async function file(name: string): Promise<Response> {
 const isPage = (response: Response): boolean =>
   response.headers.get('Content-Type')?.startsWith('text/html') ?? false;
 
-async function fetchedPart(name: string): Promise<string> {
-  return part(name, await (await file(name)).blob());
+async function fetchedPart(name: string, type: string): Promise<string> {
+  return part(name, type, await (await file(name)).blob());
 }
 
 /** A script element that no browser runs: the packed file. A log is compressed already. */
-async function part(name: string, content: Blob): Promise<string> {
-  const type = kTypes[name.replace(/^.*\./, '')]!;
-  const isPacked = !name.endsWith('.qtet');
+async function part(name: string, type: string, content: Blob): Promise<string> {
+  const isPacked = type !== kLogType;
   const packed = isPacked
     ? await new Response(content.stream().pipeThrough(new CompressionStream('gzip'))).blob()
     : content;

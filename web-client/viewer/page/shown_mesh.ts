@@ -13,8 +13,9 @@ import type {SeriesRanges} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {listedInstant, type SegmentList} from '../../core/protocol/segment_list';
 import {openingTime, showTime, timesOf} from '../../core/protocol/series';
-import type {Snapshot} from '../../core/session/worker_messages';
+import type {Progress, Snapshot} from '../../core/session/worker_messages';
 import {placeOn} from '../../core/picture/log_scale';
+import {FieldsAhead} from './fields_ahead';
 import {KnownRanges, type SegmentRanges} from './known_ranges';
 import {
   labelRange,
@@ -27,9 +28,6 @@ import {
 } from '../settings/settings';
 import {firstWarp} from '../settings/warp';
 
-/** Fields that are asked for ahead at once. A server takes 1,024 names in a request. */
-export const kMaxAhead = 512;
-
 /** A log's place in a list of segments. */
 export interface SegmentPlace {
   list: SegmentList;
@@ -41,33 +39,14 @@ export class ShownMesh {
   manifest: Manifest | null = null;
   /** SHA-256 of the log, or another tag of it; empty before its head is here. */
   digest = '';
-  /** The base mesh's, in lattice coordinates; empty before it is decoded. */
-  bounds: number[] = [];
-  /** The mean length of lines through the mesh, as a share of its diagonal. */
-  chord = 0;
+  /** The base mesh's; without bounds before it is decoded. */
+  base: BaseFigures = {bounds: [], chord: 0};
   /** The levels ahead. */
   plan: LevelBytes[] = [];
-  /** The newest figures. */
-  statistics: Statistics = kNoStatistics;
-  /** Bytes of the log that have come. */
-  received = 0;
-  /** The fields that are here for all of the mesh. */
-  here: readonly number[] = [];
-  /** Fields that the playing series shows soon. */
-  playing: readonly number[] = [];
-  /** Fields that are plotted over time. */
-  plotted: readonly number[] = [];
-  /**
-   * The instant that a movie shows instead of the attribute's, and the fields that it shows soon;
-   * null: no movie is made.
-   */
-  filmed: {time: number; ahead: readonly number[]} | null = null;
-  /** An error keeps the fields ahead from coming. */
-  aheadEnded = false;
+  progress: Progress = {statistics: kNoStatistics, received: 0, here: [], aheadEnded: false};
+  readonly ahead = new FieldsAhead();
   /** The newest picture. */
   snapshot: Snapshot | null = null;
-  /** A picture that waits for a view. */
-  waiting: Snapshot | null = null;
   /** Some values in the picture are missing. */
   hasMissing = false;
   /** The figures of the picture on the screen; null if there is none. */
@@ -81,7 +60,7 @@ export class ShownMesh {
   constructor(readonly place: SegmentPlace | null = null) {}
 
   /** The mesh of another segment. It opens as this one did. */
-  successor(place: SegmentPlace): ShownMesh {
+  successor(place: SegmentPlace | null): ShownMesh {
     const next = new ShownMesh(place);
     const {firstCut, firstField, heritage, manifest} = this;
     const isKnown = manifest !== null && manifest.fields.length > 0;
@@ -134,21 +113,9 @@ export class ShownMesh {
     );
   }
 
-  /** Fields that are wanted behind the shown ones. */
-  get ahead(): number[] {
-    const all = [...new Set([...(this.filmed?.ahead ?? []), ...this.playing, ...this.plotted])];
-    if (all.length <= kMaxAhead) return all;
-    const here = new Set(this.here);
-    return all.filter((field) => !here.has(field)).slice(0, kMaxAhead);
-  }
-
-  takeBase({bounds, chord}: BaseFigures): void {
-    Object.assign(this, {bounds, chord});
-  }
-
   take(snapshot: Snapshot): void {
     // Other figures are newer than a picture that waited for a view.
-    if (this.statistics === kNoStatistics) this.statistics = snapshot.statistics;
+    if (this.progress.statistics === kNoStatistics) this.progress.statistics = snapshot.statistics;
     this.snapshot = snapshot;
     if (!snapshot.surface) return; // a new cut of the same mesh
     this.hasMissing = [snapshot.surface, ...snapshot.cuts].some(({values}) =>
@@ -171,7 +138,7 @@ export class ShownMesh {
 
   /** The whole mesh is on the screen. The decoder may have finished long before. */
   get isDrawn(): boolean {
-    return this.drawn !== null && this.drawn.bytes >= this.statistics.bytesNeeded;
+    return this.drawn !== null && this.drawn.bytes >= this.progress.statistics.bytesNeeded;
   }
 }
 
@@ -180,17 +147,17 @@ export function settingsFor(
   mesh: ShownMesh,
   read: (name: ViewAttribute) => string | null,
 ): Settings {
-  const {manifest, firstCut, firstField, chord, filmed, place} = mesh;
+  const {ahead, base, manifest, firstCut, firstField, place} = mesh;
   const settings = readSettings(read);
-  if (filmed) settings.time = filmed.time;
+  if (ahead.filmed) settings.time = ahead.filmed.time;
   else if (place) settings.time = listedInstant(place.list, settings.time).time;
   const fields = manifest?.fields ?? [];
   showTime(fields, settings.time);
-  settings.warp ??= firstWarp(mesh);
+  settings.warp ??= firstWarp({manifest, ...base});
   const shown = shownScalar(read('field'), fields, firstField);
   if (read('colormap') === null && shown && labelsOf(fields[shown.field]!)) settings.map = 'labels';
   if (settings.hasFirstOpacities)
-    settings.volume = firstOpacities(chord, amountsIn(mesh, settings));
+    settings.volume = firstOpacities(base.chord, amountsIn(mesh, settings));
   const saysWhat = kLayers.some(({name}) => name !== clip.name && read(name) !== null);
   settings.hasFirstCut = firstCut !== null && !saysWhat && read('surface') === null;
   if (settings.hasFirstCut && read('clip') === null)

@@ -55,7 +55,7 @@ export class ClipHandles {
   ): {x: number; y: number; dx: number; dy: number; perUnit: number} | null {
     const plane = this.planes[i];
     const {mesh, view} = this.host;
-    const {bounds} = mesh;
+    const {bounds} = mesh.base;
     if (!plane || !view || !mesh.snapshot || bounds.length === 0) return null;
     const {normal, offset} = planeOf(plane, bounds);
     const middle = [0, 1, 2].map((axis) => (bounds[axis]! + bounds[axis + 3]!) / 2);
@@ -85,7 +85,7 @@ export class ClipHandles {
     event.preventDefault();
     const handle = event.currentTarget as HTMLElement;
     handle.setPointerCapture(event.pointerId);
-    const [low, high] = extentAlong(this.host.mesh.bounds, plane.normal);
+    const [low, high] = extentAlong(this.host.mesh.base.bounds, plane.normal);
     const {axis} = axisOf(plane);
     const sign = axis < 0 || plane.normal[axis]! > 0 ? 1 : -1;
     const onMove = (now: PointerEvent): void => {

@@ -6,14 +6,13 @@ import type {Client} from '../../core/session/client';
 import type {Pick} from '../../core/session/inspector';
 import {cornersOf} from '../../webgl/outline';
 import type {View} from '../../webgl/view';
-import {formatCount, formatIn, formatTo, formatValue} from '../page/format';
+import {formatIn, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
-import {hoverText} from './hover';
 import {cellOutline, shape} from './marks';
 import {segments} from './markup';
-import {withUnit} from './panel';
+import {pickRows, pickTitle, placeText} from './pick_rows';
 import {RepeatedQuestion} from './repeated_question';
 import {ResultCard} from './result_card';
 
@@ -34,8 +33,6 @@ const kFirstHints: Record<Tool, string> = {
 };
 /** A press that moves farther than this turns the mesh instead. */
 const kClickPixels = 5;
-/** Places are shown to this share of the lattice's span. */
-const kPlaceShare = 1e-4;
 /** Those of a place in a file's name. */
 const kPlaceDigits = 4;
 
@@ -241,34 +238,14 @@ export class Inspect {
     if (!pick || !this.host.client) return; // the worker has another mesh
     this.points = [pick];
     this.place();
-    this.card.write(this.titleOf(pick), this.rowsOf(pick));
-  }
-
-  private titleOf(pick: Pick): string {
     const {color, mesh} = this.host;
-    return (color && hoverText(pick, color, mesh.manifest!.fields)) ?? 'Point';
-  }
-
-  private rowsOf(pick: Pick): [string, string][] {
-    const fields = this.host.mesh.manifest!.fields;
-    const rows: [string, string][] = [['Position', this.placeText(pick.position)]];
-    if (pick.rest) rows.push(['Position at rest', this.placeText(pick.rest.position)]);
-    for (const {field, values} of pick.fields) {
-      const info = fields[field]!;
-      if (info.instant && !info.instant.isShown) continue; // there may be a thousand
-      const format = (value: number): string => formatIn(info, value);
-      rows.push([withUnit(info.name, info), values.map(format).join(', ')]);
-      if (values.length > 1)
-        rows.push([withUnit(`${info.name}, magnitude`, info), format(Math.hypot(...values))]);
-    }
-    rows.push(['Cell', formatCount(pick.cell)]);
-    rows.push(['Its corners', pick.corners.map(formatCount).join(', ')]);
-    return rows;
+    this.card.write(pickTitle(pick, color, mesh.manifest!), pickRows(pick, mesh.manifest!));
   }
 
   private showPick(pick: Pick): void {
     const {isOpen} = this.overTime;
-    this.card.show(this.titleOf(pick), this.rowsOf(pick), isOpen);
+    const {color, mesh} = this.host;
+    this.card.show(pickTitle(pick, color, mesh.manifest!), pickRows(pick, mesh.manifest!), isOpen);
     this.card.offerKeep(this.host.mayKeep(placeAtRest(pick)));
     this.card.offerOverTime(this.offersOverTime);
     this.placeCard();
@@ -307,7 +284,7 @@ export class Inspect {
     const hasPlot = probe.values.length > 1;
     const rows: [string, string][] = [
       ['Distance', formatValue(probe.length)],
-      ['Difference', this.placeText(delta)],
+      ['Difference', placeText(delta, mesh.manifest!)],
     ];
     const opens = !this.card.isOpen;
     this.card.show('Line', rows, hasPlot);
@@ -352,12 +329,6 @@ export class Inspect {
     );
   }
 
-  /** Rounds to a ten-thousandth of the lattice's span. */
-  private placeText(place: Vector): string {
-    const {bits, step} = this.host.mesh.manifest!.lattice;
-    return place.map((x) => formatTo(x, kPlaceShare * step * 2 ** bits)).join(', ');
-  }
-
   /** Puts the card beside the last point, where the mesh and the other cards are not. */
   private placeCard(): void {
     const {view, mesh} = this.host;
@@ -379,7 +350,7 @@ export class Inspect {
           bottom: bottom - whole.top,
         })),
       picked: this.points.map(at),
-      mesh: cornersOf(mesh.bounds).map((corner) => view.project(corner)),
+      mesh: cornersOf(mesh.base.bounds).map((corner) => view.project(corner)),
     });
   }
 

@@ -53,7 +53,8 @@ class LevelPanel implements Panel {
     this.input = root.querySelector('input[name=limit-value]')!;
     this.select.addEventListener('change', () => {
       const kind = this.select.value as Limit['kind'];
-      const {statistics, manifest, firstField} = host.mesh;
+      const {progress, manifest, firstField} = host.mesh;
+      const {statistics} = progress;
       const {bytes, tetrahedra, level} = statistics;
       const color = shownScalar(page.read('field'), manifest?.fields ?? [], firstField);
       const fields = color ? [color.field] : [];
@@ -72,7 +73,7 @@ class LevelPanel implements Panel {
       if (kind !== 'full' && value > 0) this.set({kind, value: value * kFactors[kind]});
     });
     const scale = (factor: number): void => {
-      const {statistics} = host.mesh;
+      const {statistics} = host.mesh.progress;
       const cells = Math.round(statistics.tetrahedra * factor);
       this.set(
         cells >= statistics.total.tetrahedra

@@ -74,7 +74,7 @@ export class Panels {
    * Brings all panels in line with the attributes and the mesh. While a series plays, those that do
    * not show the time would be written again for nothing.
    */
-  update(settings: Settings, {manifest, bounds, firstField, snapshot}: ShownMesh): void {
+  update(settings: Settings, {manifest, base: {bounds}, firstField, snapshot}: ShownMesh): void {
     const {host, page} = this.tools;
     const texts = kViewAttributes.filter((name) => name !== 'time').map((name) => page.read(name));
     const shown = [texts, {...settings, time: null}, bounds, snapshot === null];

@@ -47,8 +47,7 @@ export class ProgressPanel {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private statistics: Statistics | null = null;
   private manifest: Manifest | null = null;
-  private fields: number[] = [];
-  private limit: Limit = {kind: 'full'};
+  private followed: {fields: number[]; limit: Limit} = {fields: [], limit: {kind: 'full'}};
   private state: StreamState = 'connecting';
   private announced = -1;
   private curve: ErrorCurve | null = null;
@@ -82,8 +81,7 @@ export class ProgressPanel {
   }
 
   follow(fields: number[], limit: Limit): void {
-    this.fields = fields;
-    this.limit = limit;
+    this.followed = {fields, limit};
   }
 
   /** Draws the first figures at once, later ones at the beat. */
@@ -121,7 +119,7 @@ export class ProgressPanel {
   /** The known error of the mesh on the screen; null if the log does not tell. */
   errorLeft(): number | null {
     return this.manifest && this.statistics
-      ? errorOfLevel(this.manifest.levels, this.statistics.level, this.fields)
+      ? errorOfLevel(this.manifest.levels, this.statistics.level, this.followed.fields)
       : null;
   }
 
@@ -160,6 +158,7 @@ export class ProgressPanel {
 
   private showError(error: string): void {
     const all = this.manifest!.fields;
+    const {fields} = this.followed;
     const {levels} = this.manifest!;
     const level = this.statistics!.level;
     const measured = level < levels.length - 1 ? errorsOfLevel(levels, level) : undefined;
@@ -170,40 +169,40 @@ export class ProgressPanel {
       const now = (measured?.fields[field]?.max ?? 0) * widthOfValues(info);
       return [formatWithin(info, largestRoundingError(info), now)];
     };
-    const label = labelName(this.fields, all);
+    const label = labelName(fields, all);
     const left = this.part('.error-left');
     setText(left, label === null ? error : `${error} of the volume`);
     setAttribute(
       left,
       'title',
       label === null
-        ? this.fields.flatMap(within).join('\n')
+        ? fields.flatMap(within).join('\n')
         : `${error} of the volume has another ${label}`,
     );
   }
 
   private drawCurve(): void {
-    const {curve, fields, manifest, plan, statistics} = this;
-    if (statistics && manifest) curve?.draw(plan, statistics, manifest, fields);
+    const {curve, followed, manifest, plan, statistics} = this;
+    if (statistics && manifest) curve?.draw(plan, statistics, manifest, followed.fields);
   }
 
   private secondsLeft(): number | null {
     const {bytes, bytesNeeded} = this.statistics!;
+    const {limit} = this.followed;
     const now = performance.now();
     this.arrivals = this.arrivals.filter(
       ({at}, i, all) => now - at < kRateWindowMs || i === all.length - 1,
     );
     const first = this.arrivals[0]!;
     const rate = ((bytes - first.bytes) / Math.max(now - first.at, 1)) * 1000;
-    const targetBytes =
-      this.limit.kind === 'bytes' ? Math.min(this.limit.value, bytesNeeded) : bytesNeeded;
+    const targetBytes = limit.kind === 'bytes' ? Math.min(limit.value, bytesNeeded) : bytesNeeded;
     // With a limit of errors or cells, the byte at which it ends is unknown.
     if (
       this.state !== 'streaming' ||
       rate <= 0 ||
       bytes >= targetBytes ||
-      this.limit.kind === 'cells' ||
-      this.limit.kind === 'error'
+      limit.kind === 'cells' ||
+      limit.kind === 'error'
     )
       return null;
     return (targetBytes - bytes) / rate;

@@ -150,7 +150,7 @@ export class TimeBar {
     const last = line.times.length - 1;
     clock.loops = timeLoops;
     clock.part = timePart ? partOf(line.times, timePart) : [0, last];
-    mesh.playing = this.isPlaying ? line.ahead(clock.at, clock.part) : [];
+    mesh.ahead.playing = this.isPlaying ? line.ahead(clock.at, clock.part) : [];
     this.slider.max = String(last);
     this.showPart();
     this.follow();
@@ -227,7 +227,7 @@ export class TimeBar {
 
   /** The host may change the time at once. */
   private tell(): void {
-    if (this.host.mesh.filmed) return; // a movie leaves the time as it is
+    if (this.host.mesh.ahead.filmed) return; // a movie leaves the time as it is
     const {isPlaying: playing, told} = this;
     const {time} = this.line.times[this.clock.at]!;
     if (told?.time === time && told.playing === playing) return;

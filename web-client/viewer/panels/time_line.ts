@@ -70,7 +70,7 @@ export class TimeLine {
   isHere(at: number): boolean {
     const {mesh, opening} = this.host;
     const fields = this.tracks.map((track) => track[at % this.times.length]!);
-    const areHere = fields.every((field) => mesh.here.includes(field));
+    const areHere = fields.every((field) => mesh.progress.here.includes(field));
     return opening === null && fields.length > 0 && areHere;
   }
 

@@ -52,8 +52,8 @@ export class BlockValues implements TimeValues {
     const {mesh} = host;
     this.times = instants.map((field) => mesh.manifest!.fields[field]!.instant!.time);
     this.values = instants.map(() => []);
-    this.receivedBefore = mesh.received;
-    mesh.plotted = instants;
+    this.receivedBefore = mesh.progress.received;
+    mesh.ahead.plotted = instants;
     this.takeProgress();
   }
 
@@ -64,15 +64,16 @@ export class BlockValues implements TimeValues {
 
   end(): void {
     this.isOver = true;
-    this.host.mesh.plotted = [];
+    this.host.mesh.ahead.plotted = [];
   }
 
   get status(): string {
     const {mesh} = this.host;
     const all = this.times.length;
     const here = this.values.filter(({length}) => length > 0).length;
-    const end = here < all && mesh.aheadEnded ? ' The others come when they are shown.' : '';
-    const bytes = formatBytes(mesh.received - this.receivedBefore);
+    const end =
+      here < all && mesh.progress.aheadEnded ? ' The others come when they are shown.' : '';
+    const bytes = formatBytes(mesh.progress.received - this.receivedBefore);
     return `${here} of ${all} instants are here, ${bytes} so far.${end}`;
   }
 

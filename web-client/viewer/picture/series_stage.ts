@@ -46,7 +46,8 @@ export class SeriesStage implements Stage {
     private readonly onlyLoaded: boolean,
     readonly draw: () => Promise<OffscreenCanvas>,
   ) {
-    const {manifest, snapshot, here} = (this.mesh = host.mesh);
+    const {manifest, snapshot, progress} = (this.mesh = host.mesh);
+    const {here} = progress;
     const fields = manifest?.fields ?? [];
     const series = seriesIn(snapshot, fields);
     if (series === undefined)
@@ -74,9 +75,9 @@ export class SeriesStage implements Stage {
     const {mesh, instants, onlyLoaded} = this;
     const field = instants[i]!;
     const {time} = mesh.manifest!.fields[field]!.instant!;
-    mesh.filmed = {time, ahead: onlyLoaded ? [] : fieldsAhead(instants, i)};
+    mesh.ahead.filmed = {time, ahead: onlyLoaded ? [] : fieldsAhead(instants, i)};
     this.host.apply();
-    let {bytes} = mesh.statistics;
+    let {bytes} = mesh.progress.statistics;
     let since = performance.now();
     for (;;) {
       signal.throwIfAborted();
@@ -85,15 +86,15 @@ export class SeriesStage implements Stage {
       await new Promise((resolve) => setTimeout(resolve, kPollMs));
       const now = performance.now();
       // A hidden page draws nothing.
-      if (document.hidden || mesh.statistics.bytes !== bytes) since = now;
-      ({bytes} = mesh.statistics);
+      if (document.hidden || mesh.progress.statistics.bytes !== bytes) since = now;
+      ({bytes} = mesh.progress.statistics);
       if (now - since > kPatienceMs) this.lost(field, `nothing came for ${kPatienceMs / 1000} s`);
     }
   }
 
   restore(): void {
     const {host, mesh} = this;
-    mesh.filmed = null;
+    mesh.ahead.filmed = null;
     if (host.mesh === mesh) host.apply();
   }
 
@@ -105,7 +106,7 @@ export class SeriesStage implements Stage {
     if (!host.view) throw new Error('The graphics have stopped.');
     if (seriesIn(mesh.snapshot, fields) !== this.series)
       throw new Error('Another field was chosen.');
-    if (mesh.here.includes(field)) return;
+    if (mesh.progress.here.includes(field)) return;
     const {state} = host.stream;
     if (state === 'failed') this.lost(field, 'the stream has failed');
     if (state === 'paused') this.lost(field, 'the stream is paused');
@@ -118,7 +119,8 @@ export class SeriesStage implements Stage {
 
   /** No other picture of the instant follows by itself. */
   private isWhole(field: number): boolean {
-    const {snapshot, drawn, here, statistics} = this.mesh;
+    const {snapshot, drawn, progress} = this.mesh;
+    const {here, statistics} = progress;
     if (drawn === null || drawn !== snapshot?.statistics) return false;
     if (!this.isSeen(field, snapshot)) return false;
     if (!here.includes(field) || !kRest.includes(this.host.stream.state)) return false;
@@ -127,7 +129,8 @@ export class SeriesStage implements Stage {
 
   /** The instant colours or moves the mesh. Another series that moves it shows the same time. */
   private isSeen(field: number, {color, warp}: Snapshot): boolean {
-    const {here, manifest} = this.mesh;
+    const {progress, manifest} = this.mesh;
+    const {here} = progress;
     if (!warp) return color?.field === field;
     const isOfTime = manifest!.fields[warp.field]!.instant?.isShown !== false;
     return (

@@ -33,6 +33,13 @@ export class Graphics {
     this.maxTextureSize = Number(gl.getParameter(gl.MAX_TEXTURE_SIZE) ?? Infinity);
   }
 
+  /** The name of the graphics; empty if the browser does not say it. */
+  get renderer(): string {
+    const {gl} = this;
+    const names = gl.getExtension('WEBGL_debug_renderer_info');
+    return String(gl.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER) ?? '');
+  }
+
   /** Must be called when the browser has given the graphics back. */
   restored(): void {
     ++this.generation;
