@@ -11,10 +11,10 @@
 namespace qtet {
 
 /// One a part: the mean square error of a cell's linear field at the far corner of the cell beyond
-/// each face, averaged over the volume. It is in the cost's unit (CostPart::scale), all components
-/// together. The error of rounding the field to integers is subtracted, which may leave less than
-/// 0. In a large mesh some faces stand for all. Their places decide which, so neither numbering nor
-/// order matters. REQUIRES: `parts` of point fields of `mesh`.
+/// a face. The mean is over all faces by volume. It is in the cost's unit (CostPart::scale), all
+/// components together. The error of rounding the field to integers is subtracted, which may leave
+/// less than 0. In a large mesh some faces stand for all. Their places decide which, so neither
+/// numbering nor order matters. REQUIRES: `parts` of point fields of `mesh`.
 [[nodiscard]] std::vector<double> expectedFieldErrors(const LatticeMesh& mesh,
                                                       std::span<const CostPart> parts);
 

@@ -1,4 +1,4 @@
-// What each field counts in the cost where nobody says (ALGORITHM.md, "Cost").
+// The weights of fields in the cost where nobody gives them (ALGORITHM.md, "Cost").
 #pragma once
 
 #include <span>

@@ -11,7 +11,7 @@
 namespace qtet {
 namespace {
 
-/// What is chosen for T at three times, Swirl, and the constant One.
+/// The choice for T at three times, Swirl, and the constant One.
 CostOptions costBy(const PipelineOptions& options, QuantisedMesh& quantised) {
   TetMesh mesh = boxSample();
   mesh.fields[0].name = "T@0";
