@@ -120,8 +120,8 @@ typedef struct {
   uint32_t threads;        /* as many as there are processors at most; 1. The log is the same */
   double maxBoundaryError; /* over the diagonal; NaN: no bound */
   const qtet_named_number* maxFieldErrors; /* rms over the field's range */
-  const qtet_named_number* fieldWeights;   /* of point fields; others count 1. Without, 2
-                                            * for the one that a viewer opens with */
+  const qtet_named_number* fieldWeights;   /* of point fields; others count 1. Without, the
+                                            * smoother a field the more, 8 at most */
   uint32_t maxFieldErrorCount, fieldWeightCount;
   const char* regions;    /* a cell field whose values keep their topology, or null */
   const char* source;     /* the name that the log calls its input, or null */

@@ -1,7 +1,9 @@
 #include "simplify/cost/boundary_weight.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "codec/mesh/boundary.h"
@@ -88,7 +90,9 @@ double diagonalOf(const LatticeMesh& mesh) {
   return std::max(1.0, std::sqrt(dot(d, d)));
 }
 
-double balancedBoundaryWeight(const LatticeMesh& mesh, std::span<const CostPart> parts) {
+double balancedBoundaryWeight(const LatticeMesh& mesh, std::span<const CostPart> parts,
+                              std::span<const double> fieldErrors) {
+  assert(parts.size() == fieldErrors.size());
   const Steepness steepness(mesh, parts);
   double volume = 0, area = 0, steep = 0;
   auto face = mesh.boundary.begin();  // the next: they come in the order of the cells
@@ -108,8 +112,8 @@ double balancedBoundaryWeight(const LatticeMesh& mesh, std::span<const CostPart>
   const double scale = diagonalOf(mesh) * volume / area;
   const double worth = kWorth * scale * (steep / area);
   const double boundary = expectedBoundaryError(mesh);
-  const double balance =
-      boundary > 0 ? kBalance * scale * expectedFieldError(mesh, parts) / boundary : kMaxWeight;
+  const double fields = std::max(0.0, std::accumulate(fieldErrors.begin(), fieldErrors.end(), 0.0));
+  const double balance = boundary > 0 ? kBalance * scale * fields / boundary : kMaxWeight;
   return std::clamp(std::min(worth, std::sqrt(worth * balance)), kMinWeight, kMaxWeight);
 }
 

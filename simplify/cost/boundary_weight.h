@@ -16,9 +16,11 @@ namespace qtet {
 /// like fields off by somewhat more than their change over d. The change is that at the boundary,
 /// the fields' error the average over the volume. By the balance, the boundary's expected error
 /// counts a quarter as much as the fields' (expected_error.h). The weight is the geometric mean of
-/// both, or the worth if that is less. It depends on no unit and on no field's range. REQUIRES:
-/// `parts` of point fields of `mesh`, whose boundary is boundaryOf's.
+/// both, or the worth if that is less. It depends on no unit and on no field's range.
+/// `fieldErrors` are expectedFieldErrors. REQUIRES: `parts` of point fields of `mesh`, whose
+/// boundary is boundaryOf's.
 [[nodiscard]] double balancedBoundaryWeight(const LatticeMesh& mesh,
-                                            std::span<const CostPart> parts);
+                                            std::span<const CostPart> parts,
+                                            std::span<const double> fieldErrors);
 
 }  // namespace qtet

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "simplify/cost/boundary_weight.h"
+#include "simplify/cost/expected_error.h"
 
 namespace qtet {
 
@@ -15,7 +16,7 @@ CostFrame::CostFrame(const LatticeMesh& mesh, const CostOptions& options)
       boundaryFactor(options.boundaryFactor),
       planeScale(std::ldexp(0.25, -3 * mesh.lattice.bits)) {
   if (!options.boundaryWeight && !parts.empty())
-    boundaryWeight = balancedBoundaryWeight(mesh, parts);
+    boundaryWeight = balancedBoundaryWeight(mesh, parts, expectedFieldErrors(mesh, parts));
   if (!basis.isDirect()) return;
   for (const CostPart& part : parts) {
     const FieldInfo& info = mesh.fields[part.field];

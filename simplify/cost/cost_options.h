@@ -23,7 +23,7 @@ struct LabelCost {
 
 struct CostOptions {
   /// One a field: what its squared error, over its range, counts. 0 leaves it out; so does a
-  /// constant field. Empty: 1 for each point field of floats.
+  /// constant field. Empty: 1 for each point field of floats (field_weights.h has better ones).
   std::vector<double> fieldWeights;
   /// The weight of the boundary's squared distance beside the fields, with areas and distances over
   /// the mesh's diagonal. Without: balancedBoundaryWeight (boundary_weight.h).

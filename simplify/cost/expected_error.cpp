@@ -42,10 +42,10 @@ void forEachPair(std::vector<Side<N>>& sides, const Visit& visit) {
   }
 }
 
-class MeanSquare {
+class Mean {
  public:
-  void add(double square, double weight) { sum_ += weight * square, weight_ += weight; }
-  [[nodiscard]] double value() const { return weight_ > 0 ? std::max(0.0, sum_ / weight_) : 0; }
+  void add(double value, double weight) { sum_ += weight * value, weight_ += weight; }
+  [[nodiscard]] double value() const { return weight_ > 0 ? sum_ / weight_ : 0; }
 
  private:
   double sum_ = 0, weight_ = 0;
@@ -99,23 +99,20 @@ std::optional<LinearCell> linearCell(const LatticeMesh& mesh, const Tetrahedron&
   return out;
 }
 
-/// The squares of what the cell's linear fields miss at v, and what rounding makes of them, summed
-/// over the components.
-double missedAt(const LatticeMesh& mesh, std::span<const CostPart> parts, const Tetrahedron& t,
+/// The squares of what the cell's linear field misses at v, without what rounding makes of them,
+/// summed over the components.
+double missedAt(const LatticeMesh& mesh, const CostPart& part, const Tetrahedron& t,
                 const std::array<double, 4>& share, VertexId v) {
   double sum = 0, rounded = 1;
   for (const double s : share) rounded += s * s;
-  for (const CostPart& part : parts) {
-    const std::size_t n = mesh.fields[part.field].components;
-    const auto& values = mesh.values[part.field];
-    const double unit = part.scale * part.scale;
-    for (std::size_t c = 0; c < n; ++c) {
-      double missed = -values[v * n + c];
-      for (std::size_t i = 0; i < 4; ++i) missed += share[i] * values[t[i] * n + c];
-      sum += unit * (missed * missed - kRounding * rounded);
-    }
+  const std::size_t n = mesh.fields[part.field].components;
+  const auto& values = mesh.values[part.field];
+  for (std::size_t c = 0; c < n; ++c) {
+    double missed = -values[v * n + c];
+    for (std::size_t i = 0; i < 4; ++i) missed += share[i] * values[t[i] * n + c];
+    sum += missed * missed - kRounding * rounded;
   }
-  return sum;
+  return part.scale * part.scale * sum;
 }
 
 struct Plane {
@@ -130,19 +127,23 @@ Plane planeOf(const LatticeMesh& mesh, const Triangle& t) {
 
 }  // namespace
 
-double expectedFieldError(const LatticeMesh& mesh, std::span<const CostPart> parts) {
+std::vector<double> expectedFieldErrors(const LatticeMesh& mesh, std::span<const CostPart> parts) {
   std::vector<Side<3>> sides = sidesOfFaces(mesh);
-  MeanSquare missed;
+  std::vector<Mean> missed(parts.size());
   forEachPair(sides, [&](const Side<3>& a, const Side<3>& b) {
     const Tetrahedron &here = mesh.tetrahedra[a.owner], &there = mesh.tetrahedra[b.owner];
     const auto fromHere = linearCell(mesh, here, mesh.points[b.opposite]);
     const auto fromThere = linearCell(mesh, there, mesh.points[a.opposite]);
     if (!fromHere || !fromThere) return;
     const double weight = fromHere->volume6 + fromThere->volume6;
-    missed.add(missedAt(mesh, parts, here, fromHere->share, b.opposite), weight);
-    missed.add(missedAt(mesh, parts, there, fromThere->share, a.opposite), weight);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      missed[i].add(missedAt(mesh, parts[i], here, fromHere->share, b.opposite), weight);
+      missed[i].add(missedAt(mesh, parts[i], there, fromThere->share, a.opposite), weight);
+    }
   });
-  return missed.value();
+  std::vector<double> out;
+  for (const Mean& mean : missed) out.push_back(mean.value());
+  return out;
 }
 
 double expectedBoundaryError(const LatticeMesh& mesh) {
@@ -154,7 +155,7 @@ double expectedBoundaryError(const LatticeMesh& mesh) {
       sides.push_back({{least, most}, face[i], t});
     }
   }
-  MeanSquare missed;
+  Mean missed;
   forEachPair(sides, [&](const Side<2>& a, const Side<2>& b) {
     const Plane here = planeOf(mesh, mesh.boundary[a.owner]),
                 there = planeOf(mesh, mesh.boundary[b.owner]);

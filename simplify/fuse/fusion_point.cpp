@@ -130,7 +130,7 @@ Pair FusionPointFinder::keysOf(VertexId v, std::array<VertexId, 2> w) const {
 }
 
 void FusionPointFinder::offer(const LatticePoint& p, bool isOutside, double dearness) {
-  assert(dearness >= 1);
+  assert(dearness >= 1 && isOnLattice(p, mesh_.latticeBits()));
   for (const Choice& c : choices_)
     if (((c.point[0] ^ p[0]) | (c.point[1] ^ p[1]) | (c.point[2] ^ p[2])) == 0) return;
   const double cost = quadric_.at(toVector(p) - origin_);
@@ -177,10 +177,11 @@ void FusionPointFinder::offerFree(const FusionCheck& test) {
                                                   : deciding_.count == 1 ? 2
                                                                          : 3)) {
     const LatticePoint there = rounded(p);
+    const bool isThere = isOnLattice(there, mesh_.latticeBits());
     LatticePoint inside = there;
-    if (!deciding_.boundary || test.projectInside(p, inside)) offer(inside, false, dearness);
-    if (inside != there && test.mayLeave() && isOnLattice(there, mesh_.latticeBits()))
-      offer(there, true, dearness);
+    if (deciding_.boundary ? test.projectInside(p, inside) : isThere)
+      offer(inside, false, dearness);
+    if (inside != there && isThere && test.mayLeave()) offer(there, true, dearness);
   }
   minFree_ = std::numeric_limits<double>::infinity();
 }
@@ -264,8 +265,9 @@ void FusionPointFinder::choose(std::span<const Choice> choices, const FusionChec
         isBeaten ? wanted / (1 + (least_ / choice.compared - 1) / options_.shapeWeight) : 0;
     const double shape = test.shapeAt(choice.point, kSurelyWorse * minShape);
     if (shape < 0) continue;
-    const double factor =
-        shape < wanted ? 1 + options_.shapeWeight * (wanted / std::max(shape, kFlat) - 1) : 1;
+    const double worse = std::max(0.0, wanted / std::max(shape, kFlat) - 1);
+    const double factor = 1 + options_.shapeWeight * worse;
+    assert(factor >= 1);
     if (found_ && choice.compared * factor >= least_) continue;
     if (choice.isOutside && !test.staysNear(choice.point)) continue;
     if (flipsMoved(choice.point, test)) continue;

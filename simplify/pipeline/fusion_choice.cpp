@@ -1,6 +1,7 @@
 #include "simplify/pipeline/fusion_choice.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,6 +11,8 @@
 #include "proto/number_text.h"
 #include "simplify/clean/quantise_field.h"
 #include "simplify/cost/boundary_weight.h"
+#include "simplify/cost/expected_error.h"
+#include "simplify/cost/field_weights.h"
 #include "simplify/cost/label_fields.h"
 #include "simplify/mesh/tet_mesh.h"
 
@@ -59,33 +62,39 @@ std::string whyNot(const QuantisedMesh& quantised, std::size_t f, bool isNamed) 
   return {};
 }
 
-/// The weight of the field that a viewer opens with, where no weights are given. Its rms falls by
-/// up to a tenth.
-constexpr double kOpenedWeight = 2;
-
-/// Whether both are the same field, or instants of one series.
-bool isOneQuantity(const FieldInfo& a, const FieldInfo& b) {
-  return a.association == b.association && a.name.withoutTime() == b.name.withoutTime();
-}
-
+/// One a field, 1 where nobody says otherwise.
 std::vector<double> weightsOf(const QuantisedMesh& quantised,
-                              const std::vector<std::optional<double>>& named, std::size_t opened,
+                              const std::vector<std::optional<double>>& named,
                               std::vector<std::string>& notes) {
   const std::vector<FieldInfo>& fields = quantised.mesh.fields;
   std::vector<double> weights(fields.size(), 0);
-  const bool isAnyNamed = std::ranges::any_of(named, [](const auto& x) { return x.has_value(); });
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (isCellField(fields[f]) || named[f] == 0) continue;
     const std::string why = whyNot(quantised, f, named[f].has_value());
     if (why.empty()) {
-      const bool isOpened = !isAnyNamed && isOneQuantity(fields[f], fields[opened]);
-      weights[f] = named[f].value_or(isOpened ? kOpenedWeight : 1);
+      weights[f] = named[f].value_or(1);
     } else {
       notes.push_back("field " + fields[f].name + " " + why +
                       ": it does not count when cells are fused");
     }
   }
   return weights;
+}
+
+/// The weights of fields and boundary that nobody has given.
+void balance(const LatticeMesh& mesh, bool areFieldsNamed, CostOptions& cost) {
+  if (areFieldsNamed && cost.boundaryWeight) return;
+  const std::vector<CostPart> equal = costPartsOf(mesh, cost.fieldWeights);
+  std::vector<double> errors = expectedFieldErrors(mesh, equal);
+  if (!areFieldsNamed) cost.fieldWeights = balancedFieldWeights(mesh, equal, errors);
+  if (cost.boundaryWeight) return;
+  const std::vector<CostPart> parts = costPartsOf(mesh, cost.fieldWeights);
+  assert(parts.size() == equal.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double scale = parts[i].scale / equal[i].scale;
+    errors[i] *= scale * scale;
+  }
+  cost.boundaryWeight = balancedBoundaryWeight(mesh, parts, errors);
 }
 
 /// The labels' numbers: those found, those named, and the regions.
@@ -145,7 +154,7 @@ Result<std::size_t> regionFieldOf(const std::string& name, const std::vector<Fie
 }  // namespace
 
 Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
-                                       const QuantisedMesh& quantised, std::size_t opened,
+                                       const QuantisedMesh& quantised,
                                        std::vector<std::string>& notes) {
   const LatticeMesh& mesh = quantised.mesh;
   const auto named = namedWeights(options, mesh.fields);
@@ -153,10 +162,8 @@ Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
   FusionOptions out = options.fusion;
   if (!out.targetRatio && !out.baseCells)
     out.baseCells = std::max(baseCellsOf(out, mesh.tetrahedra.size()), kMinBaseCells);
-  out.cost.fieldWeights = weightsOf(quantised, *named, opened, notes);
-  if (!out.cost.boundaryWeight)
-    out.cost.boundaryWeight =
-        balancedBoundaryWeight(mesh, costPartsOf(mesh, out.cost.fieldWeights));
+  out.cost.fieldWeights = weightsOf(quantised, *named, notes);
+  balance(mesh, !options.fieldWeights.empty(), out.cost);
   if (options.regions) {
     const Result<std::size_t> field = regionFieldOf(*options.regions, mesh.fields);
     if (!field) return std::unexpected(field.error());

@@ -10,13 +10,11 @@
 namespace qtet {
 
 /// `options.fusion` with the fields of this mesh. A point field counts by its weight, 1 where none
-/// is given; one of integers counts only where one is. Where none is given for any field, that
-/// which a viewer opens with counts double: `opened`, or its series. Constant fields do not count;
-/// `notes` says which.
+/// is given; one of integers counts only where one is. Where none is given for any field, the
+/// weights are balancedFieldWeights. Constant fields do not count; `notes` says which.
 /// Errors: not-found (a name is no such field's), bad-input (a label that cannot be one).
 [[nodiscard]] Result<FusionOptions> fusionOptionsFor(const PipelineOptions& options,
                                                      const QuantisedMesh& quantised,
-                                                     std::size_t opened,
                                                      std::vector<std::string>& notes);
 
 }  // namespace qtet

@@ -176,8 +176,7 @@ constexpr double kFusingShare = 0.8;
 /// The history, with predictions of instants from others in the order of seriesOrder.
 Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
   if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
-  Result<FusionOptions> options = fusionOptionsFor(
-      run.options, quantised, run.opening ? run.opening->field : 0, run.report.notes);
+  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
   if (!options) return std::unexpected(options.error());
   const bool hasSeries = !seriesOf(quantised.mesh.fields).empty();
   options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);

@@ -49,7 +49,7 @@ void addFusionOptions(po::options_description& options) {
       "smooth the fields and the boundary are, which the report tells")(
       "field-weight", po::value<std::vector<std::string>>(),
       "NAME=W: what the field's error over its range counts, 1 for others; 0 leaves it out; may be "
-      "given for several fields; without, the field that a viewer opens with counts 2")(
+      "given for several fields; without, the smoother a field the more it counts, 8 at most")(
       "label-weight", po::value<std::vector<std::string>>(),
       "NAME=W: what the interfaces of a cell field of integers, such as materials, count beside "
       "the "
