@@ -1,6 +1,5 @@
 // A viewer's picture: the graphics that draw it, and the worker's orders for it.
 
-import type {CoarseCells} from '../core/picture/volume';
 import type {Client} from '../core/session/client';
 import type {Snapshot} from '../core/session/worker_messages';
 import type {View} from '../webgl/view';
@@ -9,7 +8,6 @@ import {Graphics, type ViewStart} from './graphics';
 import {CameraWatch} from './page/camera_watch';
 import {find} from './page/find';
 import {isOnDark} from './page/ground';
-import {Hurry} from './page/hurry';
 import type {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
 import {settingsFor} from './page/shown_mesh';
@@ -33,8 +31,7 @@ export interface PictureHost {
 export class ShownPicture {
   /** The values that the colours span; null if nothing is coloured. */
   range: ShownRange | null = null;
-  readonly requests: Requests;
-  readonly hurry: Hurry;
+  private readonly requests: Requests;
   private readonly graphics: Graphics;
   private readonly camera: CameraWatch;
 
@@ -44,7 +41,6 @@ export class ShownPicture {
     private readonly host: PictureHost,
   ) {
     this.requests = new Requests(host.client);
-    this.hurry = new Hurry(page.element);
     this.camera = new CameraWatch(
       () => (this.view && host.meshes.shown.snapshot ? this.view.cameraState : null),
       (state) => page.dispatch('camera-change', state),
@@ -56,7 +52,10 @@ export class ShownPicture {
         this.camera.frame();
       },
       failed: (code, message) => host.failed(code, message),
-      coarse: (have) => this.coarse(have),
+      coarse: async (have) => {
+        if (host.meshes.next) throw new Error('the worker has another segment');
+        return host.client.coarse(have);
+      },
     });
     void this.graphics.open(() => this.takeStart());
   }
@@ -68,12 +67,11 @@ export class ShownPicture {
 
   /** Brings the picture in line with the settings. */
   apply(): void {
-    const {hurry, page, playsEveryMs, view} = this;
+    const {page, view} = this;
     const {settings} = this.host;
     view?.setLook({...settings, onDark: isOnDark(find(page.root, '.scene'))});
     view?.setParallel(settings.parallel);
-    view?.setPlaying(playsEveryMs);
-    if (playsEveryMs === 0) hurry.end();
+    view?.setPlaying(this.playsEveryMs);
     this.showDisplay();
     this.showRange();
   }
@@ -102,7 +100,6 @@ export class ShownPicture {
   }
 
   dispose(): void {
-    this.hurry.end();
     this.camera.dispose();
     this.graphics.dispose();
   }
@@ -146,21 +143,13 @@ export class ShownPicture {
         mesh.drawn = snapshot.statistics;
         this.page.element.classList.add('loaded');
         const {playsEveryMs} = this;
-        if (playsEveryMs > 0) this.hurry.note(drawingMs, playsEveryMs);
+        if (playsEveryMs > 0) controls.later!.hurry.note(drawingMs, playsEveryMs);
         void controls.load();
         stream.tellComplete(meshes.coming);
       },
       change,
     );
     later?.showPicture(snapshot, view.pose.frameMs);
-    later?.time.follow();
-  }
-
-  /** As Client.coarse: cells of the mesh that is shown. */
-  private async coarse(have: number): Promise<CoarseCells> {
-    const {client, meshes} = this.host;
-    if (meshes.next) throw new Error('the worker has another segment');
-    return client.coarse(have);
   }
 
   /** Requests made before there was a view count once. */
@@ -178,7 +167,7 @@ export class ShownPicture {
     const read = this.page.read.bind(this.page);
     const settings = next ? settingsFor(next, read) : shown;
     const display = displayOf(settings, mesh, read);
-    if (!this.requests.show(display)) return;
+    if (!this.requests.show(display, mesh)) return;
     const fields = display.color ? [display.color.field] : [];
     controls.shell?.progress.follow(fields, settings.limit);
   }

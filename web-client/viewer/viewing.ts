@@ -33,7 +33,7 @@ export class Viewing implements LaterHost, PictureHost {
   constructor(
     private readonly page: Page,
     readonly client: Client,
-    private readonly kept: Kept,
+    readonly kept: Kept,
   ) {
     // The stream of a file begins at once and needs the limit.
     this.settings = readSettings((name) => page.read(name));
@@ -89,11 +89,7 @@ export class Viewing implements LaterHost, PictureHost {
     const before = this.settings;
     this.settings = settingsFor(this.mesh, (name) => page.read(name));
     this.stream.follow();
-    const {mesh} = this;
-    later?.tellWrongParts();
-    later?.panels.update(this.settings, mesh);
-    later?.time.update(this.settings, mesh);
-    this.startPlaying();
+    later?.update(this.settings, this.mesh);
     const {limit} = this.settings;
     if (!isEqual(before.limit, limit)) this.stream.setLimit(limit);
     this.shown.apply();
@@ -101,13 +97,6 @@ export class Viewing implements LaterHost, PictureHost {
 
   get isPlaying(): boolean {
     return this.later?.time.isPlaying === true;
-  }
-
-  private startPlaying(): void {
-    const {kept, later} = this;
-    if (!kept.playing || !later?.time.isShown) return;
-    kept.playing = false;
-    later.time.isPlaying = true;
   }
 
   // ---- ActionsHost, PanelsHost
@@ -135,7 +124,7 @@ export class Viewing implements LaterHost, PictureHost {
   // ---- TimeHost
 
   get isHurried(): boolean {
-    return this.shown.hurry.isOn;
+    return this.later?.hurry.isOn === true;
   }
 
   get opening(): StreamState | null {
@@ -214,7 +203,6 @@ export class Viewing implements LaterHost, PictureHost {
   private replace(isSame: boolean, place: SegmentPlace | null): boolean {
     const stays = isSame && place !== null && this.view !== null && this.mesh.snapshot !== null;
     this.meshes.open(place, stays);
-    this.shown.requests.forget();
     if (stays) return true;
     this.shown.clear(isSame);
     this.controls.shell?.clear();
