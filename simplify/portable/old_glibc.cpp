@@ -1,6 +1,6 @@
 // Functions that a program would otherwise take from a newer C library than that of its users. In
-// glibc 2.28 (PEP 600's manylinux_2_28) they are missing, or have an older version. The linker takes
-// those here before it looks at the C library.
+// glibc 2.28 (PEP 600's manylinux_2_28) they are missing, or have an older version. The linker
+// takes those here before it looks at the C library.
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>

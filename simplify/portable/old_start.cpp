@@ -1,6 +1,6 @@
-// The start of a program that also runs with glibc 2.28, beside old_glibc.cpp. Programs linked since
-// 2.34 leave it to the C library to call the constructors of static objects. A C library before
-// that leaves it to the program.
+// The start of a program that also runs with glibc 2.28, beside old_glibc.cpp. Programs linked
+// since 2.34 leave it to the C library to call the constructors of static objects. A C library
+// before that leaves it to the program.
 #include "simplify/portable/first_version.h"
 
 // NOLINTBEGIN(readability-identifier-naming): the C library's and the linker's names

@@ -6,6 +6,7 @@ import assert from 'node:assert/strict';
 import {copyFileSync, existsSync, readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {hides, kScene} from './browser.mjs';
 import {differingBlocks, differingShare, largestDifference, readPng} from './png.mjs';
 
 const kFolder = fileURLToPath(new URL('baselines/', import.meta.url));
@@ -15,7 +16,6 @@ const kFolder = fileURLToPath(new URL('baselines/', import.meta.url));
  */
 const kMaxDiffering = 0.01;
 
-const kScene = {viewport: {width: 480, height: 320}};
 const kPhoneSize = {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true};
 /**
  * name: [query, device, whether panels are shown]. Whole meshes only, so that nothing depends on
@@ -38,13 +38,13 @@ const kPictures = {
 async function looksAsItDid({server, browser, out}) {
   const notes = [];
   for (const [name, [query, device, panels = false]] of Object.entries(kPictures)) {
-    const viewer = await browser.open(`${server.url}?${query}`, device);
-    if (!panels)
-      await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
+    const viewer = await browser.open(
+      `${server.url}?${query}`,
+      device,
+      panels ? undefined : hides('panel'),
+    );
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
-    // The panel may have been hidden after the mesh was fitted beside it.
-    if (!panels) await viewer.page.evaluate(() => window.qtetViewer.resetView());
     await viewer.waitForLines();
     if (query.includes('volume')) await viewer.restVolume();
     await viewer.settle();
@@ -68,8 +68,11 @@ async function looksAsItDid({server, browser, out}) {
 
 /** Seen from afar no cell has an edge, and from close up all have. */
 async function edgesFadeTogether({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&field=Velocity&clip=none`, kScene);
-  await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
+  const viewer = await browser.open(
+    `${server.url}?mesh=fin&field=Velocity&clip=none`,
+    kScene,
+    hides('panel'),
+  );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const seen = async (edges, name) => {
@@ -98,11 +101,10 @@ async function lightKeepsTheHue({server, browser}) {
   const viewer = await browser.open(
     `${server.url}?mesh=box&clip=none&edges=off&range=-9,-8`,
     kScene,
+    hides('panel'),
   );
-  await viewer.page.addStyleTag({content: 'qtet-viewer::part(panel) { display: none }'});
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
-  await viewer.page.evaluate(() => window.qtetViewer.resetView());
   await viewer.settle();
   await viewer.settle();
   const seen = await viewer.screenshot('light');

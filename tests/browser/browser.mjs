@@ -16,6 +16,8 @@ export const kPhone = {
   isMobile: true,
   hasTouch: true,
 };
+/** For pictures of a mesh alone. */
+export const kScene = {viewport: {width: 480, height: 320}};
 /** Their layouts at a half and a quarter of the pixels, for checks of anything but pictures. */
 export const kSmallDesktop = {viewport: {width: 800, height: 600}};
 export const kCoarsePhone = {...kPhone, deviceScaleFactor: 1};
@@ -348,6 +350,16 @@ export class ViewerPage {
     return readPng(await this.page.screenshot({path: join(this.out, `${name}.png`)}));
   }
 }
+
+/**
+ * Browser.open's `before`: these parts are never there. The mesh is fitted beside the cards of its
+ * first picture, and a style added to the open page may come after that.
+ */
+export const hides = (...parts) => ({
+  content: `const hidden = new CSSStyleSheet();
+    hidden.replaceSync('${parts.map((part) => `qtet-viewer::part(${part})`)} {display: none}');
+    document.adoptedStyleSheets.push(hidden);`,
+});
 
 /** Runs in the page before its scripts. */
 function watchEvents(mark) {

@@ -608,7 +608,7 @@ async function obeysTheKeyboard({server, browser}) {
   const off = await viewer.page.evaluate(() => {
     const {meshView, viewing, shadowRoot} = window.qtetViewer;
     const {clientWidth, clientHeight} = meshView.canvas;
-    const [x, y] = viewing.shell.cards.middle;
+    const [x, y] = viewing.controls.shell.cards.middle;
     const mark = shadowRoot.querySelector('.marks circle');
     return Math.hypot(
       mark.getAttribute('cx') - x * clientWidth,

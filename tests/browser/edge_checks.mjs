@@ -2,6 +2,7 @@
 // cubes.
 
 import assert from 'node:assert/strict';
+import {hides, kScene} from './browser.mjs';
 import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
@@ -84,13 +85,11 @@ async function openSponge(context) {
     for (let y = 0; y < sizes[1]; ++y)
       for (let x = 0; x < sizes[0]; ++x) if (isInSponge(x, y, z)) cubes.push([x, y, z]);
   await serveMesh(context, 'sponge', linearBox(kSponge, {}, isInSponge));
-  const viewer = await browser.open(`${server.url}?mesh=sponge&field=x&volume=0.3,0.3`, {
-    viewport: {width: 480, height: 320},
-    deviceScaleFactor: 1.5,
-  });
-  await viewer.page.addStyleTag({
-    content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }',
-  });
+  const viewer = await browser.open(
+    `${server.url}?mesh=sponge&field=x&volume=0.3,0.3`,
+    {...kScene, deviceScaleFactor: 1.5},
+    hides('panel', 'legend'),
+  );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   return {viewer, compare: (camera) => comparedFrom(viewer, camera, sizes, cubes)};

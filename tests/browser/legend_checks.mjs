@@ -218,7 +218,7 @@ async function movesAndCentresByKeys({server, browser}) {
       const {meshView, viewing} = window.qtetViewer;
       const {bounds} = viewing.mesh.base;
       const point = viewing.later?.panels.inspect.pointed;
-      const [x, y] = viewing.shell.cards.middle;
+      const [x, y] = viewing.controls.shell.cards.middle;
       return {
         mesh: meshView.project([0, 1, 2].map((axis) => (bounds[axis] + bounds[axis + 3]) / 2)),
         point: point && meshView.project(point),

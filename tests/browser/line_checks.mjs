@@ -2,24 +2,20 @@
 // body has none.
 
 import assert from 'node:assert/strict';
+import {hides, kScene} from './browser.mjs';
 import {largestDifference} from './png.mjs';
 import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
-const kScene = {viewport: {width: 480, height: 320}};
 /** Places along an edge, as shares of it. */
 const kPlaces = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /** A line changes the luminance by at least this share. */
 const kContrast = 0.2;
 
 async function opened({server, browser}, query, device = kScene) {
-  const viewer = await browser.open(`${server.url}?${query}`, device);
-  await viewer.page.addStyleTag({
-    content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }',
-  });
+  const viewer = await browser.open(`${server.url}?${query}`, device, hides('panel', 'legend'));
   await viewer.waitForState(query.includes('quality') ? 'held' : 'complete');
   await viewer.waitForPicture();
-  await viewer.page.evaluate(() => window.qtetViewer.resetView());
   await viewer.waitForLines();
   return viewer;
 }

@@ -1,7 +1,7 @@
 // The volume, compared with a formula for a box; and the user's controls for it.
 
 import assert from 'node:assert/strict';
-import {kDesktop, kPhone, kSmallDesktop} from './browser.mjs';
+import {hides, kDesktop, kPhone, kScene, kSmallDesktop} from './browser.mjs';
 import {coloredShare, differingShare, largestDifference, readPng} from './png.mjs';
 import {serveMesh} from './programs.mjs';
 
@@ -225,13 +225,11 @@ const kMinContrast = 30;
 async function standsOffFromBothGrounds(context) {
   const {server, browser} = context;
   await serveMesh(context, 'skew', linearBox(4, {skew: (x, y, z) => (z / 3) ** 6}));
-  const viewer = await browser.open(`${server.url}?mesh=skew&field=skew&volume=auto`, {
-    viewport: {width: 480, height: 320},
-    colorScheme: 'light',
-  });
-  await viewer.page.addStyleTag({
-    content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }',
-  });
+  const viewer = await browser.open(
+    `${server.url}?mesh=skew&field=skew&volume=auto`,
+    {...kScene, colorScheme: 'light'},
+    hides('panel', 'legend'),
+  );
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   const inside = [0.3, 0.5, 0.7].flatMap((y) => [0.2, 0.35, 0.5].map((z) => [0.5, y, z]));
@@ -262,15 +260,13 @@ async function standsOffFromBothGrounds(context) {
  * Slow graphics draw few cells and pixels while the camera is dragged, then all of both, in strips.
  */
 async function drawsFewCellsWhileSomethingMoves({server, browser}) {
-  const viewer = await browser.open(`${server.url}?mesh=fin&volume=0,0.1,0.3,0.6`, {
-    viewport: {width: 480, height: 320},
-  });
+  const viewer = await browser.open(
+    `${server.url}?mesh=fin&volume=0,0.1,0.3,0.6`,
+    kScene,
+    hides('panel', 'legend'),
+  );
   const {page} = viewer;
-  await page.addStyleTag({
-    content:
-      'qtet-viewer { background: #fff } qtet-viewer::part(panel), qtet-viewer::part(legend) { ' +
-      'display: none }',
-  });
+  await page.addStyleTag({content: 'qtet-viewer { background: #fff }'});
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   await viewer.restVolume();
@@ -520,13 +516,11 @@ async function castsRaysAsEveryCellSays(context) {
   await serveMesh(context, 'holes', linearBox(3, {}, isThere));
   const notes = [];
   for (const [query, views] of Object.entries(kCasts)) {
-    const viewer = await browser.open(`${server.url}?${query}`, {
-      viewport: {width: 480, height: 320},
-      deviceScaleFactor: 1.5,
-    });
-    await viewer.page.addStyleTag({
-      content: 'qtet-viewer::part(panel), qtet-viewer::part(legend) { display: none }',
-    });
+    const viewer = await browser.open(
+      `${server.url}?${query}`,
+      {...kScene, deviceScaleFactor: 1.5},
+      hides('panel', 'legend'),
+    );
     await viewer.waitForState(query.includes('quality') ? 'held' : 'complete');
     await viewer.waitForPicture();
     for (const [name, [attributes, level = null]] of Object.entries(views)) {

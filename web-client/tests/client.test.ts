@@ -7,6 +7,7 @@ import {Session} from '../core/session/session';
 import {SocketTransport} from '../core/transport/socket_transport';
 import {kFull} from '../core/protocol/limit';
 import type {Posted, ToWorker} from '../core/session/worker_messages';
+import {ShownMesh} from '../viewer/page/shown_mesh';
 import {Requests} from '../viewer/requests';
 import {FakeCodec, FakeSocket, fieldFrame, headFrame, kFakeValues, meshFrame} from './fakes';
 
@@ -103,8 +104,9 @@ test('aRequestThatHasNotChangedIsNotSentAgain', () => {
   const requests = new Requests(new Client(() => undefined));
   const sent = (type: string): number =>
     FakeWorker.last.posted.filter((message) => message.type === type).length;
-  expect([requests.show(kPlainDisplay), requests.show({...kPlainDisplay})]).toEqual([true, false]);
+  const mesh = new ShownMesh();
+  expect(requests.show(kPlainDisplay, mesh)).toBe(true);
+  expect(requests.show({...kPlainDisplay}, mesh)).toBe(false);
   expect(sent('display')).toBe(1);
-  requests.forget();
-  expect(requests.show(kPlainDisplay)).toBe(true);
+  expect(requests.show(kPlainDisplay, new ShownMesh())).toBe(true);
 });

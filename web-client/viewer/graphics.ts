@@ -21,7 +21,7 @@ export interface GraphicsListeners {
   drawn(): void;
   /** A failure that the page should see, too. */
   failed(code: string, message: string): void;
-  /** Client.coarse. */
+  /** As Client.coarse: cells of the mesh that is shown. */
   coarse(have: number): Promise<CoarseCells>;
 }
 

@@ -7,11 +7,14 @@ import type {Snapshot, StreamState} from '../core/session/worker_messages';
 import styles from './controls.css?inline';
 import {kCards, kCube, kDialogs} from './controls_template';
 import {kControls, kPanelKinds} from './sections';
+import type {ShownMesh} from './page/shown_mesh';
+import type {Settings} from './settings/settings';
 import {unfittingParts, unknownNames, wrongParts} from './settings/wrong_parts';
 import {Actions, type ActionsHost} from './page/actions';
 import {find} from './page/find';
+import {Hurry} from './page/hurry';
 import {bindKeys} from './page/keys';
-import type {Page} from './page/page';
+import type {Kept, Page} from './page/page';
 import {tellOfSoftwareGraphics} from './page/software_graphics';
 import {adopt, insertMarkup, setMarkup} from './page/trusted';
 import {Undo} from './page/undo';
@@ -28,6 +31,7 @@ import type {MovieOptions} from './picture/movies';
 import type {Pictures} from './picture/pictures';
 
 export interface LaterHost extends ActionsHost, PanelsHost, TimeHost {
+  readonly kept: Kept;
   readonly stream: {
     readonly state: StreamState;
     choose(mesh: string): void;
@@ -62,6 +66,7 @@ export class Later {
   readonly panels: Panels;
   readonly actions: Actions;
   readonly time: TimeBar;
+  readonly hurry: Hurry;
   private readonly cube: OrientationCube;
   private readonly hover: Hover;
   private readonly ends = new AbortController();
@@ -96,6 +101,7 @@ export class Later {
           'What simplifies meshes cannot be loaded. Make a log by `qtet simplify` and drop that.',
         ),
     );
+    this.hurry = new Hurry(page.element);
     this.actions = new Actions(page, host);
     const {actions} = this;
     const {signal} = this.ends;
@@ -133,6 +139,7 @@ export class Later {
 
   dispose(): void {
     this.ends.abort();
+    this.hurry.end();
     this.panels.inspect.dispose();
   }
 
@@ -143,8 +150,22 @@ export class Later {
     this.follow();
   }
 
+  /** Brings the controls in line with the attributes and the mesh. */
+  update(settings: Settings, mesh: ShownMesh): void {
+    const {hurry, time} = this;
+    const {kept} = this.host;
+    this.tellWrongParts();
+    this.panels.update(settings, mesh);
+    time.update(settings, mesh);
+    if (kept.playing && time.isShown) {
+      kept.playing = false;
+      time.isPlaying = true;
+    }
+    if (!time.isPlaying) hurry.end();
+  }
+
   /** Says which attributes the picture does not follow, and why. */
-  tellWrongParts(): void {
+  private tellWrongParts(): void {
     const {host, page} = this;
     const {manifest} = host.mesh;
     const read = page.read.bind(page);
@@ -222,6 +243,7 @@ export class Later {
   showPicture(snapshot: Snapshot, frameMs: number): void {
     this.panels.showPicture(snapshot, frameMs);
     this.hover.showPicture();
+    this.time.follow();
   }
 
   /** Must be called after every frame. */

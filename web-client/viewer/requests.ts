@@ -13,18 +13,15 @@ import {shownScalar, type Settings, type ViewAttribute} from './settings/setting
 
 export class Requests {
   private display: Display | null = null;
+  private mesh: ShownMesh | null = null;
 
   constructor(private readonly client: Client) {}
 
-  /** Must be called before another mesh: the worker knows nothing about it. */
-  forget(): void {
-    this.display = null;
-  }
-
-  /** Returns true if the display has changed. */
-  show(display: Display): boolean {
-    if (isEqual(display, this.display)) return false;
+  /** Returns true if the display has changed. The worker knows none of another mesh. */
+  show(display: Display, mesh: ShownMesh): boolean {
+    if (mesh === this.mesh && isEqual(display, this.display)) return false;
     this.display = display;
+    this.mesh = mesh;
     this.client.show(display);
     return true;
   }

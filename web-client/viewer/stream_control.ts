@@ -20,7 +20,7 @@ import {
   type MeshEntry,
 } from './page/catalog';
 import type {Kept, Page} from './page/page';
-import type {SegmentPlace} from './page/shown_mesh';
+import type {SegmentPlace, ShownMesh} from './page/shown_mesh';
 import {MeshMenu} from './panels/mesh_menu';
 import {hint} from './settings/nearest';
 import {displacementKey, kNoWarp} from './settings/warp';
@@ -64,6 +64,8 @@ export class StreamControl {
   private openings = 0;
   /** The mesh that was opened last has a stream. */
   private started = false;
+  /** The `complete` event has been dispatched. */
+  private completeTold = false;
   /** The address of the log that is open, as a file; empty: there is none. */
   logAddress = '';
   /** The log's place in the list of segments that is open; null: it is none's. */
@@ -128,7 +130,15 @@ export class StreamControl {
 
   enter(state: StreamState, attempt = 0, delayMs = 0): void {
     this.state = state;
+    this.completeTold &&= state === 'complete';
     this.listeners.changed(state, attempt, delayMs);
+  }
+
+  /** Both the decoder and the picture must be complete. */
+  tellComplete(mesh: ShownMesh): void {
+    if (this.state !== 'complete' || this.completeTold || !mesh.isDrawn) return;
+    this.completeTold = true;
+    this.page.dispatch('complete', mesh.drawn);
   }
 
   /** Opens another mesh. The attributes of this one end. */

@@ -30,9 +30,12 @@ export class Decoding {
     this.slices = new Slices(again);
   }
 
-  /** `again` will be called soon, so no other code needs to decode. */
-  get isDue(): boolean {
-    return this.slices.isDue;
+  /**
+   * Decodes what has come, unless a slice is due. Frames come in crowds. If each took a slice, the
+   * page's commands and the pictures would wait for all of them.
+   */
+  soon(): void {
+    if (!this.slices.isDue) this.again();
   }
 
   /**

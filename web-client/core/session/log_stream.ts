@@ -1,8 +1,10 @@
 // A session's connection, and the stream that was opened on it last.
 
+import {kFull} from '../protocol/limit';
 import type {Target} from '../protocol/messages';
 import type {Transport} from '../transport/transport';
 import type {RequestedPart} from './requested_part';
+import type {Source} from './worker_messages';
 
 /**
  * How many payload bytes may be under way. It is enough for 80 Mbit/s at 100 ms; a click waits for
@@ -13,7 +15,18 @@ const kWindowBytes = 1 << 20;
 /** Where the stream ends: behind the head, at the limit, or at a limit that was set since. */
 type End = 'head' | 'limit' | 'later limit';
 
+const kNoSource: Source = {
+  url: '',
+  log: '',
+  mesh: '',
+  fields: null,
+  limit: kFull,
+  transport: 'auto',
+};
+
 export class LogStream {
+  /** Where the log is, and how it was asked for. */
+  source = kNoSource;
   /** SHA-256 of the log; empty until the server states it. */
   digest = '';
   /** Payload bytes received of this log. */
@@ -29,9 +42,12 @@ export class LogStream {
   /** Bytes received whose credit has not been returned: they are not applied yet. */
   private unapplied = 0;
 
-  /** REQUIRES: the previous transport, if any, is disconnected. */
-  use(transport: Transport): void {
-    this.transport = transport;
+  constructor(private readonly newTransport: (source: Source) => Transport) {}
+
+  /** REQUIRES: the stream is disconnected. */
+  use(source: Source): void {
+    this.source = source;
+    this.transport = this.newTransport(source);
   }
 
   /** Must be called before another log. */
@@ -73,7 +89,7 @@ export class LogStream {
     this.transport?.disconnect();
   }
 
-  open(mesh: string, {needsHead, keys, have, target}: RequestedPart): void {
+  open({needsHead, keys, have, target}: RequestedPart): void {
     const fields = keys.filter((name) => name !== '');
     this.keys = fields;
     this.end = needsHead ? 'head' : 'limit';
@@ -81,7 +97,7 @@ export class LogStream {
     this.unapplied = 0;
     this.isPaused = false;
     this.transport?.open({
-      mesh,
+      mesh: this.source.mesh,
       fields,
       credit: needsHead ? 1 : kWindowBytes, // one byte buys the head and nothing more
       have,

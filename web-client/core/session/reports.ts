@@ -49,16 +49,15 @@ export class Reports {
     this.send({type: 'plan', plan: this.assembler.plan(this.requested.fields)});
   }
 
-  /** Reports the base mesh once it is decoded. Returns true if it did so now. */
-  base(): boolean {
-    if (this.hasBase) return false;
+  /** Reports the base mesh once it is decoded. */
+  base(): void {
+    if (this.hasBase) return;
     const {codec} = this.assembler;
     const mesh = meshArrays(this.assembler);
-    if (!mesh) return false; // also between two logs, while the codec has the last one's
-    if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return false;
+    if (!mesh) return; // also between two logs, while the codec has the last one's
+    if (this.requested.fields.some((field) => codec.fieldChunksApplied(field) === 0)) return;
     this.hasBase = true;
     this.send({type: 'base', figures: baseFigures(mesh)});
-    return true;
   }
 
   private sendProgress(): void {

@@ -2,18 +2,17 @@
 // as far as is asked for, and reports its state.
 
 import type {Assembler} from '../decode/assembler';
-import {errorCode, errorText, QtetError} from '../protocol/errors';
-import {kFull, type Limit} from '../protocol/limit';
+import {QtetError} from '../protocol/errors';
+import type {Limit} from '../protocol/limit';
 import type {LogTable} from '../protocol/log_table';
 import type {Frame, ServerMessage} from '../protocol/messages';
 import {kFirstFieldPart, kHeadPart} from '../protocol/parts';
-import {fetchLaterPart} from '../transport/later_part';
-import {retry} from '../transport/retry';
 import type {Transport, TransportHandlers} from '../transport/transport';
 import {makeTransport} from '../transport/transports';
 import type {CoarseVolume} from './coarse_volume';
 import {Decoding} from './decoding';
 import {Gate} from './gate';
+import {LaterPart} from './later_part';
 import {LogStream} from './log_stream';
 import type {Publisher} from './publisher';
 import {Recovery} from './recovery';
@@ -25,48 +24,35 @@ import type {FromWorker, Source} from './worker_messages';
 
 /** Between two openings for other wishes. A server refuses more than 50 a second (STREAM.md). */
 const kReopenMs = 100;
-const kWithoutLater = ' The first instant of the series stays. Load the page again for the others.';
-
 export type TransportFactory = (
   source: Source,
   table: LogTable,
   handlers: TransportHandlers,
 ) => Transport;
 
-const kNoSource: Source = {
-  url: '',
-  log: '',
-  mesh: '',
-  fields: null,
-  limit: kFull,
-  transport: 'auto',
-};
-
 export class Session implements TransportHandlers {
   /** Receives every frame of the log. */
   coarse: Pick<CoarseVolume, 'note' | 'noteLater' | 'forget'> | null = null;
-  /** Called once a log's base mesh is decoded. */
-  onBase: () => void = () => undefined;
   private state: SessionState = {name: 'connecting'};
   /** Closed before the codec is here. */
   private readonly gate = new Gate();
-  private source = kNoSource;
-  /** The part of later instants is under way, here, or has failed. */
-  private laterAsked = false;
-  readonly stream = new LogStream();
+  readonly stream: LogStream;
   readonly requested: RequestedPart;
   readonly decoding: Decoding;
   readonly reports: Reports;
-  private readonly recovery = new Recovery(this);
+  readonly recovery = new Recovery(this);
+  private readonly later = new LaterPart(this, () => {
+    if (!this.takeManifest()) this.stream.open(this.requested);
+  });
   private readonly reopening = new Throttle(() => this.bring(), kReopenMs);
 
   constructor(
     readonly assembler: Assembler,
     readonly publisher: Publisher,
     send: (message: FromWorker) => void,
-    private readonly newTransport: TransportFactory = makeTransport,
-    private readonly fetchLater: typeof fetchLaterPart = fetchLaterPart,
+    newTransport: TransportFactory = makeTransport,
   ) {
+    this.stream = new LogStream((source) => newTransport(source, assembler, this));
     this.requested = new RequestedPart(assembler);
     this.decoding = new Decoding(
       assembler,
@@ -86,11 +72,10 @@ export class Session implements TransportHandlers {
 
   start(source: Source): void {
     this.stream.disconnect();
-    this.source = source;
     this.forget();
     this.assembler.leastInstants = source.isSegment ? 1 : 2;
     this.requested.begin(source);
-    this.stream.use(this.newTransport(source, this.assembler, this));
+    this.stream.use(source);
     if (source.paused) return this.enter({name: 'paused'});
     this.enter({name: 'connecting'});
     this.stream.connect();
@@ -105,7 +90,7 @@ export class Session implements TransportHandlers {
       this.reports.progress.changed();
     }
     if (this.state.name === 'failed') return;
-    this.advanceSoon();
+    this.decoding.soon();
     this.bring();
   }
 
@@ -115,7 +100,10 @@ export class Session implements TransportHandlers {
     if (!this.assembler.manifest || this.state.name === 'failed') return;
     this.endPause();
     this.recovery.guarded(() => {
-      if (this.requested.isReached) this.goBack();
+      if (this.requested.isReached) {
+        this.decoding.goBack();
+        this.publisher.changed(true); // no picture on the way
+      }
       this.goOn();
       this.reports.progress.changed();
     });
@@ -136,14 +124,14 @@ export class Session implements TransportHandlers {
   resume(): void {
     const {names, limit} = this.requested;
     if (this.state.name === 'failed')
-      this.start({...this.source, fields: names, limit, paused: false});
+      this.start({...this.stream.source, fields: names, limit, paused: false});
     else if (this.endPause()) this.goOn();
   }
 
   // ---- TransportHandlers
 
   connected(): void {
-    if (this.state.name !== 'paused') this.open();
+    if (this.state.name !== 'paused') this.stream.open(this.requested);
   }
 
   message(message: ServerMessage): void {
@@ -160,7 +148,7 @@ export class Session implements TransportHandlers {
         this.stream.digest = message.digest;
         return;
       case 'done':
-        return this.awaitsLater ? undefined : this.done();
+        return this.later.isAwaited ? undefined : this.done();
       case 'error':
         return this.refused(message);
       case 'stopped':
@@ -169,7 +157,7 @@ export class Session implements TransportHandlers {
   }
 
   private take(frame: Frame): void {
-    if (this.awaitsLater) return; // its fields are not known; another stream brings them
+    if (this.later.isAwaited) return; // its fields are not known; another stream brings them
     const isFirst = !this.assembler.manifest;
     try {
       this.assembler.take(frame);
@@ -186,7 +174,7 @@ export class Session implements TransportHandlers {
       const {name} = this.state;
       if (name !== 'streaming' && name !== 'paused' && this.requested.progress < Progress.settled)
         this.enter({name: 'streaming'});
-      this.advanceSoon();
+      this.decoding.soon();
     });
   }
 
@@ -205,11 +193,11 @@ export class Session implements TransportHandlers {
 
   private done(): void {
     if (this.requested.progress >= Progress.received) {
-      this.advanceSoon();
+      this.decoding.soon();
     } else if (!this.stream.brings(this.requested.keys)) {
       return; // another stream is opened soon, or once a pause ends
     } else if (this.stream.mayEndEarly) {
-      this.open();
+      this.stream.open(this.requested);
     } else {
       this.failed(
         new QtetError(
@@ -224,24 +212,20 @@ export class Session implements TransportHandlers {
     // Another mesh has taken this name: what was decoded is useless.
     if (code === 'log-changed' && this.stream.digest) {
       this.forget();
-      this.open();
+      this.stream.open(this.requested);
       return;
     }
     if (code === 'unknown-field' && !this.assembler.manifest) {
       const message = `${detail.replace(/\.?$/, '.')} The first field is shown instead.`;
       this.reports.error(code, message);
       this.requested.names = null;
-      this.open();
+      this.stream.open(this.requested);
       return;
     }
     this.failed(new QtetError(code, detail));
   }
 
   // ---- the stream
-
-  private open(): void {
-    this.stream.open(this.source.mesh, this.requested);
-  }
 
   /**
    * Sees to it that what is wanted and not here comes: by the present stream, or else by another
@@ -257,10 +241,10 @@ export class Session implements TransportHandlers {
       this.enter({name: isConnected ? 'streaming' : 'connecting'});
     if (isConnected && stream.brings(requested.keys)) {
       stream.aim(requested);
-      if (!stream.resume()) this.open();
+      if (!stream.resume()) stream.open(requested);
     } else if (isConnected || !stream.isConnecting) {
       if (!this.reopening.take()) return;
-      if (isConnected) this.open();
+      if (isConnected) stream.open(requested);
       else stream.connect();
     }
   }
@@ -268,9 +252,9 @@ export class Session implements TransportHandlers {
   /** Returns true if the stream was opened again, now that the fields are known. */
   private takeManifest(): boolean {
     const unknown = this.requested.findFields();
-    const mayComeLater = unknown !== undefined || this.source.time != null;
-    if (mayComeLater && this.assembler.laterBytes > 0 && !this.laterAsked) {
-      void this.bringLater();
+    const mayComeLater = unknown !== undefined || this.stream.source.time != null;
+    if (mayComeLater && this.later.isMissing) {
+      void this.later.bring();
       return true;
     }
     if (unknown !== undefined) {
@@ -279,81 +263,29 @@ export class Session implements TransportHandlers {
     }
     this.reports.manifest();
     if (!this.stream.endsAtHead && this.stream.brings(this.requested.keys)) return false;
-    this.open();
+    this.stream.open(this.requested);
     return true;
-  }
-
-  /** Fetches the later fields. If that fails, the mesh stays without. */
-  private async bringLater(): Promise<void> {
-    const {assembler, source} = this;
-    if (this.laterAsked || assembler.laterBytes === 0) return;
-    this.laterAsked = true;
-    const {fileBytes, laterBytes, manifest} = assembler;
-    const isOver = (): boolean => assembler.manifest !== manifest; // another log
-    try {
-      const part = await retry(
-        () => this.fetchLater(source, laterBytes, fileBytes),
-        Math.random,
-        (thrown) => errorCode(thrown) === 'network',
-      );
-      if (isOver()) return;
-      assembler.takeLater(part);
-      this.stream.receivedAside(part.length);
-      this.coarse?.noteLater(part);
-    } catch (thrown) {
-      if (isOver()) return;
-      const message = `${errorText(thrown).replace(/\.?$/, '.')}${kWithoutLater}`;
-      this.reports.error(errorCode(thrown), message);
-      if (this.reports.hasManifest) return;
-    }
-    this.recovery.guarded(() => this.tellOfLater());
-  }
-
-  /** The page receives the manifest once the part of later instants is here. */
-  private get awaitsLater(): boolean {
-    return this.laterAsked && !this.reports.hasManifest;
-  }
-
-  private tellOfLater(): void {
-    if (this.awaitsLater) {
-      if (!this.takeManifest()) this.open();
-      return;
-    }
-    this.reports.manifest(true);
   }
 
   // ---- decoding
 
   advance(): void {
     this.recovery.guarded(() => {
-      const pictureFirst = this.source.pictureFirst === true && !this.publisher.hasPublished;
+      const pictureFirst = this.stream.source.pictureFirst === true && !this.publisher.hasPublished;
       const hasChanged = this.decoding.advance(pictureFirst);
-      if (this.reports.base()) this.onBase();
+      this.reports.base();
       const {progress} = this.requested;
       const isSettled = progress >= Progress.settled;
       if (hasChanged) this.publisher.changed(progress >= Progress.decoded);
-      if (this.publisher.hasPublished || isSettled) void this.bringLater();
+      if (this.publisher.hasPublished || isSettled) void this.later.bring();
       this.reports.progress.changed();
       if (this.state.name === 'failed') return;
-      if (progress === Progress.complete) this.complete();
-      else if (isSettled) this.hold();
+      if (progress === Progress.complete) {
+        if (this.state.name !== 'complete') this.enter({name: 'complete'});
+      } else if (isSettled) this.hold();
       if (this.state.name === 'paused') return;
       if (!isSettled || !this.requested.isAheadReceived) this.stream.giveCredit();
     });
-  }
-
-  /**
-   * Frames come in crowds. If each took a slice, the page's commands and the pictures would wait
-   * for all of them.
-   */
-  private advanceSoon(): void {
-    if (!this.decoding.isDue) this.advance();
-  }
-
-  /** Shows no picture on the way. */
-  private goBack(): void {
-    this.decoding.goBack();
-    this.publisher.changed(true);
   }
 
   // ---- states
@@ -368,10 +300,6 @@ export class Session implements TransportHandlers {
     if (this.state.name === 'held' || this.state.name === 'paused') return;
     this.publisher.changed(true);
     this.enter({name: 'held'});
-  }
-
-  private complete(): void {
-    if (this.state.name !== 'complete') this.enter({name: 'complete'});
   }
 
   /** Returns true if there was a pause. The caller reports the next state. */
@@ -395,7 +323,7 @@ export class Session implements TransportHandlers {
 
   /** Must be called before another log. */
   private forget(): void {
-    this.laterAsked = false;
+    this.later.forget();
     this.gate.forget();
     this.reports.forget();
     this.reopening.drop();

@@ -62,9 +62,11 @@ function start(baseUrl: string, codecUrl: string): Parts {
   const coarse = new CoarseVolume(
     async () => new Assembler(new WasmCodec(await makeWhole()), kDraco),
   );
-  const session = new Session(assembler, publisher, post);
+  const session = new Session(assembler, publisher, (message) => {
+    post(message);
+    if (message.type === 'base') makeWhole().catch(fail);
+  });
   session.coarse = coarse;
-  session.onBase = () => void makeWhole().catch(fail);
   assembler.codecReady = retry(() => compile(baseUrl), Math.random, mayPass).then((module) =>
     codec.become(module),
   );
