@@ -41,8 +41,8 @@ async function ownColoursStepsAndColoursBeyondTheRange({server, browser}) {
     assert.deepEqual(await viewer.accessibilityViolations(), []);
     const picture = await viewer.screenshot(`colours-${name}`);
     assert.ok(countOf(picture, [0, 192, 0]) > 100, 'no colour above the range');
-    await drop(viewer, ['bad.json', Buffer.from('[{"ColorSpace":"HSV","RGBPoints":[]}]')]);
-    await page.getByText('"HSV", which is not understood').waitFor();
+    await drop(viewer, ['bad.json', Buffer.from('[{"ColorSpace":"Step","RGBPoints":[]}]')]);
+    await page.getByText('"Step", which is not understood').waitFor();
     assert.equal(await attribute('colormap'), `${kOwn}/6`);
   }
 }

@@ -39,6 +39,12 @@ struct Values {
   std::vector<double> numbers;
 };
 
+/// The arrays of POINT_DATA or CELL_DATA.
+struct Data {
+  std::uint64_t tuples = 0;
+  std::vector<Values> fields;
+};
+
 class LegacyVtk {
  public:
   LegacyVtk(std::string_view text, const std::filesystem::path& path, const FieldNames& fields,
@@ -78,20 +84,20 @@ class LegacyVtk {
       const auto count = in_.number<std::uint64_t>("the number of cell types");
       types_ = legacyIntegers(in_, bytes_, {count, VtuNumber::kInt32, "cell types"});
     } else if (word == "point_data") {
-      pointTuples_ = in_.number<std::uint64_t>("the number of points");
-      fields_ = &pointFields_;
+      pointData_.tuples = in_.number<std::uint64_t>("the number of points");
+      data_ = &pointData_;
     } else if (word == "cell_data") {
-      cellTuples_ = in_.number<std::uint64_t>("the number of cells");
-      fields_ = &cellFields_;
+      cellData_.tuples = in_.number<std::uint64_t>("the number of cells");
+      data_ = &cellData_;
     } else if (word == "field") {
       readField();
     } else if (word == "metadata") {
       skipMetadata();
-    } else if (fields_ && word == "scalars") {
+    } else if (data_ && word == "scalars") {
       readScalars();
-    } else if (fields_ && (word == "vectors" || word == "normals")) {
+    } else if (data_ && (word == "vectors" || word == "normals")) {
       readAttribute(3);
-    } else if (fields_ && word == "tensors") {
+    } else if (data_ && word == "tensors") {
       readAttribute(9);
     } else {
       isUnderstood_ = false;
@@ -137,7 +143,7 @@ class LegacyVtk {
       const auto components = in_.number<std::uint64_t>("the number of components"),
                  tuples = in_.number<std::uint64_t>("the number of tuples");
       Values found = values(decoded(name), components, tuples, typeOf(in_.word()));
-      if (fields_) add(std::move(found));
+      if (data_) add(std::move(found));
       ++i;
     }
   }
@@ -152,23 +158,20 @@ class LegacyVtk {
       return in_.fail(ErrorCode::kBadInput,
                       "the scalars " + name + " have no line LOOKUP_TABLE; export the file again");
     in_.word();
-    add(values(name, components, tuples(), type));
+    add(values(name, components, data_->tuples, type));
   }
 
   void readAttribute(std::uint64_t components) {
     const std::string name = decoded(in_.word());
-    add(values(name, components, tuples(), typeOf(in_.word())));
-  }
-
-  [[nodiscard]] std::uint64_t tuples() const {
-    return fields_ == &pointFields_ ? pointTuples_ : cellTuples_;
+    add(values(name, components, data_->tuples, typeOf(in_.word())));
   }
 
   /// VTK takes the last of arrays that have the same name, in the place of the first.
   void add(Values&& array) {
+    auto& fields = data_->fields;
     isUnderstood_ =
-        isUnderstood_ && std::ranges::find(*fields_, array.name, &Values::name) == fields_->end();
-    fields_->push_back(std::move(array));
+        isUnderstood_ && std::ranges::find(fields, array.name, &Values::name) == fields.end();
+    fields.push_back(std::move(array));
   }
 
   /// Lines up to an empty one.
@@ -211,8 +214,8 @@ class LegacyVtk {
 
   void takePointIds(CellMesh& mesh) const {
     for (const char* name : kGlobalIdNames) {
-      const auto at = std::ranges::find(pointFields_, name, &Values::name);
-      if (at == pointFields_.end()) continue;
+      const auto at = std::ranges::find(pointData_.fields, name, &Values::name);
+      if (at == pointData_.fields.end()) continue;
       if (at->type->isFloat() || at->components != 1 || at->tuples != mesh.points.size()) return;
       for (const double id : at->numbers)
         mesh.pointIds.push_back(static_cast<std::uint64_t>(static_cast<std::int64_t>(id)));
@@ -253,7 +256,7 @@ class LegacyVtk {
 
   /// Whether the cell is another piece's, or blanked out.
   [[nodiscard]] bool isHidden(std::uint64_t cell) const {
-    for (const Values& field : cellFields_) {
+    for (const Values& field : cellData_.fields) {
       if (field.tuples < cellCount_ || field.components == 0) continue;
       const double value = field.numbers[cell * field.components];
       if (field.name == kGhostLevels && value > 0) return true;
@@ -268,7 +271,7 @@ class LegacyVtk {
     const std::string association = ofCells ? "cell" : "point";
     const std::uint64_t tuples = ofCells ? cellCount_ : points_.tuples;
     int number = 0;
-    for (Values& found : ofCells ? cellFields_ : pointFields_) {
+    for (Values& found : (ofCells ? cellData_ : pointData_).fields) {
       const auto name =
           choice_.nameOf({found.name, number++, found.components, true, false}, association, mesh);
       if (!name) continue;
@@ -297,10 +300,10 @@ class LegacyVtk {
   bool bytes_ = false;
   bool isUnderstood_ = true;
   Values points_;
-  std::uint64_t cellCount_ = 0, pointTuples_ = 0, cellTuples_ = 0;
+  std::uint64_t cellCount_ = 0;
   std::vector<std::int64_t> offsets_, list_, types_;
-  std::vector<Values> pointFields_, cellFields_;
-  std::vector<Values>* fields_ = nullptr;  ///< that arrays belong to now
+  Data pointData_, cellData_;
+  Data* data_ = nullptr;  ///< that arrays belong to now
   std::optional<CellMesh> out_;
 };
 

@@ -113,7 +113,7 @@ class DocumentParser {
               "it declares a document type, which no mesh needs; remove the <!DOCTYPE ...>");
         });
     if (Status done = parse(); !done) return std::unexpected(done.error());
-    if (!hasGrid_)
+    if (grid_ == Grid::kNone)
       return file_.bad("it holds no <UnstructuredGrid> or other grid; export the mesh again");
     if (out_.pieces.empty()) out_.pieces.push_back(std::move(implicit_));
     return std::move(out_);
@@ -123,6 +123,8 @@ class DocumentParser {
   struct Free {
     void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
   };
+  /// The first grid is read.
+  enum class Grid : std::uint8_t { kNone, kInside, kBehind };
   enum class Section : std::uint8_t {
     kNone,
     kPoints,
@@ -189,12 +191,11 @@ class DocumentParser {
     if (depth == 0) return startRoot(name, attributes);
     if (depth == 1) {
       const auto grid = std::ranges::find(kGrids, name, [](const auto& g) { return g.first; });
-      isInGrid_ = grid != kGrids.end() && !hasGrid_;
-      if (isInGrid_) return startGrid(grid->second, attributes);
+      if (grid != kGrids.end() && grid_ == Grid::kNone) return startGrid(grid->second, attributes);
       if (name == "AppendedData") startAppended(attributes);
       return;
     }
-    if (!isInGrid_) return;
+    if (grid_ != Grid::kInside) return;
     if (depth == 2 && name == "Piece") return startPiece(attributes);
     if (depth == (isInPiece_ ? 3u : 2u)) return startSection(name, attributes);
     if (section_ != Section::kNone && depth == (isInPiece_ ? 4u : 3u)) startArray(name, attributes);
@@ -210,7 +211,7 @@ class DocumentParser {
     }
     if (section_ != Section::kNone && depth == (isInPiece_ ? 3u : 2u)) endSection();
     if (depth == 2) isInPiece_ = false;
-    if (depth == 1) isInGrid_ = false;
+    if (depth == 1 && grid_ == Grid::kInside) grid_ = Grid::kBehind;
   }
 
   void startRoot(std::string_view name, const Attributes& attributes) {
@@ -254,7 +255,7 @@ class DocumentParser {
   }
 
   void startGrid(GridKind kind, const Attributes& attributes) {
-    hasGrid_ = true;
+    grid_ = Grid::kInside;
     out_.kind = kind;
     out_.hasTimeSteps = attributes["TimeValues"].has_value();
     if (kind == GridKind::kImage) {
@@ -484,7 +485,8 @@ class DocumentParser {
   VtuDocument out_;
   VtuPiece implicit_;  ///< a grid without <Piece> is one itself
   std::optional<Error> error_;
-  bool isDone_ = false, hasGrid_ = false, isInGrid_ = false, isInPiece_ = false;
+  bool isDone_ = false, isInPiece_ = false;
+  Grid grid_ = Grid::kNone;
   std::size_t depth_ = 0, arrayDepth_ = 0, arrayCount_ = 0;
   Section section_ = Section::kNone;
   std::string sectionName_;
