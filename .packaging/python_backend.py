@@ -169,7 +169,8 @@ def build_sdist(sdist_directory, config_settings=None):
     ) as packed, tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as made:
         for member in given:
             made.addfile(member, given.extractfile(member) if member.isfile() else None)
-        text = _metadata().encode()
+        # The notices are those of the libraries that a wheel holds.
+        text = _metadata().replace("License-File: third-party.txt\n", "").encode()
         info = tarfile.TarInfo(f"{name}/PKG-INFO")
         info.size, info.mtime = len(text), date()
         made.addfile(info, io.BytesIO(text))

@@ -16,6 +16,7 @@ struct SeriesError {
 };
 
 double weightOf(double error, double largest) {
+  if (largest == 0) return 1;
   const double share = std::sqrt(error / largest);
   return kMaxFieldWeight * share > 1 ? 1 / share : kMaxFieldWeight;
 }

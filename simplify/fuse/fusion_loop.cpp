@@ -79,7 +79,7 @@ PartLevels FusionLoop::runPart(const PartEnd& end, std::span<const std::uint8_t>
   target_ = end.cells;
   fusions_.keepOff(isSeam);
   open_.findAll();
-  for (std::size_t before = live(); runLevel(end.key); before = live()) {
+  for (std::size_t before = live(); levels_ < kMaxLevels && runLevel(end.key); before = live()) {
     if (fusions_.fused().empty()) break;
     assert(live() < before);
     out.levels.push_back({queue_.limit(), fusions_.fused().size(), before - live()});

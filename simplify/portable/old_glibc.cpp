@@ -1,13 +1,13 @@
 // Functions that a program would otherwise take from a newer C library than that of its users. In
 // glibc 2.28 (PEP 600's manylinux_2_28) they are missing, or have an older version. The linker
 // takes those here before it looks at the C library.
+#include <dirent.h>
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
 #include <link.h>
 #include <pthread.h>
 #include <sys/random.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -80,20 +80,30 @@ void arc4random_buf(void* buffer, std::size_t size) {
   }
 }
 
-// Since 2.34. Linux before 5.9 does not know it.
+// Since 2.34. Linux before 5.9 does not know it, and old containers forbid what they do not know.
+// Those that are open are closed then, as the kernel lists them: the limit may be a billion.
 int close_range(unsigned first, unsigned last, int flags) {
   if (::syscall(SYS_close_range, first, last, flags) == 0) return 0;
-  if (errno != ENOSYS || flags != 0) return -1;
-  rlimit open{};
-  if (::getrlimit(RLIMIT_NOFILE, &open) != 0 || open.rlim_cur == 0) return -1;
-  last = static_cast<unsigned>(std::min<rlim_t>(last, open.rlim_cur - 1));
-  for (unsigned file = first; file <= last; ++file) ::close(static_cast<int>(file));
-  return 0;
+  if (errno == EINVAL || flags != 0) return -1;
+  DIR* const listed = ::opendir("/proc/self/fd");
+  if (listed == nullptr) return -1;
+  while (const dirent* const entry = ::readdir(listed)) {
+    char* end = nullptr;
+    const unsigned long file = std::strtoul(entry->d_name, &end, 10);
+    const bool isOne = end != entry->d_name && *end == '\0';  // not `.` or `..`
+    if (isOne && file >= first && file <= last && file != static_cast<unsigned>(::dirfd(listed)))
+      ::close(static_cast<int>(file));
+  }
+  return ::closedir(listed);
 }
 
-// Since 2.30. Before, a wait was until a time of the day.
+// Since 2.30. Before, a wait was until a time of the day, which somebody may set.
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
                            const timespec* until) {
+  using Wait = int (*)(pthread_cond_t*, pthread_mutex_t*, clockid_t, const timespec*);
+  static const auto theirs =
+      reinterpret_cast<Wait>(our_dlsym(RTLD_DEFAULT, "pthread_cond_clockwait"));
+  if (theirs != nullptr) return theirs(condition, mutex, clock, until);
   if (clock == CLOCK_REALTIME) return ::pthread_cond_timedwait(condition, mutex, until);
   timespec now{}, day{};
   ::clock_gettime(clock, &now);

@@ -97,6 +97,11 @@ Error lacks(const char* file) {
           std::string("the viewer has no ") + file + "; give that of this version"};
 }
 
+Error isOfAnotherVersion() {
+  return {ErrorCode::kBadInput, std::string("the viewer's ") + kViewerFiles +
+                                    " is of another version; give that of this version"};
+}
+
 struct ViewerFiles {
   std::string policy;
   std::map<std::string, std::string> types;  ///< of each file that the page holds
@@ -108,10 +113,10 @@ Result<ViewerFiles> viewerFilesOf(const fs::path& site) {
   const nlohmann::json files = nlohmann::json::parse(*text, nullptr, false);
   const auto has = [&](const char* key) { return files.is_object() && files.contains(key); };
   if (!has("policy") || !files["policy"].is_string() || !has("page") || !files["page"].is_object())
-    return std::unexpected(lacks(kViewerFiles));
+    return std::unexpected(isOfAnotherVersion());
   ViewerFiles out{files["policy"], {}};
   for (const auto& [name, type] : files["page"].items()) {
-    if (!type.is_string()) return std::unexpected(lacks(kViewerFiles));
+    if (!type.is_string()) return std::unexpected(isOfAnotherVersion());
     out.types.emplace(name, type);
   }
   return out;

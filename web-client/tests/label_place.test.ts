@@ -23,9 +23,9 @@ test('aLabelStaysWhereItWasWhileThatIsFree', () => {
   expect(placeLabels([dot(40, 100, 1)], kPhone)[0]!.choice).toBe(0);
 });
 
-test('theLabelOfADotOutsideStaysBesideItAndTakesNoRoom', () => {
-  const places = placeLabels([dot(-20, 100), dot(20, 100)], kPhone);
-  expect(places.map((place) => place?.choice)).toEqual([0, 0]);
+test('theLabelOfADotOutsideIsFoldedAndTakesNoRoom', () => {
+  const places = placeLabels([dot(-1, 200), dot(20, 200)], kPhone);
+  expect(places.map((place) => place?.choice)).toEqual([undefined, 0]);
 });
 
 test('labelsOfCloseDotsCoverNeitherEachOtherNorADot', () => {

@@ -9,8 +9,9 @@ import {trustOwnWorkers} from './page/own_workers';
 const kKeepMs = 15000;
 
 if (typeof document === 'undefined') {
-  if (typeof OffscreenCanvas !== 'undefined') new OffscreenCanvas(1, 1).getContext('webgl2');
-  setTimeout(close, kKeepMs);
+  const graphics =
+    typeof OffscreenCanvas === 'undefined' ? null : new OffscreenCanvas(1, 1).getContext('webgl2');
+  setTimeout(() => (graphics?.flush(), close()), kKeepMs);
 } else {
   trustOwnWorkers();
   const {workers} = document.querySelector<HTMLElement>('script[data-workers]')!.dataset;

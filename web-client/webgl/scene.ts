@@ -144,13 +144,14 @@ export class Scene {
   ): Promise<void> {
     const {parts} = this;
     parts.frame = {pixelRatio, onDark};
-    if (this.drawsVolume) await this.volume!.drawWhole(this.pictureOf(lens, target));
-    else {
+    try {
+      if (this.drawsVolume) return await this.volume!.drawWhole(this.pictureOf(lens, target));
       target.begin();
       target.clear();
       parts.draw(this.camera.eyeOf(lens));
+    } finally {
+      parts.frame = null;
     }
-    parts.frame = null;
   }
 
   dispose(): void {

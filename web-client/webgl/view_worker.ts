@@ -56,10 +56,10 @@ function begin({canvas: surface, size, answers}: Extract<ToView, {type: 'begin'}
       ...(answers ? {coarse} : {}),
     });
     post({type: 'begun', pose: view.pose, renderer: view.renderer});
-    view.warmUp();
   } catch (thrown) {
-    post({type: 'failed', message: errorText(thrown)});
+    return post({type: 'failed', message: errorText(thrown)});
   }
+  view.warmUp();
 }
 
 function obey(message: Exclude<ToView, {type: 'begin' | 'ping'}>, its: MeshView): void {

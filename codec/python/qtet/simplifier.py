@@ -444,8 +444,8 @@ def simplify(
     errors                {name: how far a value of the last level may be from the input's}: 0.5 in
                           the field's unit, "0.5K", or "0.1%" of its range; the step and the bits
                           follow. "all": every float field that is not named
-    field_weights         {name: what a point field counts, 1 otherwise}; without, the first one
-                          that a viewer shows counts 2
+    field_weights         {name: what a point field counts, 1 otherwise}; without, the
+                          smoother a field the more, 8 at most
     label_weights         {name: what the interfaces of a cell field of integers count, such as
                           materials; 0 leaves them out}
     regions               the name of a cell field whose values keep their topology

@@ -102,7 +102,7 @@ TEST_F(Page, whatItCannotTakeIsToldBeforeAnythingIsWritten) {
                            R"({"policy": "", "page": {"a.css": 1}})"}) {
     put("viewer/viewer.json", list);
     const Ran old = page("box.qtet -o box.html");
-    EXPECT_NE(old.err.find("viewer.json; give that of this version"), std::string::npos) << list;
+    EXPECT_NE(old.err.find("viewer.json is of another version"), std::string::npos) << list;
   }
   fs::remove(folder_ / "viewer/single_page.js");
   const Ran old = page("box.qtet -o box.html");

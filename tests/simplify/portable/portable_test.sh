@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The program that is linked statically needs the C library alone, no newer one than Debian 12's,
-# and makes the log that qtet makes. It says so where it lacks VTK or HTTP.
+# The program that is linked statically needs the C library alone, glibc 2.28 or later, and makes
+# the log that qtet makes. It says so where it lacks VTK or HTTP.
 #   portable_test.sh QTET QTET_PORTABLE MESHES SCRATCH
 set -euo pipefail
 qtet=$1 portable=$2 meshes=$3 scratch=$4

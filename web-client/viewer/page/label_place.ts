@@ -19,7 +19,7 @@ export interface LabelPlace extends Point {
 /** Pixels between a dot's middle and its label. */
 const kAway = 10;
 /** Half of a dot with its ring, in pixels. */
-const kRadius = 8;
+const kRadius = 9;
 /** Pixels between two labels. */
 const kGap = 2;
 
@@ -37,7 +37,7 @@ const kChoices: readonly (readonly [x: -1 | 0 | 1, y: -1 | 0 | 1])[] = [
 
 /**
  * A place for each label in a viewer of this size, or null if it has no room. Labels that come
- * first choose first. The label of a dot outside the viewer stays beside it.
+ * first choose first. The label of a dot outside the viewer has none.
  */
 export function placeLabels(
   dots: readonly LabelledDot[],
@@ -47,8 +47,7 @@ export function placeLabels(
   const placed: Box[] = [];
   const boxes = dots.map(boxOfDot);
   return dots.map((dot, at) => {
-    if (!contains(whole, {left: dot.x, top: dot.y, right: dot.x, bottom: dot.y}))
-      return placeOf(dot, 0);
+    if (!contains(whole, {left: dot.x, top: dot.y, right: dot.x, bottom: dot.y})) return null;
     const isFree = (place: LabelPlace): boolean => {
       const box = boxOf(dot, place);
       return (

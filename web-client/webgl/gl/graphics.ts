@@ -36,8 +36,10 @@ export class Graphics {
   /** The name of the graphics; empty if the browser does not say it. */
   get renderer(): string {
     const {gl} = this;
+    const name = String(gl.getParameter(gl.RENDERER) ?? '');
+    if (name !== 'WebKit WebGL') return name; // Firefox says it, and warns of the extension
     const names = gl.getExtension('WEBGL_debug_renderer_info');
-    return String(gl.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER) ?? '');
+    return String((names && gl.getParameter(names.UNMASKED_RENDERER_WEBGL)) ?? '');
   }
 
   /** Must be called when the browser has given the graphics back. */
