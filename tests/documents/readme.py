@@ -143,7 +143,9 @@ def weigh(viewer):
 
     page = (viewer / "index.html").read_text(encoding="utf-8")
     first = {viewer / "index.html"}
-    waiting = [viewer / path for path in re.findall(r'(?:href|src)="\./([^"]+)"', page)]
+    # Files, the workers that start_graphics.ts loads, and what decodes a base mesh.
+    waiting = [viewer / path for path in re.findall(r'[" ]\./([^" ]+)', page)]
+    waiting += viewer.glob("assets/qtet-base-*.wasm")
     while waiting:
         path = waiting.pop().resolve()
         if path in first or path.suffix == ".svg" or not path.exists():
