@@ -7,20 +7,18 @@ import type {Display} from '../picture/display';
 import type {Axis, Histogram} from '../picture/histogram';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
-import {kFull, type Limit} from '../protocol/limit';
+import type {Limit} from '../protocol/limit';
 import type {LineValues, Pick, Probe} from './inspector';
-import type {FromWorker, Posted, Question, Source, ToWorker} from './worker_messages';
+import {
+  kNoSource,
+  type FromWorker,
+  type Posted,
+  type Question,
+  type Source,
+  type ToWorker,
+} from './worker_messages';
 
 export type Listener = (message: Exclude<FromWorker, {type: 'answer'}>) => void;
-
-const kAnySource: Source = {
-  url: '',
-  log: '',
-  mesh: '',
-  fields: null,
-  limit: kFull,
-  transport: 'auto',
-};
 
 export class Client {
   private readonly worker = new Worker(new URL('./worker.ts', import.meta.url), {
@@ -60,7 +58,7 @@ export class Client {
    * no limit, and any transport that works. Messages of an earlier start are dropped.
    */
   start(source: Partial<Source>): void {
-    this.post({type: 'start', source: {...kAnySource, ...source}, run: ++this.run});
+    this.post({type: 'start', source: {...kNoSource, ...source}, run: ++this.run});
   }
   /**
    * REQUIRES: the display's fields are in the last `manifest` message. Fields that are missing are

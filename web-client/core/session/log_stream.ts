@@ -1,10 +1,9 @@
 // A session's connection, and the stream that was opened on it last.
 
-import {kFull} from '../protocol/limit';
 import type {Target} from '../protocol/messages';
 import type {Transport} from '../transport/transport';
 import type {RequestedPart} from './requested_part';
-import type {Source} from './worker_messages';
+import {kNoSource, type Source} from './worker_messages';
 
 /**
  * How many payload bytes may be under way. It is enough for 80 Mbit/s at 100 ms; a click waits for
@@ -14,15 +13,6 @@ const kWindowBytes = 1 << 20;
 
 /** Where the stream ends: behind the head, at the limit, or at a limit that was set since. */
 type End = 'head' | 'limit' | 'later limit';
-
-const kNoSource: Source = {
-  url: '',
-  log: '',
-  mesh: '',
-  fields: null,
-  limit: kFull,
-  transport: 'auto',
-};
 
 export class LogStream {
   /** Where the log is, and how it was asked for. */

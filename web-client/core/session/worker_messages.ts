@@ -14,7 +14,7 @@ import type {TriangleSoup} from '../picture/triangle_soup';
 import type {CoarseCells, VolumeCells} from '../picture/volume';
 import type {Warp} from '../picture/warp';
 import type {Vector, Plane} from '../protocol/geometry';
-import type {Limit} from '../protocol/limit';
+import {kFull, type Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
 import type {LogAddress} from '../transport/transports';
 import type {LineValues, Pick, Probe} from './inspector';
@@ -39,6 +39,16 @@ export interface Source extends LogAddress {
   /** A display follows soon: decoding sends a first picture before it refines. */
   pictureFirst?: boolean;
 }
+
+/** A source of which nothing is said. */
+export const kNoSource: Source = {
+  url: '',
+  log: '',
+  mesh: '',
+  fields: null,
+  limit: kFull,
+  transport: 'auto',
+};
 
 export type ToWorker =
   /** The first message: where the codec's WebAssembly lies, and its part for the base mesh. */
