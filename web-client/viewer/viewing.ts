@@ -2,7 +2,7 @@
 
 import {isEqual} from '../core/protocol/equal';
 import type {Client} from '../core/session/client';
-import type {FromWorker, Progress, StreamState} from '../core/session/worker_messages';
+import type {FromWorker, LogFigures, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
 import type {View} from '../webgl/view';
 import {Controls} from './controls';
@@ -181,7 +181,7 @@ export class Viewing implements LaterHost, PictureHost {
     this.apply();
   }
 
-  private takeProgress(progress: Progress): void {
+  private takeProgress(progress: LogFigures): void {
     const {coming: mesh, next} = this.meshes;
     const isMore = progress.here.length !== mesh.progress.here.length;
     mesh.progress = progress;

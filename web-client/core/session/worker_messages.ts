@@ -126,7 +126,7 @@ export type Answer =
   string | Pick | Probe | LineValues[] | number[][] | Histogram | CoarseCells | null;
 
 /** The newest figures of a log. */
-export interface Progress {
+export interface LogFigures {
   statistics: Statistics;
   /** Its bytes that have come. */
   received: number;
@@ -150,7 +150,7 @@ export type FromWorker =
    */
   | {type: 'base'; figures: BaseFigures}
   | {type: 'snapshot'; snapshot: Snapshot}
-  | ({type: 'progress'} & Progress)
+  | ({type: 'progress'} & LogFigures)
   | {type: 'state'; state: StreamState; attempt: number; delayMs: number}
   | {type: 'error'; code: string; message: string}
   | {type: 'answer'; id: number; answer: Answer};

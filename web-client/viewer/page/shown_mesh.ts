@@ -13,7 +13,7 @@ import type {SeriesRanges} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import {listedInstant, type SegmentList} from '../../core/protocol/segment_list';
 import {openingTime, showTime, timesOf} from '../../core/protocol/series';
-import type {Progress, Snapshot} from '../../core/session/worker_messages';
+import type {LogFigures, Snapshot} from '../../core/session/worker_messages';
 import {placeOn} from '../../core/picture/log_scale';
 import {FieldsAhead} from './fields_ahead';
 import {KnownRanges, type SegmentRanges} from './known_ranges';
@@ -43,7 +43,7 @@ export class ShownMesh {
   base: BaseFigures = {bounds: [], chord: 0};
   /** The levels ahead. */
   plan: LevelBytes[] = [];
-  progress: Progress = {statistics: kNoStatistics, received: 0, here: [], aheadEnded: false};
+  progress: LogFigures = {statistics: kNoStatistics, received: 0, here: [], aheadEnded: false};
   readonly ahead = new FieldsAhead();
   /** The newest picture. */
   snapshot: Snapshot | null = null;
