@@ -175,6 +175,8 @@ if(QTET_WEB)
     ${here}/browser/package.mjs --bin ${bin} --wasm ${wasm} --out ${CMAKE_BINARY_DIR}/npm)
   qtet_system_test(package.types ROOM web-client COMMAND ${QTET_NODE}
     ${here}/consumer/types.mjs --wasm ${wasm} --out ${CMAKE_BINARY_DIR}/npm-types)
+  qtet_system_test(package.tool ROOM web-client COMMAND ${QTET_NODE}
+    ${here}/consumer/tool.mjs --bin ${bin} --wasm ${wasm} --out ${CMAKE_BINARY_DIR}/npm-tool)
 endif()
 
 # Tests of the test scripts. They skip where neither the script nor what it calls has changed.

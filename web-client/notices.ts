@@ -20,6 +20,8 @@ const kSimplifier = [
   'libboost-dev',
 ];
 
+const kTool = [...kSimplifier, 'libboost-program-options-dev', 'libwebp-dev', 'zlib1g-dev'];
+
 const ofPackage = (name: string): string =>
   fileURLToPath(new URL(`node_modules/${name}/LICENSE`, import.meta.url));
 const ofDebian = (name: string): string => `/usr/share/doc/${name}/copyright`;
@@ -31,11 +33,12 @@ const joined = (files: [name: string, path: string][]): string =>
     .map(([name, path]) => `${name}\n\n${readFileSync(path, 'utf8').trim()}\n`)
     .join(`\n${'-'.repeat(72)}\n\n`);
 
-export const notices = (): Plugin => ({
+/** `withTool`: the command of the npm package is there, too. */
+export const notices = (withTool = false): Plugin => ({
   name: 'notices',
   apply: 'build',
   generateBundle() {
-    const texts = {
+    const texts: Record<string, string> = {
       'third-party.txt': joined([
         ...kBundled.map((name): [string, string] => [name, ofPackage(name)]),
         ...kCompiled.map((name): [string, string] => [name, ofDebian(name)]),
@@ -44,6 +47,10 @@ export const notices = (): Plugin => ({
         kSimplifier.map((name): [string, string] => [name, ofDebian(name)]),
       ),
     };
+    if (withTool)
+      texts['qtet-tool.third-party.txt'] = joined(
+        kTool.map((name): [string, string] => [name, ofDebian(name)]),
+      );
     for (const [fileName, source] of Object.entries(texts))
       this.emitFile({type: 'asset', fileName, source});
   },

@@ -1,9 +1,12 @@
-// Makes the npm package `qtet` in a folder: modules, types, package.json, README and licence.
+// Makes the npm package `qtet` in a folder: modules, types, package.json, README, licence, and the
+// command with its WebAssembly and the viewer for its pages. It takes these from the build that
+// made the codec; a build without Debian's sources has no command.
 //   node pack.mjs CODEC.wasm FOLDER
 
 import {execFileSync} from 'node:child_process';
-import {copyFileSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
-import {dirname, join, resolve} from 'node:path';
+import {copyFileSync, cpSync, existsSync, readdirSync, readFileSync, rmSync} from 'node:fs';
+import {writeFileSync} from 'node:fs';
+import {dirname, join, relative, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {originOf, repositoryOf} from './repository.mjs';
 import {addEndings} from './typed_paths.mjs';
@@ -41,6 +44,23 @@ for (const name of readdirSync(types, {recursive: true})) {
   if (path.endsWith('.d.ts')) writeFileSync(path, readFileSync(path, 'utf8').replace(kPrivate, ''));
 }
 
+const tool = join(dirname(wasm), 'qtet-tool.wasm');
+const hasTool = existsSync(tool);
+if (hasTool) {
+  copyFileSync(tool, join(folder, 'qtet-tool.wasm'));
+  // Compressed copies are for servers. A page takes no dropped meshes.
+  const viewer = join(dirname(wasm), '../share/qtet/viewer');
+  const {simplifier} = JSON.parse(readFileSync(join(viewer, 'viewer.json'), 'utf8'));
+  const isLeftOut = (name) => /\.(gz|br|zst)$/.test(name) || simplifier.includes(name);
+  cpSync(viewer, join(folder, 'viewer'), {
+    recursive: true,
+    filter: (from) => !isLeftOut(relative(viewer, from).replaceAll('\\', '/')),
+  });
+} else {
+  console.error('pack: the command qtet is left out; run make setup, and build again');
+  for (const name of ['qtet.js', 'qtet-tool.third-party.txt']) rmSync(join(folder, name));
+}
+
 const own = JSON.parse(readFileSync(join(here, 'package.json'), 'utf8'));
 const entry = (name, types) => ({types: `./types/${types}.d.ts`, default: `./${name}.js`});
 writeFileSync(
@@ -53,6 +73,7 @@ writeFileSync(
       license: 'Apache-2.0',
       repository: repositoryOf(originOf(here)), // left out where it is undefined
       type: 'module',
+      ...(hasTool ? {bin: {qtet: './qtet.js'}} : {}),
       keywords: [
         'tetrahedral mesh',
         'progressive',

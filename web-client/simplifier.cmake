@@ -1,12 +1,13 @@
 # The simplifier as WebAssembly: qtet-simplify.wasm, which the page loads when a mesh is dropped. It
-# is made of the rooms' own sources and of six libraries, whose sources .ci/sources.sh unpacks.
+# is made of the rooms' own sources and of libraries, whose sources .ci/sources.sh unpacks.
+# tool.cmake makes the whole tool of the same objects and more.
 
 set(sources_of_debian ${PROJECT_SOURCE_DIR}/build/sources)
-foreach(name IN ITEMS draco expat libdeflate lz4 metis xz-utils)
+foreach(name IN ITEMS boost draco expat libdeflate libwebp lz4 metis xz-utils zlib)
   file(GLOB found ${sources_of_debian}/${name}-[0-9]*)
   if(NOT found)
-    message(WARNING "The browser's simplifier is left out: it needs the sources of ${name}, which "
-                    "`make setup` fetches.")
+    message(WARNING "The simplifier as WebAssembly is left out: it needs the sources of ${name}, "
+                    "which `make setup` fetches.")
     return()
   endif()
   string(MAKE_C_IDENTIFIER ${name} name)
@@ -23,7 +24,11 @@ foreach(name IN ITEMS fast_float nlohmann boost)
   file(CREATE_LINK ${QTET_HEADERS_${name}}/${name} ${headers}/${name} SYMBOLIC)
 endforeach()
 file(CONFIGURE OUTPUT ${headers}/draco/draco_features.h
-  CONTENT "#define DRACO_POINT_CLOUD_COMPRESSION_SUPPORTED\n")
+  CONTENT "#define DRACO_POINT_CLOUD_COMPRESSION_SUPPORTED
+#ifdef QTET_DRACO_MESHES
+#define DRACO_MESH_COMPRESSION_SUPPORTED
+#define DRACO_STANDARD_EDGEBREAKER_SUPPORTED
+#endif\n")
 file(CONFIGURE OUTPUT ${headers}/expat_config.h CONTENT "")
 
 set(target_flags --target=wasm32-wasi -DNDEBUG -ffp-contract=off)
@@ -67,8 +72,8 @@ set(process_flags -D_WASI_EMULATED_SIGNAL -D_WASI_EMULATED_PROCESS_CLOCKS)
 set(own_flags -std=c++23 -fignore-exceptions -fno-rtti -DBOOST_NO_CXX98_FUNCTION_BASE
   -DQTET_VERSION="${PROJECT_VERSION}" ${process_flags} -Wall -Wextra -Werror -I${PROJECT_SOURCE_DIR}
   ${libraries_flags})
-set(own ${portable}/in_browser.cpp ${portable}/wasi/filesystem.cpp ${portable}/wasi/process.cpp
-  ${PROJECT_SOURCE_DIR}/simplify/api/wasm_simplify.cpp
+set(own ${portable}/without_libraries.cpp ${portable}/wasi/files.cpp
+  ${portable}/wasi/filesystem.cpp ${portable}/wasi/process.cpp
   ${PROJECT_SOURCE_DIR}/simplify/parts/metis_partition.cpp)
 foreach(room IN ITEMS proto codec simplify read)
   get_target_property(sources qtet_${room} QTET_FILES)
@@ -83,6 +88,7 @@ foreach(room IN ITEMS proto codec simplify read)
   list(TRANSFORM sources PREPEND ${PROJECT_SOURCE_DIR}/)
   list(APPEND own ${sources})
 endforeach()
+set(in_the_page ${own})
 # Loops over records and cells are compiled for speed, the rest for size.
 set(fast ${own})
 list(FILTER fast INCLUDE REGEX "/(fuse|legality|cost|measure|mesh|coding|record|clean)/")
@@ -96,8 +102,12 @@ qtet_simplifier_objects(${QTET_WASM_CXX} small "${own}" ${own_flags} -Os)
 
 include(draco_sources.cmake)
 qtet_draco_sources(draco_sources ${draco})
-qtet_simplifier_objects(${QTET_WASM_CXX} draco "${draco_sources}" -std=c++17 -O2 -fignore-exceptions
-  -fno-rtti -w ${libraries_flags})
+# These say whether there are meshes. Logs have none, so the page does without.
+set(draco_meshes ${draco_sources})
+list(FILTER draco_meshes INCLUDE REGEX "/compression/(decode|expert_encode|mesh/.*)[.]cc$")
+list(REMOVE_ITEM draco_sources ${draco_meshes})
+set(draco_flags -std=c++17 -O2 -fignore-exceptions -fno-rtti -w ${libraries_flags})
+qtet_simplifier_objects(${QTET_WASM_CXX} draco "${draco_sources}" ${draco_flags})
 
 foreach(name IN ITEMS xmlparse xmlrole xmltok)
   qtet_simplifier_object(${QTET_WASM_CC} ${expat}/expat/lib/${name}.c -O2 -w -isystem ${headers}
@@ -141,6 +151,11 @@ set(simplifier_exports "")
 foreach(declaration IN LISTS declarations)
   string(REGEX MATCH "qtet_[a-z_]+" name "${declaration}")
   list(APPEND simplifier_exports -Wl,--export=${name})
+endforeach()
+set(both_objects ${simplifier_objects})
+qtet_simplifier_objects(${QTET_WASM_CXX} draco_page "${draco_meshes}" ${draco_flags})
+foreach(source IN ITEMS simplify/portable/in_browser.cpp simplify/api/wasm_simplify.cpp)
+  qtet_simplifier_object(${QTET_WASM_CXX} ${PROJECT_SOURCE_DIR}/${source} ${own_flags} -Os)
 endforeach()
 set(simplifier_wasm ${CMAKE_CURRENT_BINARY_DIR}/qtet-simplify.wasm)
 add_custom_command(

@@ -10,7 +10,7 @@ import {wasmModules} from './wasm_modules';
 export default defineConfig({
   base: './',
   publicDir: false, // it is the page's
-  plugins: [plainDynamicImports(), notices()],
+  plugins: [plainDynamicImports(), notices(true)],
   resolve: {alias: wasmModules(process.env.QTET_WASM!)},
   // Bundlers copy workers' files unchanged. So these contain everything they need, and are minified
   // here.
@@ -43,8 +43,9 @@ export default defineConfig({
         three: './three/index.ts',
         viewer: './viewer/index.ts',
         element: './viewer/element.ts',
+        qtet: './tool/qtet.ts',
       },
-      external: (id) => id === 'three' || id === 'uplot',
+      external: (id) => id === 'three' || id === 'uplot' || id.startsWith('node:'),
       preserveEntrySignatures: 'strict',
       output: {
         entryFileNames: '[name].js',

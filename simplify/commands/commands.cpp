@@ -137,8 +137,8 @@ int runCommand(const Command& command, const Words& given, Console& console) {
 }
 
 const Command* findCommand(const std::string& name) {
-  const auto* found = std::ranges::find(kCommands, name, &Command::name);
-  return found == kCommands.end() ? nullptr : found;
+  const auto found = std::ranges::find(kCommands, name, &Command::name);
+  return found == kCommands.end() ? nullptr : &*found;
 }
 
 int refuseCommand(const std::string& name, Console& console) {

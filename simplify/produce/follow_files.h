@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/error.h"
 #include "simplify/words/console.h"
 
 namespace qtet {

@@ -89,7 +89,7 @@ Status inlinePoster(std::string& page, const fs::path& site, const std::string& 
 Result<nlohmann::json> listOf(const fs::path& site) {
   const Result<Bytes> text = readWhole(site / kSiteList);
   if (!text) return std::unexpected(text.error());
-  return nlohmann::json::parse(*text);
+  return nlohmann::json::parse(textOf(*text));
 }
 
 Error lacks(const char* file) {
@@ -110,7 +110,7 @@ struct ViewerFiles {
 Result<ViewerFiles> viewerFilesOf(const fs::path& site) {
   const Result<Bytes> text = readWhole(site / kViewerFiles);
   if (!text) return std::unexpected(lacks(kViewerFiles));
-  const nlohmann::json files = nlohmann::json::parse(*text, nullptr, false);
+  const nlohmann::json files = nlohmann::json::parse(textOf(*text), nullptr, false);
   const auto has = [&](const char* key) { return files.is_object() && files.contains(key); };
   if (!has("policy") || !files["policy"].is_string() || !has("page") || !files["page"].is_object())
     return std::unexpected(isOfAnotherVersion());

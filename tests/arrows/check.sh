@@ -149,6 +149,7 @@ declare -A below=(
   [webgl/gl]=''
   [webgl]='core(/.*)?|webgl/gl'
   [three]='core(/.*)?|webgl'
+  [tool]=''
   [viewer/settings]='core(/.*)?|webgl'
   [viewer/page]='core(/.*)?|webgl|viewer/settings'
   [viewer/panels]='core(/.*)?|webgl|viewer/(settings|page)'

@@ -103,7 +103,7 @@ class Region {
     if (std::pair(cells, points) == read_) return {};
     const bool isMoved = cells == read_.first;
     const std::size_t before = mesh_.points.size();
-    read_ = {};
+    read_ = decltype(read_)();
     if (!isMoved) mesh_ = {};
     if (Status done = readFoamPoints(points, options.patience, mesh_); !done) return done;
     if (isMoved && mesh_.points.size() != before)

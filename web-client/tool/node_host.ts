@@ -1,0 +1,85 @@
+// Node's files and streams for the tool. Windows' names have the form /C/folder/file there.
+
+import fs from 'node:fs';
+import os from 'node:os';
+import tty from 'node:tty';
+import type {HostFiles, Streams} from './wasi';
+import type {Host} from './run_tool';
+
+/** A pipe that has nothing yet, or has no room, is asked again after so many ms. */
+const kPauseMs = 5;
+
+/** `C:\a\b` as the tool names it. Others keep their slashes. */
+export function toolName(name: string, windows = isWindows): string {
+  if (!windows) return name;
+  const drive = /^([A-Za-z]):[\\/]/.exec(name);
+  const slashes = name.replaceAll('\\', '/');
+  return drive ? `/${drive[1]!.toUpperCase()}${slashes.slice(2)}` : slashes;
+}
+
+/** The host's name of a file that the tool names. */
+export function hostName(name: string, windows = isWindows): string {
+  const drive = windows ? /^\/([A-Za-z])(\/.*)?$/s.exec(name) : null;
+  return drive ? `${drive[1]}:${(drive[2] ?? '/').replaceAll('/', '\\')}` : name;
+}
+
+/** A word of the command line: a name, or an option with one. */
+export function toolWord(word: string, windows = isWindows): string {
+  const option = /^(--[a-z0-9-]+=)(.*)$/s.exec(word);
+  return option ? option[1]! + toolName(option[2]!, windows) : toolName(word, windows);
+}
+
+const isWindows = process.platform === 'win32';
+
+const files: HostFiles<number> = {
+  open: (name, flags) => fs.openSync(hostName(name), flags),
+  close: (file) => fs.closeSync(file),
+  read: (file, bytes, at) => fs.readSync(file, bytes, 0, bytes.length, at),
+  write: (file, bytes, at) => fs.writeSync(file, bytes, 0, bytes.length, at),
+  sync: (file) => fs.fsyncSync(file),
+  statusOf: (file) => fs.fstatSync(file),
+  status: (name, followLink) => (followLink ? fs.statSync : fs.lstatSync)(hostName(name)),
+  names: (folder) => fs.readdirSync(hostName(folder)),
+  makeFolder: (name) => fs.mkdirSync(hostName(name)),
+  removeFolder: (name) => fs.rmdirSync(hostName(name)),
+  remove: (name) => fs.unlinkSync(hostName(name)),
+  rename: (from, to) => fs.renameSync(hostName(from), hostName(to)),
+  link: (from, to) => fs.linkSync(hostName(from), hostName(to)),
+  readLink: (name) => toolName(fs.readlinkSync(hostName(name))),
+  constants: fs.constants,
+};
+
+/** Waits where a pipe that does not block has to be asked again. */
+function patiently<T>(act: () => T): T {
+  for (;;) {
+    try {
+      return act();
+    } catch (error) {
+      if ((error as NodeJS.ErrnoException).code !== 'EAGAIN') throw error;
+      Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0, kPauseMs);
+    }
+  }
+}
+
+const streams: Streams = {
+  read(bytes) {
+    try {
+      return patiently(() => fs.readSync(0, bytes));
+    } catch (error) {
+      if ((error as NodeJS.ErrnoException).code === 'EOF') return 0; // Windows
+      throw error;
+    }
+  },
+  write(stream, bytes) {
+    for (let at = 0; at < bytes.length;)
+      at += patiently(() => fs.writeSync(stream, bytes, at, bytes.length - at));
+  },
+  isTerminal: (stream) => tty.isatty(stream),
+};
+
+/** This process as the tool sees it, and what `more` says beside. */
+export function nodeHost(more: Readonly<Record<string, string>>): Host<number> {
+  const names = {PWD: toolName(process.cwd()), TMPDIR: toolName(os.tmpdir())};
+  const environment = {...(process.env as Record<string, string>), ...names, ...more};
+  return {files, streams, environment};
+}
