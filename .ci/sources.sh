@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Unpacks the sources of Debian packages below build/sources, with Debian's patches: libraries that
 # the browser needs as WebAssembly and that Debian builds for processors alone. METIS is
-# linked statically elsewhere, too: Debian's library is shared alone. apt checks their signatures;
-# its own lists and configuration stay as they are.
+# linked statically elsewhere, too: Debian's library is shared alone.
 #   .ci/sources.sh        does nothing for what is there already
 # Where they cannot be had, a build does without. Continuous integration (CI=true) fails instead:
 # the tests of the browser's simplifier would skip.
@@ -29,22 +28,11 @@ without() {
 }
 command -v dpkg-source >/dev/null || without "there is no dpkg-source"
 printf 'setup: fetching the sources of %s\n' "${missing[*]}"
-rm -rf $folder/apt
-mkdir -p $folder/apt/lists/partial
+source .ci/own_apt.sh
 trap 'rm -rf $folder/apt' EXIT
-# From the mirror that this machine's packages come from.
-suite=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
-mirror=$(apt-get indextargets --format '$(SITE) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
-  awk -v suite="$suite" '($2 == suite || $2 ~ /^(stable|oldstable)$/) && $3 == "main" && !found++')
-[[ -n $mirror ]] || without "apt knows no mirror of Debian ($suite)"
-echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror" \
-  >$folder/apt/sources.list
-of=(-o "Dir::Etc::SourceList=$PWD/$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null
-  -o "Dir::State::Lists=$PWD/$folder/apt/lists" -o Dir::Cache::srcpkgcache= -o Dir::Cache::pkgcache=
-  -o APT::Sandbox::User=root)
 fetch() {
-  apt-get -qq "${of[@]}" update && cd $folder/apt &&
-    apt-get -qq "${of[@]}" source "${missing[@]}" >/dev/null
+  own_apt_begin $folder/apt deb-src && own_apt update && cd $folder/apt &&
+    own_apt source "${missing[@]}" >/dev/null
 }
 (fetch) || without "Debian's sources cannot be fetched (the reason stands above)"
 for name in "${missing[@]}"; do
