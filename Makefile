@@ -21,8 +21,8 @@ SHELL := /bin/bash
 .ONESHELL:
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help setup packages build build-checked demo demo-port demo-log test test-units
-.PHONY: test-system check
+.PHONY: help setup packages build build-aarch64 build-checked demo demo-port demo-log test
+.PHONY: test-units test-system check
 .PHONY: soak format format-check lint house tidy sanitize fuzz fresh bench results sizes rate deb
 .PHONY: test-deb same-bytes guard bench-server wheel release gallery clean
 .DEFAULT_GOAL := help
@@ -51,7 +51,8 @@ help:
 	                           materials and checksums: build/release/dist
 	make gallery               the samples and links to each feature, for any web server:
 	                           build/release/gallery
-	make wheel                 the Python package: build/release/wheels/*.whl
+	make wheel                 the Python package: build/release/wheels/*.whl; ARCH=aarch64 compiles
+	                           it for that processor with g++-aarch64-linux-gnu
 	make test-deb              install, use and remove them in a Debian of their own (needs root)
 	make build                 build only: build/release/bin/qtet and qtet-server
 	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root), and
@@ -132,7 +133,7 @@ define configure
 cache=build/$(1)/CMakeCache.txt
 if ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$$(pwd -P)" "$$cache" ||
   [[ ! -f build/$(1)/build.ninja || CMakePresets.json -nt build/$(1)/build.ninja ]] ||
-  { [[ $(2) != demo ]] && grep -qx 'QTET_TESTS:[A-Z]*=OFF' "$$cache"; }; then
+  { [[ $(2) == release ]] && grep -qx 'QTET_TESTS:[A-Z]*=OFF' "$$cache"; }; then
   # Fresh, since CMake forgets a preset's variables where its compiler has changed.
   cmake --preset $(2) --fresh
 fi
@@ -140,6 +141,16 @@ endef
 build:
 	@$(call configure,release,$(PRESET))
 	cmake --build --preset release --parallel $(JOBS) $(TARGETS)
+
+# The Python package's library for another processor.
+build-aarch64:
+	@command -v aarch64-linux-gnu-g++ >/dev/null || {
+	  echo "aarch64: there is no aarch64-linux-gnu-g++; install g++-aarch64-linux-gnu" >&2
+	  exit 1
+	}
+	.packaging/aarch64_root.sh
+	$(call configure,aarch64,aarch64)
+	cmake --build --preset aarch64 --parallel $(JOBS)
 
 # The unit tests and the fuzzers, with assertions and sanitizers.
 build-checked:
@@ -367,8 +378,9 @@ COMMAND ?=
 fresh:
 	@.ci/fresh.sh $(SUITE) $(COMMAND)
 
+ARCH :=
 wheel: setup
-	@python3 .packaging/python_backend.py build/release/wheels
+	@python3 .packaging/python_backend.py $(BUILD)/wheels $(ARCH)
 
 DEB_TARGETS := qtet qtet-server qtet_shared qtet_viewer qtet_manners qtet_packaging
 release: TARGETS := --target $(DEB_TARGETS) qtet_package_library

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Unpacks the sources of Debian packages below build/sources, with Debian's patches: libraries that
 # WebAssembly is made of and that Debian builds for processors alone. METIS is linked statically
-# elsewhere, too: Debian's library is shared alone. apt checks their signatures; its own lists and
-# configuration stay as they are.
+# elsewhere, too: Debian's library is shared alone.
 #   .ci/sources.sh        does nothing for what is there already
 # Where they cannot be had, a build does without. Continuous integration (CI=true) fails instead:
 # the tests of the simplifier as WebAssembly would skip.
@@ -30,31 +29,20 @@ without() {
 }
 command -v dpkg-source >/dev/null || without "there is no dpkg-source"
 printf 'setup: fetching the sources of %s\n' "${missing[*]}"
-rm -rf $folder/apt
-mkdir -p $folder/apt/lists/partial
+source .ci/own_apt.sh
 trap 'rm -rf $folder/apt' EXIT
-# From the mirror that this machine's packages come from.
-suite=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
-mirror=$(apt-get indextargets --format '$(SITE) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
-  awk -v suite="$suite" '($2 == suite || $2 ~ /^(stable|oldstable)$/) && $3 == "main" && !found++')
-[[ -n $mirror ]] || without "apt knows no mirror of Debian ($suite)"
-echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror" \
-  >$folder/apt/sources.list
-of=(-o "Dir::Etc::SourceList=$PWD/$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null
-  -o "Dir::State::Lists=$PWD/$folder/apt/lists" -o Dir::Cache::srcpkgcache= -o Dir::Cache::pkgcache=
-  -o APT::Sandbox::User=root)
 # The name of Boost's package has its version, 1.74 in Debian 12.
 boost=$(dpkg-query -W -f '${Depends}' libboost-program-options-dev |
   sed -n 's/.*libboost-program-options\([0-9.]*\)-dev.*/\1/p')
 fetch() {
-  apt-get -qq "${of[@]}" update && cd $folder/apt || return
+  own_apt_begin $folder/apt deb-src && own_apt update && cd $folder/apt || return
   for name in "${missing[@]}"; do
     if [[ $name != boost ]]; then
-      apt-get -qq "${of[@]}" source "$name" >/dev/null || return
+      own_apt source "$name" >/dev/null || return
       continue
     fi
     # All of Boost would be 600 MB: one of its libraries has to be compiled.
-    apt-get -qq "${of[@]}" source --download-only "boost$boost" >/dev/null &&
+    own_apt source --download-only "boost$boost" >/dev/null &&
       mkdir "boost-$boost" && tar -xf "boost$boost"_*.orig.tar.* -C "boost-$boost" \
       --strip-components=1 --wildcards '*/libs/program_options/src/*' || return
   done

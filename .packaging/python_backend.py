@@ -1,8 +1,10 @@
 """Builds the wheel (PEP 517) of what CMake made: the package's library, the viewer and the modules.
 
-The wheel fits every Python 3.9 and later on this processor. The modules reach the library by
-ctypes.
-The same sources and build machine give the same bytes."""
+The wheel fits every Python 3.9 and later on one processor: this one, or aarch64, for which Debian's
+cross compiler makes the library. The modules reach the library by ctypes.
+The same sources and build machine give the same bytes.
+
+   python_backend.py FOLDER [aarch64]"""
 import base64
 import gzip
 import hashlib
@@ -20,7 +22,11 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/release"
-LIBRARY = BUILD / "package/qtet/libqtet.so"
+LIBRARY = "package/qtet/libqtet.so"
+# Builds for another processor have its Debian packages in root/.
+AARCH64 = ROOT / "build/aarch64"
+# Processors as readelf calls them, and as tags of wheels do. Others build for themselves alone.
+_PROCESSORS = {"AArch64": "aarch64", "Advanced Micro Devices X86-64": "x86_64"}
 NAME = "qtet"
 # Members carry one date: that of the last change, or this one, the earliest that a zip can hold.
 _EARLIEST = 315532800
@@ -65,35 +71,35 @@ Description-Content-Type: text/markdown
 """ + (ROOT / "codec/python/PYTHON.md").read_text()
 
 
-def _tag():
-    """Names the oldest glibc that has what the library needs (PEP 600)."""
-    told = subprocess.run(
-        ["readelf", "-VW", LIBRARY], capture_output=True, text=True, check=True
-    ).stdout
+def tag(told):
+    """Names the processor, and the oldest glibc that has what the library needs (PEP 600). `told`
+    is what readelf -hVW says of it."""
+    machine = re.search(r"^ *Machine: +(.+?) *$", told, re.M).group(1)
     needed = max(map(int, re.findall(r"GLIBC_2\.(\d+)", told)))
-    return f"py3-none-manylinux_2_{needed}_{platform.machine()}"
+    return f"py3-none-manylinux_2_{needed}_{_PROCESSORS.get(machine, platform.machine())}"
 
 
-def _notices():
-    """The licences of what the library holds, as the build machine's packages state them."""
+def _notices(root):
+    """The licences of what the library holds, as Debian's packages below `root` state them."""
+    # Cross compilers have the version of Debian's own.
     compiler = subprocess.run(["g++", "-dumpversion"], capture_output=True, text=True, check=True)
     parts = []
     for package in [*LINKED, f"libstdc++-{compiler.stdout.strip().split('.')[0]}-dev"]:
-        path = pathlib.Path("/usr/share/doc") / package / "copyright"
+        path = root / "usr/share/doc" / package / "copyright"
         if not path.is_file():
             raise SystemExit(f"{path} is missing; a wheel is made on Debian, after make setup")
         parts.append(f"==== {package}\n\n{path.read_text(errors='replace')}")
     return "\n".join(parts)
 
 
-def _members():
+def _members(library, tag, notices):
     """(name in the wheel, bytes, whether it may be executed), without the record."""
     viewer = BUILD / "share/qtet/viewer"
-    for needed in (LIBRARY, viewer / "index.html"):
+    for needed in (library, viewer / "index.html"):
         if not needed.is_file():
             raise SystemExit(f"{needed} is missing; run make wheel")
     without = json.loads((viewer / "viewer.json").read_text())["simplifier"]
-    members = [(f"{NAME}/libqtet.so", LIBRARY.read_bytes(), True)]
+    members = [(f"{NAME}/libqtet.so", library.read_bytes(), True)]
     for path in sorted((ROOT / "codec/python/qtet").iterdir()):
         if path.suffix == ".py" or path.name == "py.typed":
             members.append((f"{NAME}/{path.name}", path.read_bytes(), False))
@@ -107,14 +113,14 @@ def _members():
     info = f"{NAME}-{version()}.dist-info"
     wheel = (
         f"Wheel-Version: 1.0\nGenerator: qtet {version()}\nRoot-Is-Purelib: false\n"
-        f"Tag: {_tag()}\n"
+        f"Tag: {tag}\n"
     )
     for name, text in (
         ("METADATA", _metadata()),
         ("WHEEL", wheel),
         ("entry_points.txt", "[console_scripts]\nqtet = qtet.__main__:main\n"),
         ("licenses/LICENSE", (ROOT / "LICENSE").read_text()),
-        ("licenses/third-party.txt", _notices()),
+        ("licenses/third-party.txt", notices),
     ):
         members.append((f"{info}/{name}", text.encode(), False))
     return members, f"{info}/RECORD"
@@ -128,17 +134,29 @@ def _record(members, own):
     return "\n".join([*lines, f"{own},,", ""]).encode()
 
 
+def _make(*words):
+    subprocess.run(["make", "-C", ROOT, *words], check=True, stdout=sys.stderr)
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    """Writes the wheel and returns its name."""
-    targets = ["qtet_package_library", "qtet_viewer"]
-    subprocess.run(
-        ["make", "-C", ROOT, "build", f"TARGETS=--target {' '.join(targets)}"],
-        check=True,
-        stdout=sys.stderr,
-    )
-    members, own = _members()
+    """Writes the wheel for this processor and returns its name."""
+    _make("build", "TARGETS=--target qtet_package_library qtet_viewer")
+    return _write_wheel(wheel_directory, BUILD / LIBRARY, pathlib.Path("/"))
+
+
+def build_aarch64_wheel(wheel_directory):
+    """The same for aarch64. The modules and the viewer fit every processor."""
+    _make("build", "TARGETS=--target qtet_viewer")
+    _make("build-aarch64")
+    return _write_wheel(wheel_directory, AARCH64 / LIBRARY, AARCH64 / "root")
+
+
+def _write_wheel(wheel_directory, library, root):
+    done = subprocess.run(["readelf", "-hVW", library], capture_output=True, text=True, check=True)
+    its_tag = tag(done.stdout)
+    members, own = _members(library, its_tag, _notices(root))
     members.append((own, _record(members, own), False))
-    name = f"{NAME}-{version()}-{_tag()}.whl"
+    name = f"{NAME}-{version()}-{its_tag}.whl"
     day = time.gmtime(date())[:6]
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as wheel:
@@ -180,5 +198,9 @@ def build_sdist(sdist_directory, config_settings=None):
 
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1])
-    path = folder / build_wheel(folder)
+    processor = sys.argv[2] if len(sys.argv) > 2 else platform.machine()
+    builds = {"aarch64": build_aarch64_wheel, platform.machine(): build_wheel}
+    if processor not in builds:
+        raise SystemExit(f"no wheel for {processor}; {' and '.join(builds)} can be made here")
+    path = folder / builds[processor](folder)
     print(f"{path}: {path.stat().st_size} bytes")

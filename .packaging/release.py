@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import pathlib
+import platform
 import shutil
 import subprocess
 import sys
@@ -27,6 +28,17 @@ IN_BROWSER = ["libc++-19-dev-wasm32", "wasi-libc", "libfast-float-dev", "libboos
 
 def run(*words, cwd=ROOT):
     subprocess.run([str(word) for word in words], check=True, cwd=cwd, stdout=sys.stderr)
+
+
+def wheels(folder):
+    """For this processor, and for aarch64 where Debian's compiler for it is installed."""
+    backend.build_wheel(folder)
+    if platform.machine() == "aarch64":
+        return
+    if shutil.which("aarch64-linux-gnu-g++"):
+        backend.build_aarch64_wheel(folder)
+    else:
+        print("release: no wheel for aarch64; install g++-aarch64-linux-gnu", file=sys.stderr)
 
 
 def _client():
@@ -139,7 +151,7 @@ def main():
     folder.mkdir(parents=True)
     os.environ["SOURCE_DATE_EPOCH"] = str(backend.date())
     check_viewer()
-    backend.build_wheel(folder)
+    wheels(folder)
     backend.build_sdist(folder)
     npm_package(folder)
     debian_packages(folder)

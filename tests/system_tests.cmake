@@ -92,6 +92,10 @@ if(QTET_VTK_PYTHON AND NOT QTET_SANITIZE)
     ${here}/codec/python/types_test.py ${modules} ${out}/python_types)
   qtet_system_test(wheel ROOM codec COMMAND ${here}/codec/python/wheel_test.sh ${QTET_VTK_PYTHON}
     ${CMAKE_BINARY_DIR}/bin ${out}/wheel)
+  qtet_system_test(wheel_tag ROOM codec COMMAND ${QTET_VTK_PYTHON}
+    ${here}/codec/python/wheel_tag_test.py)
+  qtet_system_test(wheel_aarch64 ROOM codec COMMAND ${here}/codec/python/wheel_aarch64_test.sh
+    ${QTET_VTK_PYTHON} ${CMAKE_BINARY_DIR} ${out}/wheel_aarch64)
   qtet_system_test(paraview ROOM codec COMMAND ${here}/codec/python/paraview.sh ${library} ${out})
   qtet_system_test(paraview_plugin ROOM codec COMMAND ${QTET_VTK_PYTHON}
     ${here}/codec/python/paraview_plugin_test.py ${library} ${valid} ${out}/paraview_plugin)

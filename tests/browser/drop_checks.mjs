@@ -155,7 +155,11 @@ async function givesUpADroppedMesh(context) {
   for (const [name, bytes, sentence] of [
     ['cut.vtu', mesh.subarray(0, mesh.length / 2), /^cut\.vtu ends without/],
     ['plain.txt', Buffer.from('no mesh at all'), /^plain\.txt: qtet reads this format neither/],
-    ['wing.cgns', Buffer.from('\x89HDF and more'), /neither in browsers nor in node.*qtet simplify/s],
+    [
+      'wing.cgns',
+      Buffer.from('\x89HDF and more'),
+      /neither in browsers nor in node.*qtet simplify/s,
+    ],
     ['empty.vtu', Buffer.alloc(0), /^empty\.vtu is empty/],
   ]) {
     await drop(viewer, [name, bytes]);

@@ -19,7 +19,7 @@ OPTIONAL = {
     "pvbatch": "called inside the Debian of make test-deb",
     "pvpython": "ParaView excludes libvtk9-dev on Debian 12",
     "systemd-analyze": "called inside the Debian of make test-deb",
-    "aarch64-linux-gnu-g++": "compiles for another processor in make same-bytes",
+    "aarch64-linux-gnu-g++": "compiles for another processor: make same-bytes, make wheel",
     "qemu-aarch64": "runs that",
     "docker": "stands in comments' examples",
     "sudo": "for users who are not root; root needs none",
