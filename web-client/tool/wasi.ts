@@ -81,7 +81,7 @@ const kErrors: Readonly<Record<string, number>> = {
 };
 const kBadFile = kErrors.EBADF!;
 const kFileType = {other: 0, character: 2, folder: 3, file: 4, link: 7};
-/** Of the modes of POSIX. */
+/** POSIX puts the kind of a file into its mode. */
 const kModeType = 0o170000;
 const kModeTypes = new Map([
   [0o020000, kFileType.character],
@@ -103,7 +103,7 @@ const kDirentBytes = 24;
 /** `crypto` gives no more at once. */
 const kMostChance = 65536;
 
-/** What a descriptor stands for. */
+/** A descriptor stands for one of these. */
 type Opened<Handle> =
   | {kind: 'stream'; stream: number}
   | {kind: 'folder'; name: string; entries?: string[]}
