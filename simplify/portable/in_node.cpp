@@ -18,7 +18,7 @@
 namespace qtet {
 namespace {
 
-/// What the host says by its environment; empty without it.
+/// A variable of the environment, by which the host speaks; empty without it.
 std::string told(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;

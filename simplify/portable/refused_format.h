@@ -1,4 +1,4 @@
-// What a program as WebAssembly says of a file that a reader which it lacks would have read.
+// The refusal of a file whose reader a program as WebAssembly lacks.
 #pragma once
 
 #include <filesystem>

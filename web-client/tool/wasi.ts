@@ -2,7 +2,7 @@
 // functions of WASI that qtet-tool.wasm imports.
 // https://github.com/WebAssembly/WASI/blob/main/legacy/preview1/docs.md
 
-/** Of an open file, or of a name. */
+/** An open file, or a name, has these. */
 export interface Status {
   dev: number;
   ino: number;
@@ -13,7 +13,7 @@ export interface Status {
 }
 
 /**
- * What node's `fs` and Emscripten's file system have in common. Names begin with `/`. Each function
+ * These are in node's `fs` and in Emscripten's file system. Names begin with `/`. Each function
  * throws an error whose `code` is POSIX's name, or whose `errno` is WASI's number.
  */
 export interface HostFiles<Handle> {

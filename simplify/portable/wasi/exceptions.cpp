@@ -12,7 +12,7 @@
 
 namespace {
 
-/// What stands before a thrown object.
+/// It stands before a thrown object.
 struct alignas(16) Thrown {
   const std::type_info* type;
   void* (*destroy)(void*);

@@ -1,4 +1,4 @@
-// What a process used, as far as a module knows.
+// The time and memory that a process used, as far as a module knows.
 #pragma once
 
 #include <sys/time.h>
