@@ -140,9 +140,9 @@ async function switchesFieldsAndMaps({server, browser, logs}) {
     'Density',
     'Pressure',
     'Velocity',
-    'Velocity[0]',
-    'Velocity[1]',
-    'Velocity[2]',
+    'Velocity.x',
+    'Velocity.y',
+    'Velocity.z',
   ]);
   const expectChange = async (name, what) => {
     await viewer.settle();
@@ -153,7 +153,7 @@ async function switchesFieldsAndMaps({server, browser, logs}) {
     );
     before = now;
   };
-  await fields.selectOption('Velocity[2]');
+  await fields.selectOption('Velocity.z');
   await viewer.waitForState('complete');
   await viewer.page.getByRole('radio', {name: 'Cool-warm'}).check({force: true});
   await expectChange('field-last', 'another field');

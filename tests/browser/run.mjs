@@ -11,6 +11,7 @@ import {axesChecks} from './axes_checks.mjs';
 import {baselineChecks} from './baseline_checks.mjs';
 import {checks} from './checks.mjs';
 import {colorChecks} from './color_checks.mjs';
+import {derivedChecks} from './derived_checks.mjs';
 import {dropChecks} from './drop_checks.mjs';
 import {edgeChecks} from './edge_checks.mjs';
 import {elementChecks} from './element_checks.mjs';
@@ -60,7 +61,7 @@ const lists = {
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
   edge: {...edgeChecks, ...warpChecks, ...axesChecks, ...groundChecks, ...pinChecks},
-  legend: {...legendChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
+  legend: {...legendChecks, ...derivedChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,

@@ -1,4 +1,4 @@
-// A new layer costs a file of its own, here toy_layer.ts, and a line in each of two lists.
+// A new layer costs a file of its own, here toy_layer.ts, and a line in each of three lists.
 
 import {readdirSync, readFileSync} from 'node:fs';
 import {expect, test, vi} from 'vitest';
@@ -21,13 +21,19 @@ vi.mock('../core/layers/layers', async (original) => {
   const {kLayers: shipped} = await original<{kLayers: object[]}>();
   const {toy: added} = await import('./toy_layer');
   const all = [...shipped, added]; // the line
-  return {kLayers: all, fieldLayers: () => all.filter((layer) => 'control' in layer)};
+  return {kLayers: all, fieldLayers: () => all.filter((layer) => 'pointsOnly' in layer)};
 });
 
 vi.mock('../core/layers/layer_work', async (original) => {
   const {kLayerWork: shipped} = await original<{kLayerWork: object[]}>();
   const {toyWork} = await import('./toy_layer');
   return {kLayerWork: [...shipped, toyWork]}; // the other line
+});
+
+vi.mock('../viewer/panels/value_controls', async (original) => {
+  const {kValueControls: shipped} = await original<{kValueControls: object}>();
+  const {toyControl} = await import('./toy_layer');
+  return {kValueControls: {...shipped, toy: toyControl}}; // and its controls
 });
 
 const kFields: FieldInfo[] = [

@@ -172,7 +172,7 @@ describe('instants', () => {
     expect(parseScalar('T', fields)?.field).toBe(0);
     for (const [text, shown] of [
       ['T@0', 2],
-      ['T@2[1]', 4],
+      ['T@2.y', 4],
       ['cell:S', 6],
       ['S', 8],
     ] as const) {

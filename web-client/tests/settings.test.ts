@@ -10,7 +10,8 @@ import {
   scalarText,
   sharesOf,
 } from '../core/layers/field_values';
-import {clip, clipText, parseClip} from '../core/layers/clip';
+import {clip, parseClip} from '../core/layers/clip';
+import {clipText} from '../core/layers/clip_text';
 import {firstOpacities} from '../core/layers/volume';
 import {markSeries} from '../core/protocol/series';
 import type {Manifest} from '../core/protocol/manifest';
@@ -57,14 +58,16 @@ describe('fields', () => {
   test.each<[string, number, number]>([
     ['p', 0, kMagnitude],
     ['U', 1, kMagnitude],
-    ['U[2]', 1, 2],
+    ['U.z', 1, 2],
     ['cell:p', 2, kMagnitude],
     ['odd[1]', 3, kMagnitude],
   ])('%s isReadAndWritten', (text, index, component) => {
     expect(parseScalar(text, fields)).toEqual({field: index, component});
     expect(scalarText({field: index, component}, fields)).toBe(text);
   });
-  test.each(['q', 'q[0]', ''])('%s isUnknown', (text) =>
+  test('aComponentHasItsNumberToo', () =>
+    expect(parseScalar('U[2]', fields)).toEqual({field: 1, component: 2}));
+  test.each(['q', 'q[0]', 'U.xx', ''])('%s isUnknown', (text) =>
     expect(parseScalar(text, fields)).toBeNull(),
   );
   test('aComponentThatIsNotThereIsTheMagnitude', () =>
@@ -72,7 +75,7 @@ describe('fields', () => {
   test('withValuesAreReadWrittenAndScaled', () => {
     const values = parseFieldValues('U[0]=5, -10', fields)!;
     expect(values).toEqual({scalar: {field: 1, component: 0}, values: [5, -10]});
-    expect(fieldValuesText(values, fields)).toBe('U[0]=5,-10');
+    expect(fieldValuesText(values, fields)).toBe('U.x=5,-10');
     expect(sharesOf(values, fields)).toEqual([0.75, 0]);
     expect([
       parseFieldValues('p', fields),

@@ -1,28 +1,27 @@
 // A layer that nobody ships: a triangle at the first value.
 
 import {fieldLayer} from '../core/layers/field_layer';
-import type {Control, FieldLayer, LayerWork} from '../core/layers/layer';
+import type {FieldLayer, LayerWork} from '../core/layers/layer';
 import type {Display, MeshArrays} from '../core/picture/display';
 import type {TriangleSoup} from '../core/picture/triangle_soup';
+import type {Control} from '../viewer/panels/value_controls';
 
-const control: Control = {
+export const toyControl: Control = {
   title: 'Toy',
   fieldLabel: 'Field of the toy',
   sliders: ['Place of the toy'],
   valuesLabel: 'Place',
-  pointsOnly: true,
   firstShares: [0.5],
   areRight: (values) => values.length === 1,
   expected: 'One number',
 };
 
-const common = fieldLayer('toy', control, 1);
+const common = fieldLayer('toy', {pointsOnly: true, count: 1});
 
 export const toy = {
   ...common,
   name: 'toy',
   expected: 'a field, "=" and a number',
-  control,
   draw: {edges: true},
 } as const satisfies FieldLayer;
 

@@ -100,11 +100,11 @@ test('theMeshRestsUntilTheFieldIsHereAndAtScale0', () => {
   codec.values.fill(kZero + 2);
   const manifest = {fields: [vectors('u')], lattice: {step: 0.1}};
   const assembler = {codec, manifest} as unknown as Assembler;
-  const x = (scale: number): number => meshArrays(assembler, {field: 0, scale})!.points[0]!;
+  const x = (scale: number): number => meshArrays(assembler, {warp: {field: 0, scale}})!.points[0]!;
   expect(x(3)).toBe(0);
   codec.applyField(0, 0);
   expect([x(3), x(0), x(-3), meshArrays(assembler)!.points[0]]).toEqual([30, 0, -30, 0]);
-  expect(meshArrays(assembler, {field: 0, scale: 3})!.points).not.toBe(points);
+  expect(meshArrays(assembler, {warp: {field: 0, scale: 3}})!.points).not.toBe(points);
 });
 
 test('aDisplayNeedsTheFieldThatMovesItsMesh', () => {

@@ -116,7 +116,7 @@ test('aComponentThatIsNotThereIsNamedWithThoseThatAre', () => {
   expect(said({iso: 'U[3]=1'})).toContain('iso="U[3]=1" names a component that U does not have.');
   for (const right of ['Stress', 'Stress[0]', 'Stress[5]', 'U[2]', 'p'])
     expect(said({field: right})).toBe('');
-  expect(scalarName({field: 0, component: 5}, fields)).toBe('Stress[5]');
+  expect(scalarName({field: 0, component: 5}, fields)).toBe('Stress, xz');
   expect(parseScalar('p[0]', fields)).toEqual({field: 2, component: -1});
 });
 

@@ -167,9 +167,14 @@ export class Later {
   /** Says which attributes the picture does not follow, and why. */
   private tellWrongParts(): void {
     const {host, page} = this;
-    const {manifest} = host.mesh;
+    const {derived, isDeriving, manifest} = host.mesh;
+    if (isDeriving) return;
     const read = page.read.bind(page);
-    const sentences = [...unknownNames(page.unknown), ...wrongParts(read)];
+    const sentences = [
+      ...unknownNames(page.unknown),
+      ...wrongParts(read),
+      ...(derived?.errors ?? []),
+    ];
     if (manifest) sentences.push(...unfittingParts(read, manifest));
     const text = sentences.join('\n');
     if (text === this.wrong) return;

@@ -5,7 +5,8 @@
 //                of an index.json by `qtet publish`, or of a list of segments, on any web server.
 //   transport    auto (default), websocket, range or chunks: how a server's logs come.
 //   mesh         id of the mesh; without it the viewer offers a menu and starts with the first.
-//   field        name of the field, "NAME[0]" for a component; by default the log's choice.
+//   derived      fields that are computed of others: "Cp = (p - 101325) / 540; dT = T@2 - T@1".
+//   field        name of the field, "NAME.x" for a component; by default the log's choice.
 //   field-title  its title in the legend, plots and pictures; by default its name and unit.
 //   time         of a series: the instant nearest to it is shown; by default the log's choice.
 //   time-range   "FROM,TO": the times that playing begins and ends at.

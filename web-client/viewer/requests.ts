@@ -53,9 +53,11 @@ export function displayOf(
     volume: settings.volume !== null,
     ...(ahead.length > 0 && {ahead}),
   };
+  const used = [color?.field];
   for (const layer of fieldLayers()) {
     const request = layer.read(read(layer.name), fields);
     layer.put(display, request && {...request, values: sharesOf(request, fields)});
+    used.push(request?.scalar.field);
   }
-  return display;
+  return {...display, ...mesh.derived?.shown(used)};
 }

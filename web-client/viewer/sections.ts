@@ -9,6 +9,7 @@ import {histogramPanel} from './panels/histogram_panel';
 import {kToolMarkup} from './panels/inspect';
 import {levelPanel} from './panels/level_panel';
 import type {PanelKind} from './panels/panel';
+import {ownFieldsPanel} from './panels/own_fields_panel';
 import {pinsPanel} from './panels/pins';
 import {statisticsPanel} from './panels/statistics_panel';
 import {surfacePanel} from './panels/surface_panel';
@@ -27,6 +28,7 @@ interface Section {
 
 const kSections: readonly Section[] = [
   {name: 'colours', title: 'Field and colours', panels: [colorPanel, histogramPanel, stepsPanel]},
+  {name: 'own-fields', title: 'Own fields', isFolded: true, panels: [ownFieldsPanel]},
   {name: 'surface', title: 'Surface', panels: [surfacePanel]},
   {name: 'deform', title: 'Deform', panels: [warpPanel]},
   {

@@ -163,7 +163,7 @@ export class ShownPicture {
     const {controls, meshes, settings: shown} = this.host;
     const {coming: mesh, next} = meshes;
     // A picture without its planes would show what the address hides.
-    if (!mesh.manifest || mesh.base.bounds.length === 0) return;
+    if (!mesh.manifest || mesh.base.bounds.length === 0 || mesh.isDeriving) return;
     const read = this.page.read.bind(this.page);
     const settings = next ? settingsFor(next, read) : shown;
     const display = displayOf(settings, mesh, read);

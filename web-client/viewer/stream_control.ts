@@ -27,6 +27,7 @@ import {displacementKey, kNoWarp} from './settings/warp';
 
 /** Attributes that belong to one mesh: another one has other fields, places and values. */
 const kOfOneMesh = [
+  'derived',
   'field',
   'field-title',
   'range',
@@ -265,9 +266,10 @@ export class StreamControl {
     const first = listed === '' ? this.listeners.keptField() : listed;
     // a series would have to wait for the head
     const plain = keys.filter((key) => entry?.series.includes(key) !== true);
+    const defined = (page.read('derived') ?? '').split(/[;=]/).map((word) => word.trim());
     const warp = page.read('warp') ?? displacementKey(plain);
     const named = [page.read('field') ?? first, warp === kNoWarp ? null : warp, ...ofLayers]
-      .filter((text) => text !== null && text !== '')
+      .filter((text) => text !== null && text !== '' && !defined.includes(text))
       .map((text) => keyToAsk(text!, keys, time));
     return named.length > 0 ? [...new Set(named)] : null;
   }

@@ -86,6 +86,7 @@ export class Viewing implements LaterHost, PictureHost {
   apply(): void {
     const {controls, later, page} = this;
     if (!controls.shell) return;
+    this.derive();
     const before = this.settings;
     this.settings = settingsFor(this.mesh, (name) => page.read(name));
     this.stream.follow();
@@ -93,6 +94,21 @@ export class Viewing implements LaterHost, PictureHost {
     const {limit} = this.settings;
     if (!isEqual(before.limit, limit)) this.stream.setLimit(limit);
     this.shown.apply();
+  }
+
+  /** Reads the definitions of derived fields, by a part that is loaded on use. */
+  private derive(): void {
+    const mesh = this.meshes.coming;
+    const {derived, manifest, own} = mesh;
+    const text = this.page.read('derived') ?? '';
+    if (manifest && derived) return derived.read(text, mesh, this.client, () => this.apply());
+    const isTensor = ({components}: {components: number}): boolean => components === 6;
+    if (own || (text === '' && !manifest?.fields.some(isTensor))) return;
+    mesh.own = true;
+    void import('./page/own_fields').then(({OwnFields}) => {
+      mesh.own = new OwnFields();
+      this.apply();
+    });
   }
 
   get isPlaying(): boolean {

@@ -4,16 +4,23 @@ import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {FieldInfo} from '../protocol/fields';
 import {parseFieldValues, parseNumbers, type FieldValues} from './field_values';
-import type {Control, FieldLayer} from './layer';
+import type {FieldLayer} from './layer';
 
-type Common = Pick<FieldLayer, 'isRight' | 'read' | 'fieldOf' | 'put' | 'requestOf'>;
+type Common = Pick<FieldLayer, 'pointsOnly' | 'isRight' | 'read' | 'fieldOf' | 'put' | 'requestOf'>;
+
+/** `count`: so many values; absent: any. */
+interface Allowed {
+  pointsOnly: boolean;
+  count?: number;
+}
 
 /**
- * Reads "FIELD=VALUE,VALUE" as the control allows. The request is in the display's `layers`, where
+ * Reads "FIELD=VALUE,VALUE" as is allowed. The request is in the display's `layers`, where
  * a layer finds it if it has no member of its own.
  */
-export function fieldLayer(name: string, {pointsOnly}: Control, count?: number): Common {
+export function fieldLayer(name: string, {pointsOnly, count}: Allowed): Common {
   return {
+    pointsOnly,
     isRight(text: string): boolean {
       const {length} = parseNumbers(text.replace(/^.*=/s, ''));
       return text.includes('=') && (count === undefined ? length > 0 : length === count);

@@ -1,5 +1,5 @@
-// The words of attributes that name fields: "Velocity" (its magnitude), "Velocity[0]" (a
-// component, counted from 0), "Density=0.5,0.7" (values of it).
+// The words of attributes that name fields: "Velocity" (its magnitude), "Velocity.x" or
+// "Velocity[0]" (a component), "Density=0.5,0.7" (values of it).
 
 import {kMagnitude, scalarRange, type Scalar} from '../picture/field_scale';
 import {fieldKeys, type FieldInfo} from '../protocol/fields';
@@ -15,8 +15,17 @@ export function parseNumbers(text: string): number[] {
   return numbers.every(Number.isFinite) ? numbers : [];
 }
 
+/** In their order; none if the components have numbers alone. */
+export function componentNames(components: number): readonly string[] {
+  // those of symmetric tensors are in VTK's order
+  const names = components === 6 ? 'xx yy zz xy yz xz' : components <= 3 ? 'x y z' : '';
+  return (names.match(/\w+/g) ?? []).slice(0, components);
+}
+
+const kComponent = /^(.*)(?:\[(\d+)\]|\.([xyz]{1,2}))$/s;
+
 /** The field that the key means: of a series the instant that is shown; -1 for none. */
-function fieldOfKey(key: string, fields: readonly FieldInfo[]): number {
+export function fieldOfKey(key: string, fields: readonly FieldInfo[]): number {
   const called = (name: string): number => {
     const ofSeries = fieldOfSeries(fields, name);
     return ofSeries >= 0 ? ofSeries : fieldKeys(fields).indexOf(name);
@@ -38,33 +47,29 @@ export function parseScalar(text: string | null, fields: readonly FieldInfo[]): 
 }
 
 /** The field and the number behind it, whether or not the field has such a component. */
-function namedComponent(text: string, fields: readonly FieldInfo[]): Scalar | null {
-  const [, key, component] = /^(.*)\[(\d+)\]$/s.exec(text) ?? [];
+export function namedComponent(text: string, fields: readonly FieldInfo[]): Scalar | null {
+  const [, key, number, name] = kComponent.exec(text) ?? [];
   const field = key === undefined ? -1 : fieldOfKey(key, fields);
-  return field < 0 ? null : {field, component: Number(component)};
+  const names = field < 0 ? [] : componentNames(fields[field]!.components);
+  const component = name === undefined ? Number(number) : names.indexOf(name);
+  return field < 0 || component < 0 ? null : {field, component};
 }
 
 /** The only value of a field without components is called by the field's name alone. */
-const hasComponent = ({field, component}: Scalar, fields: readonly FieldInfo[]): boolean =>
+export const hasComponent = ({field, component}: Scalar, fields: readonly FieldInfo[]): boolean =>
   fields[field]!.components > 1 && component < fields[field]!.components;
-
-/** The field of which parseScalar reads the magnitude, because it has no such component. */
-export function fieldWithoutComponent(
-  text: string,
-  fields: readonly FieldInfo[],
-): FieldInfo | null {
-  const named = fieldOfKey(text, fields) < 0 ? namedComponent(text, fields) : null;
-  return named && !hasComponent(named, fields) ? fields[named.field]! : null;
-}
 
 /** The field's key without a component, to ask a server before its fields are known. */
 export function scalarKey(text: string): string {
-  return text.replace(/\[\d+\]$/, '');
+  return kComponent.exec(text)?.[1] ?? text;
 }
 
 export function scalarText(scalar: Scalar, fields: readonly FieldInfo[]): string {
   const key = fields[scalar.field]?.instant?.series ?? fieldKeys(fields)[scalar.field] ?? '';
-  return scalar.component === kMagnitude ? key : `${key}[${scalar.component}]`;
+  const {component} = scalar;
+  if (component === kMagnitude) return key;
+  const name = componentNames(fields[scalar.field]!.components)[component];
+  return name ? `${key}.${name}` : `${key}[${component}]`;
 }
 
 export interface FieldValues {

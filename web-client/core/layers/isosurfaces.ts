@@ -1,30 +1,18 @@
 // Isosurfaces: where a field of points has one of some values.
 
-import {along, valueAt, type Ray, type Stretch} from '../picture/cell_ray';
+import type {Stretch} from '../picture/cell_ray';
+import {along, valueAt, type Ray} from '../picture/cell_value';
 import {colorScale, type Display, type MeshArrays} from '../picture/display';
 import {isosurface} from '../picture/slice';
 import {joinSoups, type TriangleSoup} from '../picture/triangle_soup';
 import {fieldLayer} from './field_layer';
 import type {FieldValues} from './field_values';
-import type {Control, FieldLayer, LayerWork} from './layer';
-
-const control: Control = {
-  title: 'Isosurfaces',
-  fieldLabel: 'Field of the isosurfaces',
-  sliders: ['First isovalue'],
-  valuesLabel: 'Values',
-  pointsOnly: true,
-  firstShares: [0.5],
-  areRight: (values) => values.length > 0,
-  expected: 'Numbers with commas between them: 0.2, 0.5',
-  hiddenHint: 'The surface hides them.',
-};
+import type {FieldLayer, LayerWork} from './layer';
 
 export const isosurfaces = {
-  ...fieldLayer('iso', control),
+  ...fieldLayer('iso', {pointsOnly: true}),
   name: 'iso',
   expected: 'a field, "=" and numbers with commas between them',
-  control,
   // The polygons are sections of cells, not the mesh. Their edges would hide the shape.
   draw: {edges: false, member: 'isosurface'},
 

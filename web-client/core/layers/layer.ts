@@ -37,7 +37,10 @@ export interface LayerWork {
   seenFrom?(mesh: MeshArrays, display: Display, ray: Ray, stretch: Stretch): number;
 }
 
-/** A layer whose attribute is a field and values of it; its controls are made from `control`. */
+/**
+ * A layer whose attribute is a field and values of it. Its controls have its name in
+ * viewer/panels/value_controls.ts.
+ */
 export interface FieldLayer extends Layer {
   /** Reads the request, in the field's own values; null if the text does not fit the mesh. */
   read(text: string | null, fields: readonly FieldInfo[]): FieldValues | null;
@@ -48,7 +51,8 @@ export interface FieldLayer extends Layer {
 
   /** With the quantity that it needs. */
   requestOf(display: Display): {scalar: Scalar} | null;
-  readonly control: Control;
+  /** Only fields of points can be chosen. */
+  readonly pointsOnly: boolean;
 }
 
 export interface Drawing {
@@ -56,22 +60,4 @@ export interface Drawing {
   edges: boolean;
   /** The published name of its triangles in a snapshot; without one they are in `layers`. */
   member?: 'isosurface';
-}
-
-/** A switch, and below it a menu of fields, sliders and a line of values. */
-export interface Control {
-  title: string;
-  fieldLabel: string;
-  /** One label a slider: one slider moves the first value, two are the ends of a range. */
-  sliders: readonly [string] | readonly [string, string];
-  valuesLabel: string;
-  /** Only fields of points can be chosen. */
-  pointsOnly: boolean;
-  /** The first values, as shares of the field's range. */
-  firstShares: readonly number[];
-  areRight(values: readonly number[]): boolean;
-  /** Shown for values that are not. */
-  expected: string;
-  /** Shown while an opaque surface hides it. */
-  hiddenHint?: string;
 }

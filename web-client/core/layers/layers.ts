@@ -1,5 +1,5 @@
-// The layers, in the order of a link. A new one is a file beside this, a line here, and one in
-// layer_work.ts.
+// The layers, in the order of a link. A new one is a file beside this, a line here, one in
+// layer_work.ts, and its controls in viewer/panels/value_controls.ts.
 
 import {clip} from './clip';
 import {isosurfaces} from './isosurfaces';
@@ -20,4 +20,4 @@ export const kLayers: readonly Named<Layer>[] = kAll;
 
 /** Those whose attribute is a field and values of it. */
 export const fieldLayers = (): ListedFieldLayer[] =>
-  kLayers.flatMap((layer) => ('control' in layer ? [layer as ListedFieldLayer] : []));
+  kLayers.flatMap((layer) => ('pointsOnly' in layer ? [layer as ListedFieldLayer] : []));

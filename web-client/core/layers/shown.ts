@@ -1,5 +1,6 @@
 // The layers of a display together: the fields that they need, and what they hide and make.
 
+import {inputsIn} from '../picture/derived_field';
 import type {Display, MeshArrays} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import {noSoup, type TriangleSoup} from '../picture/triangle_soup';
@@ -15,14 +16,15 @@ export interface LayerSoups {
   layers?: Record<string, TriangleSoup>;
 }
 
-/** The fields that a display needs, each once. */
+/** The manifest's fields that a display needs, each once. */
 export function fieldsOf(display: Display): number[] {
   const scalars = [
     display.color,
     display.warp,
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];
-  return [...new Set(scalars.filter((scalar) => scalar != null).map(({field}) => field))];
+  const named = scalars.filter((scalar) => scalar != null).map(({field}) => field);
+  return [...new Set(named.flatMap((field) => inputsIn(display, field)))];
 }
 
 /** The values of the scalar at which layers draw or hide, to be marked on its legend. */

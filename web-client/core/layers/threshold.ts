@@ -4,24 +4,12 @@ import {keepWithin} from '../picture/cell_choice';
 import type {Display, MeshArrays} from '../picture/display';
 import {fieldLayer} from './field_layer';
 import type {FieldValues} from './field_values';
-import type {Control, FieldLayer, LayerWork} from './layer';
-
-const control: Control = {
-  title: 'Threshold',
-  fieldLabel: 'Field of the threshold',
-  sliders: ['Least value', 'Largest value'],
-  valuesLabel: 'From, to',
-  pointsOnly: false,
-  firstShares: [0.25, 1],
-  areRight: (values) => values.length === 2 && values[0]! <= values[1]!,
-  expected: 'Two numbers, the smaller first: 0.2, 0.5',
-};
+import type {FieldLayer, LayerWork} from './layer';
 
 export const threshold = {
-  ...fieldLayer('threshold', control, 2),
+  ...fieldLayer('threshold', {pointsOnly: false, count: 2}),
   name: 'threshold',
   expected: 'a field, "=" and two numbers: Density=1,2',
-  control,
 
   put(display: Display, request: FieldValues | null): void {
     const [low, high] = request?.values ?? [];

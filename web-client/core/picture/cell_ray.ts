@@ -2,14 +2,10 @@
 // has its own stretch of the line, and nothing is sampled.
 
 import {cross, dot, type Plane, type Vector} from '../protocol/geometry';
-import type {FieldScale} from './field_scale';
+import {barycentric, minus, pointOf, type Ray} from './cell_value';
 import type {Cells} from './section';
 
-/** origin + t * direction, in lattice coordinates. */
-export interface Ray {
-  origin: Vector;
-  direction: Vector;
-}
+export {along, barycentric, valueAt, type Ray} from './cell_value';
 
 /** The line is inside `cell` for t in [from, to]. */
 export interface Stretch {
@@ -92,24 +88,6 @@ export function below(planes: readonly Plane[], ray: Ray, stretch: Stretch): Str
   return from < to ? {cell: stretch.cell, from, to} : null;
 }
 
-/** Barycentric coordinates of `point`: the shares of the four corners, which add up to 1. */
-export function barycentric(
-  {points, tetrahedra}: Cells,
-  cell: number,
-  point: Vector,
-): [number, number, number, number] {
-  const corners = [0, 1, 2, 3].map((i) => pointOf(points, tetrahedra[4 * cell + i]!)) as [
-    Vector,
-    Vector,
-    Vector,
-    Vector,
-  ];
-  const whole = volume(...corners);
-  const share = (i: number): number =>
-    volume(...(corners.map((corner, k) => (k === i ? point : corner)) as typeof corners)) / whole;
-  return [share(0), share(1), share(2), share(3)];
-}
-
 /** A place this near to a cell, in lattice units, may be its own: places are rounded. */
 const kNearby = 0.5;
 
@@ -150,10 +128,6 @@ function boxDistance({points, tetrahedra}: Cells, cell: number, place: Vector): 
   return most;
 }
 
-export function along({origin, direction}: Ray, t: number): Vector {
-  return [origin[0] + t * direction[0], origin[1] + t * direction[1], origin[2] + t * direction[2]];
-}
-
 function insideOf(
   points: Int32Array,
   corners: Vector4,
@@ -190,24 +164,4 @@ function sideways(direction: Vector): [Vector, Vector] {
   axis[smallest] = 1;
   const across = cross(direction, axis);
   return [across, cross(direction, across)];
-}
-
-function pointOf(points: Int32Array, vertex: number): Vector {
-  return [points[3 * vertex]!, points[3 * vertex + 1]!, points[3 * vertex + 2]!];
-}
-function minus(a: Vector, b: Vector): Vector {
-  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-}
-function volume(a: Vector, b: Vector, c: Vector, d: Vector): number {
-  return dot(minus(b, a), cross(minus(c, a), minus(d, a)));
-}
-
-/** The value at a point of the cell. */
-export function valueAt(mesh: Cells, scale: FieldScale, cell: number, point: Vector): number {
-  if (scale.ofCells) return scale.at(cell);
-  const shares = barycentric(mesh, cell, point);
-  return shares.reduce(
-    (sum, share, i) => sum + share * scale.at(mesh.tetrahedra[4 * cell + i]!),
-    0,
-  );
 }

@@ -2,6 +2,7 @@
 
 import type {Plane} from '../protocol/geometry';
 import {facesSoup, surfaceFaces} from './cell_surface';
+import type {MayDerive} from './derived_field';
 import type {FieldScale, Scalar} from './field_scale';
 import type {Cells} from './section';
 import {slice} from './slice';
@@ -16,7 +17,7 @@ export type ClipMode = 'cut' | 'cells' | 'slice';
 export const kClipModes: readonly ClipMode[] = ['cut', 'cells', 'slice'];
 export const kMaxPlanes = 3;
 
-export interface Display {
+export interface Display extends MayDerive {
   color: Scalar | null;
   /** The values are those of LabelScale: `color` is a label in the map `labels`. */
   labelColors?: boolean;

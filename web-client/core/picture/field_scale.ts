@@ -29,8 +29,8 @@ export function scalarRange(info: FieldInfo, component: number): [number, number
 
 export class FieldScale {
   readonly ofCells: boolean;
-  private readonly low: number;
-  private readonly inverseSpan: number;
+  protected readonly low: number;
+  protected readonly inverseSpan: number;
   private readonly components: number;
   private readonly step: number;
   private readonly minimum: number[];

@@ -2,6 +2,8 @@
 
 import type {Assembler} from '../decode/assembler';
 import type {Manifest} from '../protocol/manifest';
+import {derivation} from './derivation';
+import {derivedIn, type MayDerive, type ValuesOf} from './derived_field';
 import type {MeshArrays} from './display';
 import {FieldScale} from './field_scale';
 import {LabelScale} from './labels';
@@ -18,19 +20,32 @@ const kept = new WeakMap<Assembler, Moved>();
 
 /**
  * Views into the codec's memory, valid until the next step; null while there is no mesh. `warp`
- * moves the vertices. They rest while its field has no values.
+ * moves the vertices. They rest while its field has no values. Derived fields are those of the
+ * display.
  */
-export function meshArrays(assembler: Assembler, warp: Warp | null = null): MeshArrays | null {
+export function meshArrays(
+  assembler: Assembler,
+  display: {warp?: Warp | null} & MayDerive = {},
+): MeshArrays | null {
   const {codec, manifest} = assembler;
   if (!manifest || codec.chunksApplied === 0) return null;
+  const {warp} = display;
+  const valuesOf: ValuesOf = (field) => {
+    const info = manifest.fields[field];
+    const values = info && codec.field(field, info.components);
+    const state = [codec.chunksApplied, codec.fieldChunksApplied(field)].join();
+    return values ? {info, values, state} : null;
+  };
   return {
     points: (warp && movedPoints(assembler, manifest, warp)) ?? codec.points(),
     tetrahedra: codec.tetrahedra(),
     boundary: codec.boundary(),
     scale: ({field, component}, labelColors) => {
-      const info = manifest.fields[field];
-      const values = info && codec.field(field, info.components);
-      if (!info || !values) return null;
+      const derived = derivedIn(display, field);
+      if (derived) return derivation.scale?.(derived, valuesOf) ?? null;
+      const its = valuesOf(field);
+      if (!its) return null;
+      const {info, values} = its;
       return labelColors ? new LabelScale(values, info) : new FieldScale(values, info, component);
     },
   };

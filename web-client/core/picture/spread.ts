@@ -15,12 +15,13 @@ const kSearches = 3;
 const kAmounts = 64;
 
 /**
- * The ends of the values of the middle 96 % of the volume of these cells. They are in [0, 1] as the
- * scale's values; [0, 1] without values. A vertex has a quarter of each of its cells.
+ * The ends of the values of the middle 96 % of the volume of these cells. They are in `extent` as
+ * the scale's values; `extent` without values. A vertex has a quarter of each of its cells.
  */
 export function middleOf(
   scale: FieldScale,
   {points, tetrahedra}: Pick<MeshArrays, 'points' | 'tetrahedra'>,
+  extent: [number, number] = [0, 1],
 ): [number, number] {
   const volumes = new Float64Array(scale.size);
   for (let at = 0; at < tetrahedra.length; at += 4) {
@@ -30,17 +31,22 @@ export function middleOf(
   }
   const values = Float64Array.from(volumes, (volume, i) => (volume > 0 ? scale.at(i) : NaN));
   const total = volumes.reduce((sum, its, i) => (Number.isNaN(values[i]) ? sum : sum + its), 0);
-  if (total === 0) return [0, 1];
+  if (total === 0) return extent;
   return [
-    valueBehind(values, volumes, kTail * total),
-    valueBehind(values, volumes, (1 - kTail) * total),
+    valueBehind(values, volumes, kTail * total, extent),
+    valueBehind(values, volumes, (1 - kTail) * total, extent),
   ];
 }
 
-/** The least of the `values` in [0, 1] that has more than `rest` of the volumes up to it. */
-function valueBehind(values: Float64Array, volumes: Float64Array, rest: number): number {
-  let low = 0;
-  let span = 1;
+/** The least of the `values` that has more than `rest` of the volumes up to it. */
+function valueBehind(
+  values: Float64Array,
+  volumes: Float64Array,
+  rest: number,
+  extent: [number, number],
+): number {
+  let low = extent[0];
+  let span = extent[1] - low;
   for (let search = 0; search < kSearches; ++search) {
     const parts = new Float64Array(kParts);
     values.forEach((value, i) => {

@@ -54,6 +54,12 @@ export interface FieldInfo {
   labels?: ReadonlyMap<number, string>;
   /** Only a series' instants have it. */
   instant?: Instant;
+  /** It is computed from others, whose values bound its range or do not. */
+  derived?: 'bounded' | 'unbounded';
+  /** Instead of its name; absent: that is the title, too. */
+  title?: string;
+  /** The key of the field that it is a quantity of. */
+  of?: string;
 }
 
 const kFloat32 = 0;

@@ -37,7 +37,8 @@ export function errorOfLevel(
   const error = errorsOfLevel(levels, level);
   if (!error) return null;
   if (fields.length === 0) return error.toOriginal.mean;
-  return Math.max(...fields.map((field) => error.fields[field]?.mean ?? 0));
+  const largest = Math.max(...fields.map((field) => error.fields[field]?.mean ?? 0));
+  return Number.isNaN(largest) ? null : largest; // no rule bounds that of a derived field
 }
 
 export function limitReached(

@@ -3,6 +3,7 @@
 import baseUrl from 'qtet-base.wasm?url';
 import codecUrl from 'qtet-codec.wasm?url';
 import type {Ray} from '../picture/cell_ray';
+import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
 import type {Axis, Histogram} from '../picture/histogram';
 import type {CoarseCells} from '../picture/volume';
@@ -91,6 +92,10 @@ export class Client {
   /** SHA-256 of the mesh in the worker, lower-case hexadecimal; empty before there is a mesh. */
   digest(): Promise<string> {
     return this.ask({type: 'digest'});
+  }
+  /** The fields that a text defines (core/derived), and those that the mesh implies. */
+  derive(text: string): Promise<DerivedFields> {
+    return this.ask({type: 'derive', text});
   }
   pick(ray: Ray): Promise<Pick | null> {
     return this.ask({type: 'pick', ray});

@@ -41,7 +41,7 @@ export class CoarseVolume {
    */
   async cells(have: number, display: Display): Promise<CoarseCells> {
     const assembler = await (this.assembler ??= this.makeAssembler());
-    const key = JSON.stringify([display.color, display.warp, hidingKey(display)]);
+    const key = JSON.stringify([display.color, display.warp, display.derived, hidingKey(display)]);
     if (key === this.key && have === this.version) return {version: have};
     this.key = '';
     const cells = this.take(assembler, display);
@@ -66,7 +66,7 @@ export class CoarseVolume {
       );
     };
     while (assembler.step(fields, hasRoom())) continue;
-    const mesh = meshArrays(assembler, display.warp);
+    const mesh = meshArrays(assembler, display);
     const scale = mesh && colorScale(mesh, display);
     if (!mesh || !scale) throw new Error('there are no values yet');
     return volumeCells(mesh, scale, keptCells(mesh, display));

@@ -1,6 +1,7 @@
 // An instant of a series leaves the last one on the screen until it has values.
 
 import type {Assembler} from '../decode/assembler';
+import {derivation} from '../picture/derivation';
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {Warp} from '../picture/warp';
@@ -8,6 +9,8 @@ import type {Warp} from '../picture/warp';
 /** The content of the last picture. */
 export interface Drawn {
   color: Scalar | null;
+  /** The fields that a derived colour is made of; absent: it is no derived one. */
+  inputs?: readonly number[];
   /** Null: the mesh is at rest. */
   warp: Warp | null;
   /** The chunks of its mesh. */
@@ -21,7 +24,10 @@ export function isWaiting(assembler: Assembler, wanted: Display, drawn: Drawn | 
   const isComponent = color?.component === drawn.color?.component;
   return (
     (isComponent && waitsFor(assembler, color, drawn.color)) ||
-    waitsFor(assembler, warp, drawn.warp)
+    waitsFor(assembler, warp, drawn.warp) ||
+    derivation
+      .inputs?.(wanted, drawn)
+      .some(([its, before]) => waitsFor(assembler, {field: its}, {field: before})) === true
   );
 }
 
@@ -37,7 +43,8 @@ export function drawable(assembler: Assembler, wanted: Display, drawn: Drawn | n
   ): T | null =>
     its && before && areOfSeries(assembler, its, before) ? {...its, field: before.field} : its;
   const {color, warp} = wanted;
-  return {...wanted, color: held(color, drawn.color), warp: held(warp, drawn.warp)};
+  const display = {...wanted, color: held(color, drawn.color), warp: held(warp, drawn.warp)};
+  return derivation.held?.(display, drawn) ?? display;
 }
 
 /** The wanted instant has no values, or more of them are decoded soon. */

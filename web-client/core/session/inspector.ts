@@ -15,6 +15,7 @@ import {
   type Ray,
   type Stretch,
 } from '../picture/cell_ray';
+import {infoIn} from '../picture/derived_field';
 import {cuttingPlanes, type Display, type MeshArrays} from '../picture/display';
 import {FieldScale, kMagnitude, scalarRange} from '../picture/field_scale';
 import {histogramOf, type Axis, type Histogram} from '../picture/histogram';
@@ -72,20 +73,20 @@ export class Inspector {
 
   /** The first visible thing that `ray` (lattice coordinates) meets; null if there is none. */
   pick(ray: Ray, display: Display): Pick | null {
-    const mesh = meshArrays(this.assembler, display.warp);
+    const mesh = meshArrays(this.assembler, display);
     if (!mesh) return null;
-    const cells: Cells = {...mesh, kept: keptCells(mesh, display)};
+    const cells = {...mesh, kept: keptCells(mesh, display)};
     let best: {cell: number; t: number} | null = null;
     for (const stretch of stretches(cells, ray, 0, Infinity)) {
       const t = firstSeen(mesh, ray, stretch, display);
       if (t < (best?.t ?? Infinity)) best = {cell: stretch.cell, t};
     }
-    return best && this.pickAt(cells, best.cell, along(ray, best.t), display.warp !== null);
+    return best && this.pickAt(cells, best.cell, along(ray, best.t), display);
   }
 
   /** The coloured field from one lattice point to another; null while there is none. */
   probe(from: Vector, to: Vector, display: Display): Probe | null {
-    const mesh = meshArrays(this.assembler, display.warp);
+    const mesh = meshArrays(this.assembler, display);
     if (!mesh) return null;
     const ray = rayBetween(from, to);
     const length = this.lengthOf(ray);
@@ -107,26 +108,26 @@ export class Inspector {
 
   /** All fields that are here from one lattice point to another, each place once. */
   line(from: Vector, to: Vector, display: Display): LineValues[] {
-    const mesh = meshArrays(this.assembler, display.warp);
+    const mesh = meshArrays(this.assembler, display);
     if (!mesh) return [];
     const ray = rayBetween(from, to);
-    const cells: Cells = {...mesh, kept: keptCells(mesh, display)};
+    const cells = {...mesh, kept: keptCells(mesh, display)};
     const length = this.lengthOf(ray);
     return placesOf(stretches(cells, ray, 0, 1)).map(({t, cell}) => {
       const place = along(ray, t);
-      const fields = cell === null ? [] : this.fieldsAt(cells, cell, place);
+      const fields = cell === null ? [] : this.fieldsAt(cells, cell, place, display);
       return {at: t * length, position: this.positionOf(place), fields};
     });
   }
 
   /** The cell at a lattice place of the mesh at rest, and where that is drawn; null: no mesh. */
-  at(place: Vector, {warp}: Display): Pick | null {
+  at(place: Vector, display: Display): Pick | null {
     const rest = meshArrays(this.assembler);
-    const mesh = meshArrays(this.assembler, warp);
+    const mesh = meshArrays(this.assembler, display);
     const cell = rest ? this.cellOf(rest, place) : -1;
     if (!rest || !mesh || cell < 0) return null;
     const shares = this.sharesIn(rest, cell, place);
-    return this.pickAt(mesh, cell, placeIn(mesh, cell, shares), warp !== null);
+    return this.pickAt(mesh, cell, placeIn(mesh, cell, shares), display);
   }
 
   /**
@@ -165,21 +166,22 @@ export class Inspector {
   }
 
   /** Counts the values of the coloured field; null while there are none. */
-  histogram(axis: Axis, {color}: Display): Histogram | null {
-    const mesh = meshArrays(this.assembler);
-    const info = color && this.assembler.manifest?.fields[color.field];
+  histogram(axis: Axis, display: Display): Histogram | null {
+    const {color} = display;
+    const mesh = meshArrays(this.assembler, {derived: display.derived});
+    const info = color && mesh && infoIn(display, this.assembler.manifest!, color.field);
     const scale = color && mesh?.scale(color);
     return mesh && info && scale ? histogramOf(scale, mesh.tetrahedra, info, color, axis) : null;
   }
 
   private unscaled(probe: Probe, display: Display): Probe {
-    const info = this.assembler.manifest!.fields[display.color!.field]!;
+    const info = infoIn(display, this.assembler.manifest!, display.color!.field);
     const [low, high] = scalarRange(info, display.color!.component);
     return {...probe, values: probe.values.map((value) => low + value * (high - low))};
   }
 
-  private pickAt(cells: Cells, cell: number, lattice: Vector, isMoved: boolean): Pick {
-    const rest = isMoved ? this.restOf(cells, cell, lattice) : null;
+  private pickAt(cells: MeshArrays, cell: number, lattice: Vector, display: Display): Pick {
+    const rest = display.warp ? this.restOf(cells, cell, lattice) : null;
     return {
       cell,
       corners: cornersOf(cells, cell),
@@ -189,7 +191,7 @@ export class Inspector {
       lattice,
       position: this.positionOf(lattice),
       rest: rest && {lattice: rest, position: this.positionOf(rest)},
-      fields: this.fieldsAt(cells, cell, lattice),
+      fields: this.fieldsAt(cells, cell, lattice, display),
     };
   }
 
@@ -209,12 +211,26 @@ export class Inspector {
     return this.assembler.manifest!.lattice.step * Math.hypot(...direction);
   }
 
-  private fieldsAt(cells: Cells, cell: number, lattice: Vector): FieldValue[] {
+  private fieldsAt(
+    cells: MeshArrays,
+    cell: number,
+    lattice: Vector,
+    {derived}: Display,
+  ): FieldValue[] {
     const shares = barycentric(cells, cell, lattice);
-    return this.assembler.manifest!.fields.flatMap((_, field) => {
+    const own = this.assembler.manifest!.fields.flatMap((_, field) => {
       const values = this.valuesOf(cells, cell, shares, field);
       return values ? [{field, values}] : [];
     });
+    const made = (derived?.fields ?? []).flatMap(({info, inputs}, i) => {
+      const field = derived!.first + i;
+      const scale = inputs.length > 0 ? cells.scale({field, component: kMagnitude}) : null;
+      if (!scale) return [];
+      const [low, high] = info.range;
+      const share = valueIn(scale, tuplesOf(cells, cell, info), shares);
+      return [{field, values: [low + share * (high - low)]}];
+    });
+    return [...own, ...made];
   }
 
   /** One a component; null while the field has no values. */
@@ -222,14 +238,17 @@ export class Inspector {
     const {codec, manifest} = this.assembler;
     const info = manifest!.fields[field]!;
     const values = codec.field(field, info.components);
-    const tuples = info.association === 'cell' ? [cell] : cornersOf(cells, cell);
-    return values && components(info, values, tuples, shares);
+    return values && components(info, values, tuplesOf(cells, cell, info), shares);
   }
 }
 
 const cornersOf = ({tetrahedra}: Cells, cell: number): number[] => [
   ...tetrahedra.subarray(4 * cell, 4 * cell + 4),
 ];
+
+/** The places of its values for a cell. */
+const tuplesOf = (cells: Cells, cell: number, {association}: FieldInfo): number[] =>
+  association === 'cell' ? [cell] : cornersOf(cells, cell);
 
 /** The place of the shares of a cell's corners. */
 function placeIn(cells: Cells, cell: number, shares: readonly number[]): Vector {
@@ -254,6 +273,11 @@ function firstSeen(mesh: MeshArrays, ray: Ray, stretch: Stretch, display: Displa
 }
 
 /** `tuples` is one cell, or the four corners that `shares` weigh. */
+function valueIn(scale: FieldScale, tuples: number[], shares: readonly number[]): number {
+  if (tuples.length === 1) return scale.at(tuples[0]!);
+  return tuples.reduce((sum, tuple, i) => sum + shares[i]! * scale.at(tuple), 0);
+}
+
 function components(
   info: FieldInfo,
   values: Int32Array,
@@ -263,11 +287,7 @@ function components(
   return Array.from({length: info.components}, (_, c) => {
     const scale = new FieldScale(values, info, c);
     const [low, high] = scalarRange(info, info.components > 1 ? c : kMagnitude);
-    const value =
-      tuples.length === 1
-        ? scale.at(tuples[0]!)
-        : tuples.reduce((sum, tuple, i) => sum + shares[i]! * scale.at(tuple), 0);
-    return low + value * (high - low);
+    return low + valueIn(scale, tuples, shares) * (high - low);
   });
 }
 

@@ -2,6 +2,8 @@
 
 import type {Assembler} from '../decode/assembler';
 import {keptCells, layerSoups, type LayerSoups} from '../layers/shown';
+import {derivation} from '../picture/derivation';
+import {derivedIn, infoIn} from '../picture/derived_field';
 import {
   colorScale,
   cutsOf,
@@ -62,7 +64,7 @@ export class PictureMaker {
 
   /** `isOnlyCut`: the surface is the last picture's. Null while there is no mesh. */
   make(display: Display, isOnlyCut: boolean): Picture | null {
-    const mesh = meshArrays(this.assembler, display.warp);
+    const mesh = meshArrays(this.assembler, display);
     if (!mesh) return null;
     const kept = keptCells(mesh, display);
     const measures = isOnlyCut && this.measures ? this.measures : this.measure(mesh, display);
@@ -91,8 +93,9 @@ export class PictureMaker {
     return warp !== null && this.assembler.codec.fieldChunksApplied(warp.field) > 0;
   }
 
-  private infoOf({color}: Display): FieldInfo | null {
-    return color && this.assembler.manifest!.fields[color.field]!;
+  private infoOf(display: Display): FieldInfo | null {
+    const {color} = display;
+    return color && infoIn(display, this.assembler.manifest!, color.field);
   }
 
   private measure({points, boundary, ...mesh}: MeshArrays, display: Display): Measures {
@@ -127,6 +130,8 @@ export class PictureMaker {
     const info = this.infoOf(display);
     const isComponent = color && info && info.components > 1 && color.component >= 0;
     const ofSeries = isComponent ? seriesExtent(info, color.component) : null;
+    const derived = scale && derivation.color?.(mesh, display, scale, this.assembler.manifest!);
+    const ofAll = ofSeries ?? derived?.ofSeries;
     const isMoved = this.isWarped(warp);
     return {
       bounds,
@@ -134,12 +139,16 @@ export class PictureMaker {
       color: scale ? color : null,
       ...(scale && labels && {labels}),
       // The range of a component is known from its values only; a series has one for all of it.
-      extent: ofSeries ?? (scale && isComponent ? scale.extent(mesh.tetrahedra) : [0, 1]),
-      middle:
+      extent:
         ofSeries ??
+        derived?.extent ??
+        (scale && isComponent ? scale.extent(mesh.tetrahedra) : [0, 1]),
+      middle:
+        ofAll ??
         (scale && !info?.instant
-          ? keptOf(this.middles, display, () => middleOf(scale, mesh))
+          ? keptOf(this.middles, display, () => middleOf(scale, mesh, derived?.extent))
           : [0, 1]),
+      ...derived?.made,
       ...(volume && scale
         ? {amounts: keptOf(this.amounts, display, () => amountsOf(scale, mesh))}
         : {}),
@@ -163,8 +172,14 @@ function seriesExtent(info: FieldInfo, component: number): [number, number] | nu
 }
 
 /** The value of a colour: as it was when it was first asked for. */
-function keptOf<T>(values: Map<string, T>, {color, labelColors}: Display, first: () => T): T {
-  const key = [color?.field, color?.component, labelColors === true].join();
+function keptOf<T>(values: Map<string, T>, display: Display, first: () => T): T {
+  const {color, labelColors} = display;
+  const key = [
+    color?.field,
+    color && derivedIn(display, color.field)?.id,
+    color?.component,
+    labelColors === true,
+  ].join();
   const value = values.get(key) ?? first();
   values.set(key, value);
   return value;

@@ -158,8 +158,9 @@ export class Publisher {
     const picture = this.maker.make(now, isOnlyCut);
     if (!picture) return;
     const isFirst = !this.hasPublished;
-    const {color, warp = null} = picture;
-    this.drawn = {color, warp, chunks: assembler.codec.chunksApplied};
+    const {color, inputs, warp = null} = picture;
+    const chunks = assembler.codec.chunksApplied;
+    this.drawn = {color, warp, chunks, ...(inputs && {inputs})};
     this.seen = {...now, ahead: []};
     this.due = null;
     const statistics = assembler.statistics(fieldsOf(this.display));

@@ -5,6 +5,8 @@ import {WasmCodec} from '../decode/codec';
 import {kDraco} from '../decode/draco';
 import {isForbidden, decoderFailure} from '../protocol/wasm_policy';
 import {fieldsOf} from '../layers/shown';
+import {derivation} from '../picture/derivation';
+import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {retry} from '../transport/retry';
@@ -21,6 +23,7 @@ interface Parts {
   coarse: CoarseVolume;
   /** The mesh's; empty while there is none. */
   digest(): Promise<string>;
+  derive(text: string): Promise<DerivedFields>;
   /** Loaded with the first question. */
   inspector(): Promise<Inspector>;
 }
@@ -80,6 +83,12 @@ function start(baseUrl: string, codecUrl: string): Parts {
       const {Inspector} = await retry(() => import('./inspector'));
       return (inspector ??= new Inspector(assembler));
     },
+    derive: async (text) => {
+      const derived = await retry(() => import('../derived/derived'));
+      Object.assign(derivation, derived.kDerivation);
+      const {manifest} = assembler;
+      return manifest ? derived.deriveFields(text, manifest) : {fields: [], errors: []};
+    },
     digest: async () => {
       await assembler.codecReady;
       if (codec.chunkCount === 0) return '';
@@ -125,29 +134,33 @@ function obey(
       return publisher.shown(message.drawingMs);
     case 'repeat':
       return publisher.repeat();
+    case 'derive':
+      return reply(message, its.derive(message.text));
     case 'digest':
-      return void its
-        .digest()
-        .then((answer) => post({type: 'answer', id: message.id, answer}), fail);
+      return reply(message, its.digest());
     case 'pick':
     case 'probe':
     case 'line':
     case 'at':
     case 'values':
     case 'histogram':
-      return void its
-        .inspector()
-        .then((inspector) => answered(inspector, publisher.now, message))
-        .then((answer) => post({type: 'answer', id: message.id, answer}), fail);
+      return reply(
+        message,
+        its.inspector().then((inspector) => answered(inspector, publisher.now, message)),
+      );
     case 'coarse': {
       const {id, have} = message;
-      const reply = (answer: CoarseCells | null): void =>
+      const send = (answer: CoarseCells | null): void =>
         self.postMessage({type: 'answer', id, answer} satisfies FromWorker, {
           transfer: answer?.cells ? buffersOfVolume(answer.cells) : [],
         });
-      return void coarse.cells(have, publisher.now).then(reply, () => reply(null));
+      return void coarse.cells(have, publisher.now).then(send, () => send(null));
     }
   }
+}
+
+function reply({id}: {id: number}, coming: Promise<Answer>): void {
+  coming.then((answer) => post({type: 'answer', id, answer}), fail);
 }
 
 function answered(

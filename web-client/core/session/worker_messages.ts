@@ -6,6 +6,7 @@ import type {Statistics} from '../decode/statistics';
 import type {LayerSoups} from '../layers/shown';
 import type {BaseFigures} from '../picture/base_figures';
 import type {Ray} from '../picture/cell_ray';
+import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {Axis, Histogram} from '../picture/histogram';
@@ -68,6 +69,8 @@ export type ToWorker =
 /** The worker answers each by an `answer` with the same id. */
 export type Question =
   | {type: 'digest'}
+  /** Asks for the fields that a text defines, and those that the mesh implies. */
+  | {type: 'derive'; text: string}
   | {type: 'pick'; ray: Ray}
   | {type: 'probe'; from: Vector; to: Vector}
   | {type: 'line'; from: Vector; to: Vector}
@@ -102,6 +105,9 @@ export interface Snapshot extends LayerSoups {
   warp?: Warp & AtRest;
   /** The quantity that the soups' values show; null if there are none yet. */
   color: Scalar | null;
+  /** A derived colour's id, and the fields that it is made of; absent: it is none. */
+  derivedId?: number;
+  inputs?: readonly number[];
   /** Those of a label in `color`; absent: it is none. */
   labels?: ShownLabels;
   /** The values that 0 and 1 stand for; `extent` is the part of [0, 1] that occurs. */
@@ -123,7 +129,15 @@ export interface Snapshot extends LayerSoups {
 export type Posted = FromWorker & {run?: number};
 
 export type Answer =
-  string | Pick | Probe | LineValues[] | number[][] | Histogram | CoarseCells | null;
+  | string
+  | DerivedFields
+  | Pick
+  | Probe
+  | LineValues[]
+  | number[][]
+  | Histogram
+  | CoarseCells
+  | null;
 
 /** The newest figures of a log. */
 export interface LogFigures {

@@ -1,6 +1,6 @@
 // The actions of buttons and keys.
 
-import {clipText, movedPlane} from '../../core/layers/clip';
+import {clipText, movedPlane} from '../../core/layers/clip_text';
 import type {Vector} from '../../core/protocol/geometry';
 import {kDirections, type Direction} from '../../webgl/directions';
 import type {View} from '../../webgl/view';

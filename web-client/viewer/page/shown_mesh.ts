@@ -16,6 +16,7 @@ import {openingTime, showTime, timesOf} from '../../core/protocol/series';
 import type {LogFigures, Snapshot} from '../../core/session/worker_messages';
 import {placeOn} from '../../core/picture/log_scale';
 import {FieldsAhead} from './fields_ahead';
+import type {OwnFields} from './own_fields';
 import {KnownRanges, type SegmentRanges} from './known_ranges';
 import {
   labelRange,
@@ -45,6 +46,8 @@ export class ShownMesh {
   plan: LevelBytes[] = [];
   progress: LogFigures = {statistics: kNoStatistics, received: 0, here: [], aheadEnded: false};
   readonly ahead = new FieldsAhead();
+  /** Its derived fields: null without any, true until what reads them is loaded. */
+  own: OwnFields | true | null = null;
   /** The newest picture. */
   snapshot: Snapshot | null = null;
   /** Some values in the picture are missing. */
@@ -58,6 +61,15 @@ export class ShownMesh {
 
   /** `place` is null for a log that stands alone. */
   constructor(readonly place: SegmentPlace | null = null) {}
+
+  get derived(): OwnFields | null {
+    return this.own === true ? null : this.own;
+  }
+
+  /** It has derived fields that are not known yet. */
+  get isDeriving(): boolean {
+    return this.own === true || this.own?.isAwaited === true;
+  }
 
   /** The mesh of another segment. It opens as this one did. */
   successor(place: SegmentPlace | null): ShownMesh {
@@ -117,6 +129,7 @@ export class ShownMesh {
     // Other figures are newer than a picture that waited for a view.
     if (this.progress.statistics === kNoStatistics) this.progress.statistics = snapshot.statistics;
     this.snapshot = snapshot;
+    this.derived?.fit(snapshot);
     if (!snapshot.surface) return; // a new cut of the same mesh
     this.hasMissing = [snapshot.surface, ...snapshot.cuts].some(({values}) =>
       values.some(Number.isNaN),

@@ -1,7 +1,8 @@
 // Up to three clip planes, across an axis or facing the camera. Sliders here and handles in the
 // picture move them.
 
-import {axisNormal, axisOf, clipText, movedPlane, type ClipSetting} from '../../core/layers/clip';
+import {axisNormal, axisOf, type ClipSetting} from '../../core/layers/clip';
+import {clipText, movedPlane} from '../../core/layers/clip_text';
 import {kMaxPlanes} from '../../core/picture/display';
 import type {Vector} from '../../core/protocol/geometry';
 import {find} from '../page/find';

@@ -13,7 +13,8 @@ import {find} from '../page/find';
 import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
 import {shownScalar, type Settings, type ShownRange} from '../settings/settings';
-import {fillScalars, type Panel, type PanelKind, type Scene} from './panel';
+import {fillScalars} from './field_menu';
+import type {Panel, PanelKind, Scene} from './panel';
 
 /** The labels in their map's swatch. */
 const kShownLabels = 5;

@@ -1,6 +1,6 @@
 // Shared by the panels: how they are made and called, and the fields in their menus.
 
-import {scalarText} from '../../core/layers/field_values';
+import {componentNames} from '../../core/layers/field_values';
 import {kMagnitude, type Scalar} from '../../core/picture/field_scale';
 import type {FieldInfo} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
@@ -10,7 +10,6 @@ import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import type {View} from '../../webgl/view';
 import type {Actions} from '../page/actions';
 import type {Page} from '../page/page';
-import {fillSelect} from '../page/select';
 import type {ShownMesh} from '../page/shown_mesh';
 import type {Settings, ShownRange} from '../settings/settings';
 
@@ -74,8 +73,6 @@ export interface PanelKind {
   make?(tools: PanelTools): Panel;
 }
 
-const kAxes = ['x', 'y', 'z'];
-
 /** scalarName, with the unit that the log knows beside it: "Velocity, x [m/s]". */
 export function scalarTitle(scalar: Scalar, fields: readonly FieldInfo[]): string {
   return withUnit(scalarName(scalar, fields), fields[scalar.field]!);
@@ -85,17 +82,19 @@ export const withUnit = (name: string, {unit}: Pick<FieldInfo, 'unit'>): string 
   unit === undefined ? name : `${name} [${unit}]`;
 
 /**
- * "Velocity, x", or "Velocity, magnitude" for a vector without a component. More than three are
- * numbered as in addresses: "Stress[5]". Without a time.
+ * "Velocity, x", or "Velocity, magnitude" for a vector without a component. Components without
+ * names are numbered as in addresses: "Modes[3]". Without a time.
  */
 export function scalarName({field, component}: Scalar, fields: readonly FieldInfo[]): string {
   const info = fields[field]!;
   const twins = fields.filter(({name}) => name === info.name).length > 1;
+  if (info.title !== undefined) return info.title;
   const plain = info.instant?.series.replace(/^cell:/, '') ?? info.name;
   const name = twins && info.association === 'cell' ? `${plain} (cells)` : plain;
   if (info.components === 1) return name;
   if (component === kMagnitude) return `${name}, magnitude`;
-  return info.components <= 3 ? `${name}, ${kAxes[component]}` : `${name}[${component}]`;
+  const its = componentNames(info.components)[component];
+  return its === undefined ? `${name}[${component}]` : `${name}, ${its}`;
 }
 
 /** The name of the one shown field if it is a label: its error is a share of the volume. */
@@ -103,39 +102,4 @@ export function labelName(shown: readonly number[], fields: readonly FieldInfo[]
   const [field, ...more] = shown;
   if (field === undefined || more.length > 0 || !fields[field]?.labels) return null;
   return scalarName({field, component: kMagnitude}, fields);
-}
-
-/**
- * Offers every field, of a series the instant that is shown, and the components of vectors. Fields
- * of points and of cells are in groups if there are both.
- */
-export function fillScalars(
-  select: HTMLSelectElement,
-  fields: readonly FieldInfo[],
-  chosen: Scalar | null,
-  pointsOnly = false,
-): void {
-  const usable = fields
-    .map((info, field) => ({info, field}))
-    .filter(({info}) => info.instant?.isShown !== false)
-    .filter(({info}) => !pointsOnly || info.association === 'point');
-  const options = usable.flatMap(({info, field}) =>
-    [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) => {
-      const scalar = {field, component};
-      return {
-        value: scalarText(scalar, fields),
-        title: scalarTitle(scalar, fields),
-        group: info.association === 'cell' ? 'Fields of cells' : 'Fields of points',
-      };
-    }),
-  );
-  const grouped = new Set(options.map(({group}) => group)).size > 1;
-  fillSelect(
-    select,
-    options.length > 0
-      ? options.map(({group, ...rest}) => (grouped ? {...rest, group} : rest))
-      : [{value: '', title: 'No fields'}],
-    chosen ? scalarText(chosen, fields) : '',
-  );
-  select.disabled = options.length < 2;
 }

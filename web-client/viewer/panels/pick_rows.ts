@@ -25,10 +25,11 @@ export function pickRows(pick: Pick, manifest: Manifest): [string, string][] {
   const rows: [string, string][] = [['Position', placeText(pick.position, manifest)]];
   if (pick.rest) rows.push(['Position at rest', placeText(pick.rest.position, manifest)]);
   for (const {field, values} of pick.fields) {
-    const info = fields[field]!;
-    if (info.instant && !info.instant.isShown) continue; // there may be a thousand
+    const info = fields[field];
+    // there may be a thousand instants, and a derived field may have gone
+    if (!info || info.instant?.isShown === false) continue;
     const format = (value: number): string => formatIn(info, value);
-    rows.push([withUnit(info.name, info), values.map(format).join(', ')]);
+    rows.push([withUnit(info.title ?? info.name, info), values.map(format).join(', ')]);
     if (values.length > 1)
       rows.push([withUnit(`${info.name}, magnitude`, info), format(Math.hypot(...values))]);
   }

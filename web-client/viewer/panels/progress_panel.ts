@@ -145,8 +145,9 @@ export class ProgressPanel {
     showOfTotal(this.part('.bytes'), formatBytes(bytes), formatBytes(bytesNeeded));
     showOfTotal(this.part('.cells'), formatCount(tetrahedra), formatCount(total.tetrahedra));
     const error = this.errorLeft();
-    this.part('.error-row').hidden = error === null;
-    if (error !== null) this.showError(formatError(error));
+    const isMeasured = this.manifest?.levels[0]?.error !== undefined;
+    this.part('.error-row').hidden = !isMeasured;
+    if (isMeasured) this.showError(error === null ? 'not known' : formatError(error));
     const seconds = this.secondsLeft();
     this.part('.eta-row').hidden = seconds === null;
     if (seconds !== null) setText(this.part('.eta'), formatDuration(seconds));
@@ -165,7 +166,7 @@ export class ProgressPanel {
     const within = (field: number): string[] => {
       const info = all[field];
       // while another mesh comes, the numbers may be those of the mesh before
-      if (!info) return [];
+      if (!info || info.derived) return [];
       const now = (measured?.fields[field]?.max ?? 0) * widthOfValues(info);
       return [formatWithin(info, largestRoundingError(info), now)];
     };

@@ -144,7 +144,8 @@ export class TimeBar {
     if (!isSeries) return;
     const {fields} = manifest;
     const color = shownScalar(this.attributes.read('field'), fields, firstField);
-    line.choose([color?.field ?? -1, warpField(warp, fields)], fields);
+    const colored = color ? (mesh.derived?.playedOf(color.field) ?? [color.field]) : [];
+    line.choose([...colored, warpField(warp, fields)], fields);
     this.first = nearestTo(line.times, mesh.firstTime!.time);
     clock.at = time === null ? this.first : nearestTo(line.times, time);
     const last = line.times.length - 1;

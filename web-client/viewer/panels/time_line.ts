@@ -78,7 +78,8 @@ export class TimeLine {
     const {mesh, opening} = this.host;
     if (opening !== null || this.awaitsFrame) return false;
     const {manifest, snapshot} = mesh;
-    const seen = [snapshot?.color?.field, snapshot?.warp?.field];
+    const colored = snapshot?.inputs ?? [snapshot?.color?.field];
+    const seen = [...colored, snapshot?.warp?.field];
     return this.tracks.every((track) => {
       const field = track[at] ?? -1;
       return !manifest || field < 0 || seen.includes(shownInstant(manifest.fields, field));

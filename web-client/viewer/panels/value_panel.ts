@@ -14,7 +14,9 @@ import {roundTo} from '../page/format';
 import type {Attributes} from '../page/page';
 import type {Settings} from '../settings/settings';
 import {toggle} from './markup';
-import {fillScalars, type Panel, type PanelKind, type Scene} from './panel';
+import {kValueControls} from './value_controls';
+import {fillScalars} from './field_menu';
+import type {Panel, PanelKind, Scene} from './panel';
 
 const kSteps = 1000;
 /** Values are shown to this share of the field's range. */
@@ -22,8 +24,8 @@ const kShownShare = 1e-4;
 /** The surface's opacity through which isosurfaces are seen well. */
 const kSeeThrough = '0.25';
 
-function markupOf({name, control}: ListedFieldLayer): string {
-  const {title, fieldLabel, sliders, valuesLabel, hiddenHint} = control;
+function markupOf({name}: ListedFieldLayer): string {
+  const {title, fieldLabel, sliders, valuesLabel, hiddenHint} = kValueControls[name]!;
   const ranges = sliders
     .map((label) => `<input type="range" min="0" max="1000" aria-label="${label}">`)
     .join('\n        ');
@@ -81,7 +83,7 @@ class ValuePanel implements Panel {
     const hidden = this.body.querySelector<HTMLElement>('.hint');
     if (hidden) hidden.hidden = !hidesInside(settings);
     if (!now) return;
-    fillScalars(this.select, this.fields, now.scalar, this.layer.control.pointsOnly);
+    fillScalars(this.select, this.fields, now.scalar, this.layer.pointsOnly);
     if (this.root.activeElement !== this.numbers)
       this.numbers.value = now.values.map((value) => this.rounded(value, now.scalar)).join(', ');
     sharesOf(now, this.fields)
@@ -101,7 +103,7 @@ class ValuePanel implements Panel {
   }
 
   private canShow({association}: FieldInfo): boolean {
-    return !this.layer.control.pointsOnly || association === 'point';
+    return !this.layer.pointsOnly || association === 'point';
   }
 
   private rounded(value: number, {field, component}: Scalar): number {
@@ -120,14 +122,16 @@ class ValuePanel implements Panel {
   private choose(scalar: Scalar | null): void {
     if (!scalar) return;
     const [low, high] = scalarRange(this.fields[scalar.field]!, scalar.component);
-    const values = this.layer.control.firstShares.map((share) => low + share * (high - low));
+    const values = kValueControls[this.layer.name]!.firstShares.map(
+      (share) => low + share * (high - low),
+    );
     this.write({scalar, values});
   }
 
   private type(): void {
     const now = this.value();
     const values = parseNumbers(this.numbers.value);
-    const {control} = this.layer;
+    const control = kValueControls[this.layer.name]!;
     const valid = control.areRight(values);
     this.numbers.setCustomValidity(valid ? '' : control.expected);
     if (valid && now) this.write({scalar: now.scalar, values});

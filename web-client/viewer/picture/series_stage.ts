@@ -30,9 +30,9 @@ export function seriesIn(
   snapshot: Snapshot | null,
   fields: readonly FieldInfo[],
 ): string | undefined {
-  const ofField = (its: {field: number} | null | undefined): string | undefined =>
-    its ? fields[its.field]?.instant?.series : undefined;
-  return ofField(snapshot?.color) ?? ofField(snapshot?.warp);
+  const {color, inputs = [color?.field], warp} = snapshot ?? {};
+  const shown = [...inputs, warp?.field].map((field) => fields[field ?? -1]?.instant?.series);
+  return shown.find((series) => series !== undefined);
 }
 
 export class SeriesStage implements Stage {
@@ -128,13 +128,13 @@ export class SeriesStage implements Stage {
   }
 
   /** The instant colours or moves the mesh. Another series that moves it shows the same time. */
-  private isSeen(field: number, {color, warp}: Snapshot): boolean {
+  private isSeen(field: number, {color, inputs = [color?.field ?? -1], warp}: Snapshot): boolean {
     const {progress, manifest} = this.mesh;
     const {here} = progress;
-    if (!warp) return color?.field === field;
+    if (!warp) return inputs.includes(field);
     const isOfTime = manifest!.fields[warp.field]!.instant?.isShown !== false;
     return (
-      (color?.field === field || warp.field === field) && isOfTime && here.includes(warp.field)
+      (inputs.includes(field) || warp.field === field) && isOfTime && here.includes(warp.field)
     );
   }
 }

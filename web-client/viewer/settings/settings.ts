@@ -18,6 +18,7 @@ import {isGround} from './ground';
 
 const kBeforeLayers = [
   'mesh',
+  'derived',
   'field',
   'field-title',
   'time',

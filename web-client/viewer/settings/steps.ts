@@ -71,6 +71,7 @@ function isSameCamera(before: string | undefined, after: string | undefined): bo
 }
 
 const kTitles: Record<string, string> = {
+  derived: 'own fields',
   'field-title': 'title',
   colormap: 'colour map',
   'time-range': 'part that plays',

@@ -2,7 +2,9 @@
 // there. A viewer ignores them otherwise, and a link with a slip would show another picture.
 
 import {
-  fieldWithoutComponent,
+  fieldOfKey,
+  hasComponent,
+  namedComponent,
   parseNumbers,
   parseScalar,
   scalarKey,
@@ -13,6 +15,7 @@ import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
 import {parseLimit} from '../../core/protocol/limit';
 import {fieldKeys} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
+import type {FieldInfo} from '../../core/protocol/fields';
 import {kTransportKinds} from '../../core/transport/auto_transport';
 import {isGround, kGrounds} from './ground';
 import {hint} from './nearest';
@@ -106,6 +109,12 @@ export function unknownNames(names: readonly string[]): string[] {
   return names
     .filter((name) => !known.includes(name) && !kOfOthers.test(name))
     .map((name) => `The address has "${name}", which means nothing here.${hint(name, known)}`);
+}
+
+/** The field of which parseScalar reads the magnitude, because it has no such component. */
+function fieldWithoutComponent(text: string, fields: readonly FieldInfo[]): FieldInfo | null {
+  const named = fieldOfKey(text, fields) < 0 ? namedComponent(text, fields) : null;
+  return named && !hasComponent(named, fields) ? fields[named.field]! : null;
 }
 
 /** Sentences about a component that the named field does not have. */

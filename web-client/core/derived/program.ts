@@ -1,0 +1,306 @@
+// From the tree of an expression to a program for blocks of values, with what is known of its
+// result: its range, and how the known errors of the fields bound its own.
+
+import {componentNames, fieldOfKey} from '../layers/field_values';
+import {kMagnitude} from '../picture/field_scale';
+import type {FieldInfo} from '../protocol/fields';
+import {kOperations, type Block, type Interval, type Operation} from './operations';
+import {ExpressionError, type Tree} from './parse';
+import {kTensorQuantities, type Quantity} from './tensors';
+
+/** One number of a field: a component, kMagnitude, or a quantity of a tensor. */
+export interface Leaf {
+  /** The field's name in the expression. That of a series means the shown instant. */
+  key: string;
+  component: number;
+  quantity?: Quantity;
+}
+
+export type Step = {load: Leaf} | {value: number} | {run: Operation};
+
+/** By field: a change of it changes the result by no more than so many times as much. */
+export type ErrorFactors = ReadonlyMap<string, number>;
+
+interface Component {
+  steps: Step[];
+  range: Interval;
+}
+
+/** A number has one component. */
+export interface Value {
+  components: Component[];
+  association: FieldInfo['association'] | null;
+  /** Of the whole vector; null: no rule bounds it. */
+  errors: ErrorFactors | null;
+  /** It is this field as it is. */
+  field?: {key: string; info: FieldInfo};
+}
+
+/** Vectors copy the steps that they take: so that these cannot double again and again. */
+const kMaxSteps = 1000;
+/** A message lists so many fields. */
+const kListed = 9;
+
+const kOne: Block = new Float64Array(1);
+
+/**
+ * `earlier`: the definitions before this one. The result has one component. Throws
+ * ExpressionError.
+ */
+export function compile(
+  tree: Tree,
+  fields: readonly FieldInfo[],
+  earlier: ReadonlyMap<string, Value> = new Map(),
+): Value {
+  return new Compiler(fields, earlier).number(tree);
+}
+
+/** The names of the fields that the value is made of. */
+export function inputsOf({components}: Value): string[] {
+  const keys = components.flatMap(({steps}) =>
+    steps.flatMap((step) => ('load' in step ? [step.load.key] : [])),
+  );
+  return [...new Set(keys)];
+}
+
+class Compiler {
+  constructor(
+    private readonly fields: readonly FieldInfo[],
+    private readonly earlier: ReadonlyMap<string, Value>,
+  ) {}
+
+  number(tree: Tree): Value {
+    const value = this.value(tree);
+    const {length} = value.components;
+    if (length === 1) return value;
+    throw fault(tree, `a vector of ${length} components stands here; take mag(...) or .x of it`);
+  }
+
+  private value(tree: Tree): Value {
+    switch (tree.kind) {
+      case 'number':
+        return constant(tree.value);
+      case 'name':
+        return this.named(tree, tree.name);
+      case 'part':
+        return partOf(tree, this.value(tree.of), tree.part);
+      case 'call':
+        return this.call(tree);
+    }
+  }
+
+  /** A field, an earlier definition, or a part of one: U, alpha.water, U.x. */
+  private named(tree: Tree, name: string): Value {
+    const info = this.fields[fieldOfKey(name, this.fields)];
+    const known = info ? valueOf(name, info) : this.earlier.get(name);
+    if (known) return known;
+    const at = name.lastIndexOf('.');
+    const whole = name.slice(0, at);
+    if (at > 0 && (fieldOfKey(whole, this.fields) >= 0 || this.earlier.has(whole)))
+      return partOf(tree, this.named(tree, whole), name.slice(at + 1));
+    const names = new Set(this.fields.map((its) => its.instant?.series ?? its.name));
+    const listed = [...names].slice(0, kListed).join(', ');
+    throw fault(tree, `there is no field "${name}"; there are ${listed || 'none'}`);
+  }
+
+  private call(tree: Extract<Tree, {kind: 'call'}>): Value {
+    const {name, args} = tree;
+    const special = kOfVectors[name];
+    const operation = Object.hasOwn(kOperations, name) ? kOperations[name] : undefined;
+    const arity = special?.arity ?? operation?.arity;
+    if (arity === undefined)
+      throw fault(tree, `there is no function "${name}"; there are ${kFunctions.join(', ')}`);
+    if (args.length !== arity) throw fault(tree, `${name} takes ${arity}, not ${args.length}`);
+    const values = args.map((its) => this.value(its));
+    return special ? special.make(tree, values) : applied(tree, operation!, values);
+  }
+}
+
+/** Functions of vectors. Another one is a line here. */
+const kOfVectors: Record<string, {arity: number; make(tree: Tree, values: Value[]): Value}> = {
+  __proto__: null as never,
+  mag: {
+    arity: 1,
+    make(tree, [vector]) {
+      const {components, errors, field} = vector!;
+      if (components.length === 1) return applied(tree, kOperations['abs']!, [vector!]);
+      if (field) return leafOf(vector!, kMagnitude, field.info.range, 1);
+      const squares = components.map((its) => operate(tree, kOperations['square']!, [its]));
+      const root = operate(tree, kOperations['sqrt']!, [sumOf(tree, squares)]);
+      return {...vector!, components: [root], errors};
+    },
+  },
+  dot: {
+    arity: 2,
+    make(tree, values) {
+      const [a, b] = values.map(({components}) => components);
+      if (a!.length !== b!.length) throw unequal(tree, values);
+      const products = a!.map((its, i) => operate(tree, kOperations['*']!, [its, b![i]!]));
+      const association = together(tree, values);
+      return {components: [sumOf(tree, products)], association, errors: null};
+    },
+  },
+};
+
+const kFunctions = [
+  'mag',
+  'dot',
+  ...Object.keys(kOperations).filter((name) => /^\w/.test(name)),
+].filter((name) => !['minus', 'square'].includes(name));
+
+/** Sums, differences and signs are of vectors, too, and products and quotients with a number. */
+function applied(
+  tree: Extract<Tree, {kind: 'call'}> | Tree,
+  operation: Operation,
+  values: Value[],
+): Value {
+  const association = together(tree, values);
+  const {'*': times, '/': over, '+': plus, '-': less, minus} = kOperations;
+  const lengths = values.map(({components}) => components.length);
+  const most = Math.max(...lengths);
+  const isScaled = operation === times || (operation === over && lengths[1] === 1);
+  const isAdded = [plus, less, minus].includes(operation);
+  if (most > 1 && !isScaled && !isAdded)
+    throw fault(tree, 'a number is taken here, not a vector; take mag(...) or .x of it');
+  if (most > 1 && (isAdded ? lengths.some((its) => its < most) : lengths.every((its) => its > 1)))
+    throw isAdded
+      ? unequal(tree, values)
+      : fault(tree, 'two vectors have no product; take dot(a, b)');
+  const components = Array.from({length: most}, (_, c) =>
+    operate(
+      tree,
+      operation === kOperations['^'] && isTwo(values[1]!) ? kOperations['square']! : operation,
+      values.map((its) => its.components[its.components.length > 1 ? c : 0]!),
+    ),
+  );
+  return {components, association, errors: errorsOf(operation, values)};
+}
+
+const isTwo = ({components: [its]}: Value): boolean => constantOf(its!) === 2;
+
+/** The rules by which known errors follow; null: there is none. */
+function errorsOf(operation: Operation, values: Value[]): ErrorFactors | null {
+  const [a, b] = values;
+  const {'*': times, '/': over} = kOperations;
+  if (operation.isSteady) return added(values.map(({errors}) => errors));
+  const factor = b?.components.length === 1 ? constantOf(b.components[0]!) : null;
+  if (operation === over && factor !== null) return scaled(a!.errors, 1 / factor);
+  if (operation !== times) return null;
+  if (factor !== null) return scaled(a!.errors, factor);
+  const first = a!.components.length === 1 ? constantOf(a!.components[0]!) : null;
+  return first === null ? null : scaled(b!.errors, first);
+}
+
+function added(all: (ErrorFactors | null)[]): ErrorFactors | null {
+  const sums = new Map<string, number>();
+  for (const factors of all) {
+    if (!factors) return null;
+    for (const [key, factor] of factors) sums.set(key, (sums.get(key) ?? 0) + factor);
+  }
+  return sums;
+}
+
+function scaled(factors: ErrorFactors | null, by: number): ErrorFactors | null {
+  return factors && new Map([...factors].map(([key, factor]) => [key, factor * Math.abs(by)]));
+}
+
+const constantOf = ({steps}: Component): number | null =>
+  steps.length === 1 && 'value' in steps[0]! ? steps[0].value : null;
+
+function constant(value: number): Value {
+  return {
+    components: [{steps: [{value}], range: [value, value]}],
+    association: null,
+    errors: new Map(),
+  };
+}
+
+function valueOf(key: string, info: FieldInfo): Value {
+  const {association, components, instant} = info;
+  const most = Math.max(Math.abs(info.range[0]), Math.abs(info.range[1]));
+  const field = {key, info};
+  const all = info.minimum.map((low, component): Component => {
+    const ofStep: Interval = [low, low + info.step * (2 ** (info.bits ?? 0) - 1)];
+    const [from, to] = instant?.ranges[component] ?? ofStep;
+    const range =
+      components === 1 ? info.range : ([Math.max(from, -most), Math.min(to, most)] as const);
+    return {steps: [{load: {key, component}}], range};
+  });
+  return {components: all, association, errors: new Map([[key, 1]]), field};
+}
+
+/** A number of the field that `vector` is. */
+function leafOf(
+  {association, field}: Value,
+  component: number,
+  range: Interval,
+  factor: number,
+  quantity?: Quantity,
+): Value {
+  const {key} = field!;
+  const load = {key, component, ...(quantity && {quantity})};
+  return {
+    components: [{steps: [{load}], range}],
+    association,
+    errors: new Map([[key, factor]]),
+  };
+}
+
+function partOf(tree: Tree, value: Value, part: string): Value {
+  const {components, field} = value;
+  const names = componentNames(components.length);
+  const i = /^\d+$/.test(part) ? Number(part) : names.indexOf(part);
+  const component = components.length > 1 ? components[i] : undefined;
+  if (component)
+    return {components: [component], association: value.association, errors: value.errors};
+  const quantities = field && components.length === 6 ? kTensorQuantities : [];
+  const quantity = quantities.find(({name}) => name === part);
+  if (quantity) {
+    const most = quantity.factor * field!.info.range[1];
+    const range: Interval = [quantity.isSigned ? -most : 0, most];
+    return leafOf(value, kMagnitude, range, quantity.factor, quantity);
+  }
+  const all = [...names, ...quantities.map(({name}) => name)];
+  const has =
+    components.length === 1
+      ? 'a number has no parts'
+      : `it has ${all.join(', ') || `[0] to [${components.length - 1}]`}`;
+  throw fault(tree, `there is no "${part}" here; ${has}`);
+}
+
+function sumOf(tree: Tree, all: Component[]): Component {
+  return all.reduce((sum, its) => operate(tree, kOperations['+']!, [sum, its]));
+}
+
+/** Numbers alone are computed at once. */
+function operate(tree: Tree, operation: Operation, args: Component[]): Component {
+  const used = args.slice(0, operation.arity);
+  const numbers = used.map(constantOf);
+  if (numbers.every((its) => its !== null)) {
+    const [a = kOne, b = kOne, c = kOne] = numbers.map((its) => Float64Array.of(its));
+    operation.run(1, a, a, b, c);
+    return constant(a[0]!).components[0]!;
+  }
+  const steps = [...used.flatMap((its) => its.steps), {run: operation}];
+  if (steps.length > kMaxSteps)
+    throw fault(tree, `this takes more than ${kMaxSteps} steps; leave some of them out`);
+  const [a, b = a, c = a] = used.map(({range}) => range);
+  return {steps, range: operation.range(a!, b!, c!)};
+}
+
+/** Fields of points and those of cells have no values at the same places. */
+function together(tree: Tree, values: Value[]): Value['association'] {
+  const all = new Set(values.flatMap(({association}) => association ?? []));
+  if (all.size > 1)
+    throw fault(tree, 'one field is of points, the other of cells; take fields of one kind');
+  return [...all][0] ?? null;
+}
+
+function unequal(tree: Tree, values: Value[]): ExpressionError {
+  const [a, b] = values.map(({components}) => components.length);
+  return fault(tree, `one side has ${a} components, the other ${b}; take as many of both`);
+}
+
+function fault({at}: Tree, message: string): ExpressionError {
+  return new ExpressionError(at, message);
+}
