@@ -42,7 +42,7 @@ const fields = [
   field('Heat flux'),
   field('mat', 1, {association: 'cell'}),
 ];
-/** Of one vertex each, and of a second one where everything is missing. */
+/** One vertex each, and a second one where everything is missing. */
 const numbers: Record<string, number[]> = {
   p: [10],
   T: [4],
