@@ -70,7 +70,7 @@ set(process_flags -D_WASI_EMULATED_SIGNAL -D_WASI_EMULATED_PROCESS_CLOCKS)
 # The rooms' own. Exceptions end the module: what throws is stopping, memory that runs out, and the
 # command line, which is not here.
 set(own_flags -std=c++23 -fignore-exceptions -fno-rtti -DBOOST_NO_CXX98_FUNCTION_BASE
-  -DQTET_VERSION="${PROJECT_VERSION}" ${process_flags} -Wall -Wextra -Werror -I${PROJECT_SOURCE_DIR}
+  ${process_flags} -Wall -Wextra -Werror -I${PROJECT_SOURCE_DIR}
   ${libraries_flags})
 set(own ${portable}/without_libraries.cpp ${portable}/wasi/files.cpp
   ${portable}/wasi/filesystem.cpp ${portable}/wasi/process.cpp
@@ -89,6 +89,11 @@ foreach(room IN ITEMS proto codec simplify read)
   list(APPEND own ${sources})
 endforeach()
 set(in_the_page ${own})
+# Alone it says the version, so that a new one compiles no others again.
+list(FILTER own EXCLUDE REGEX "/proto/version[.]cpp$")
+set(version -DQTET_VERSION="${PROJECT_VERSION}")
+qtet_simplifier_object(${QTET_WASM_CXX} ${PROJECT_SOURCE_DIR}/proto/version.cpp ${own_flags}
+  ${version})
 # Loops over records and cells are compiled for speed, the rest for size.
 set(fast ${own})
 list(FILTER fast INCLUDE REGEX "/(fuse|legality|cost|measure|mesh|coding|record|clean)/")

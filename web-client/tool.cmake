@@ -3,10 +3,11 @@
 # need. It has exceptions, which end a command with a message.
 
 set(tool_flags -std=c++23 -fwasm-exceptions -D_WASI_EMULATED_GETPID -DBOOST_NO_CXX98_FUNCTION_BASE
-  -DQTET_VERSION="${PROJECT_VERSION}" ${process_flags} -Wall -Wextra -Werror
+  ${process_flags} -Wall -Wextra -Werror
   -include ${portable}/wasi/posix.h -I${PROJECT_SOURCE_DIR} ${libraries_flags}
   -isystem ${libwebp}/src -isystem ${zlib})
 
+set(simplifier_objects "")
 set(tool ${portable}/in_node.cpp ${portable}/without_http.cpp)
 foreach(target IN ITEMS qtet_proto qtet_codec qtet_c_api qtet_simplify qtet_simplify_c_api qtet_read
     qtet_picture qtet_words qtet_commands)
@@ -15,12 +16,14 @@ foreach(target IN ITEMS qtet_proto qtet_codec qtet_c_api qtet_simplify qtet_simp
 endforeach()
 list(FILTER tool EXCLUDE REGEX "^\\$<")
 list(REMOVE_ITEM tool ${in_the_page})
+list(FILTER tool EXCLUDE REGEX "/c_api_levels[.]cpp$")
+qtet_simplifier_object(${QTET_WASM_CXX} ${PROJECT_SOURCE_DIR}/codec/api/c_api_levels.cpp
+  ${tool_flags} -Os ${version})
 # in_node.cpp and without_libraries.cpp stand for these.
 list(FILTER tool EXCLUDE REGEX "/(hdf/(hdf_file|read_vtkhdf)|foreign/.*|foreign_programs)[.]cpp$")
 list(FILTER tool EXCLUDE REGEX "/(guarded_folder|trial_process|watch_process|read_apart)[.]cpp$")
 list(FILTER tool EXCLUDE REGEX
   "/(brotlied|follow_files|reported_work|command_publish|command_view|wasm_api)[.]cpp$")
-set(simplifier_objects "")
 qtet_simplifier_objects(${QTET_WASM_CXX} tool "${tool}" ${tool_flags} -Os)
 qtet_simplifier_objects(${QTET_WASM_CXX} draco_tool "${draco_meshes}" ${draco_flags}
   -DQTET_DRACO_MESHES)

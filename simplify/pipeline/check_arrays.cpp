@@ -82,4 +82,14 @@ Status checkArrays(const TetMesh& mesh) {
   return checkFields(mesh);
 }
 
+Status checkRoom(std::uint64_t cells, std::uint64_t most) {
+  if (cells <= most / kLeastBytesACell) return {};
+  constexpr std::uint64_t kGigabyte = 1'000'000'000;
+  return fail(ErrorCode::kLimitExceeded,
+              "simplifying " + std::to_string(cells) + " tetrahedra takes over " +
+                  std::to_string(cells * kLeastBytesACell / kGigabyte) +
+                  " GB, and this program has " + std::to_string(most / kGigabyte) +
+                  " GB at most; use the tool of the Python or Debian package");
+}
+
 }  // namespace qtet

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -347,6 +348,9 @@ Status checkOptions(const PipelineOptions& options) {
 
 Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options) {
   if (Status checked = checkOptions(options); !checked) return std::unexpected(checked.error());
+  constexpr std::uint64_t kAddresses = std::numeric_limits<std::size_t>::max();
+  if (Status fits = checkRoom(mesh.tetrahedra.size(), kAddresses); !fits)
+    return std::unexpected(fits.error());
   Run run{options};
   Result<QuantisedMesh> quantised = prepare(std::move(mesh), run);
   if (!quantised) return std::unexpected(quantised.error());

@@ -110,6 +110,12 @@ struct PipelineOutput {
 /// point, tetrahedron or field at fault, by its number), limit-exceeded.
 [[nodiscard]] Status checkArrays(const TetMesh& mesh);
 
+/// Simplifying takes 275 to 340 bytes a cell, fields included; this is what it never does without.
+constexpr std::uint64_t kLeastBytesACell = 250;
+/// Error: limit-exceeded (so many cells cannot be simplified where a program has `most` bytes, such
+/// as the 4 GiB of WebAssembly).
+[[nodiscard]] Status checkRoom(std::uint64_t cells, std::uint64_t most);
+
 /// Makes the log of a mesh; the mesh is given back before the first fusion. The same mesh and
 /// options give the same bytes, whatever the number of threads. Errors: checkOptions's,
 /// addTimeStatistics's, cleanMesh's, quantise's, simplify's, measureLevels's, the spool's and

@@ -187,5 +187,16 @@ TEST(Arrays, whatALogCannotHoldIsNamed) {
       ErrorCode::kLimitExceeded);
 }
 
+TEST(CheckRoom, RefusesWhatAProgramHasNoAddressesFor) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
+  EXPECT_TRUE(checkRoom(kMost / kLeastBytesACell, kMost));
+  const Status refused = checkRoom(kMost / kLeastBytesACell + 1, kMost);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kLimitExceeded);
+  EXPECT_EQ(refused.error().message,
+            "simplifying 17179870 tetrahedra takes over 4 GB, and this program has 4 GB at most; "
+            "use the tool of the Python or Debian package");
+}
+
 }  // namespace
 }  // namespace qtet

@@ -44,7 +44,7 @@ export function deriveFields(text: string, manifest: Manifest): DerivedFields {
   return {fields: [...all, ...tensorFields(manifest)], errors};
 }
 
-/** Of a definition: the name, and where its expression begins. */
+/** The name of a definition, and where its expression begins. */
 function nameIn(
   definition: string,
   fields: readonly FieldInfo[],

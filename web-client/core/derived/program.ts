@@ -1,5 +1,5 @@
-// From the tree of an expression to a program for blocks of values, with what is known of its
-// result: its range, and how the known errors of the fields bound its own.
+// From the tree of an expression to a program for blocks of values. The range of its result is
+// known, and how the known errors of the fields bound its own.
 
 import {componentNames, fieldOfKey} from '../layers/field_values';
 import {kMagnitude} from '../picture/field_scale';
@@ -30,7 +30,7 @@ interface Component {
 export interface Value {
   components: Component[];
   association: FieldInfo['association'] | null;
-  /** Of the whole vector; null: no rule bounds it. */
+  /** The error of the whole vector; null: no rule bounds it. */
   errors: ErrorFactors | null;
   /** It is this field as it is. */
   field?: {key: string; info: FieldInfo};
