@@ -36,7 +36,7 @@
 /* The version of this header. Below 1.0 a new minor version may break callers, and the library's
  * SOVERSION then grows. */
 #define QTET_VERSION_MAJOR 0
-#define QTET_VERSION_MINOR 3
+#define QTET_VERSION_MINOR 4
 #define QTET_VERSION_PATCH 0
 #define QTET_VERSION_NUMBER \
   (QTET_VERSION_MAJOR * 10000 + QTET_VERSION_MINOR * 100 + QTET_VERSION_PATCH)
@@ -84,7 +84,7 @@ typedef struct qtet_log qtet_log;
 
 /* QTET_VERSION_NUMBER of the library that runs. */
 QTET_API uint32_t qtet_version(void);
-/* "0.3.0"; for ever. */
+/* "0.4.0"; for ever. */
 QTET_API const char* qtet_version_text(void);
 /* "bad-checksum", as in codec/FORMAT.md; "unknown" for a number that is none. For ever. */
 QTET_API const char* qtet_status_name(qtet_status status);
@@ -120,7 +120,7 @@ typedef struct {
   double latticeOrigin[3];
   const char* digest;    /* SHA-256 of the log, 64 lower-case hexadecimal digits */
   const char* source;    /* file name of the mesh that it was made from */
-  const char* generator; /* "qtet 0.3.0" */
+  const char* generator; /* "qtet 0.4.0" */
   const char* timeUnit;  /* Since 0.4: of the times of instants; "": unknown */
 } qtet_log_info;
 

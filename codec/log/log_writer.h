@@ -36,7 +36,7 @@ using ClosingSink = std::function<Status(ClosingKind kind, std::uint32_t field, 
 
 struct LogWriterOptions {
   std::string source;     ///< the input's file name, for the manifest
-  std::string generator;  ///< "qtet 0.3.0"
+  std::string generator;  ///< "qtet 0.4.0"
   /// A chunk ends at the record that takes it beyond; the first ones are smaller, from 4 KB on.
   std::uint32_t chunkBytes = 64 << 10;
   CodecId valueCodec = CodecId::kLifted;  ///< kLifted, kDraco or kAdaptive

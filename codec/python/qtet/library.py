@@ -195,7 +195,7 @@ def library() -> ctypes.CDLL:
 
 
 def version() -> str:
-    """That of libqtet.so: "0.3.0"."""
+    """That of libqtet.so: "0.4.0"."""
     text = library().qtet_version_text
     text.restype = _text
     return str(text().decode())
