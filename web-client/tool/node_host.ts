@@ -1,5 +1,6 @@
 // Node's files and streams for the tool. Windows' names have the form /C/folder/file there.
 
+import {webcrypto} from 'node:crypto';
 import fs from 'node:fs';
 import os from 'node:os';
 import tty from 'node:tty';
@@ -28,6 +29,9 @@ export function toolWord(word: string, windows = isWindows): string {
   const option = /^(--[a-z0-9-]+=)(.*)$/s.exec(word);
   return option ? option[1]! + toolName(option[2]!, windows) : toolName(word, windows);
 }
+
+// Node 18 has it under this name alone.
+if (!('crypto' in globalThis)) Object.assign(globalThis, {crypto: webcrypto});
 
 const isWindows = process.platform === 'win32';
 

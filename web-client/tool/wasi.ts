@@ -122,11 +122,13 @@ class Errno extends Error {
   }
 }
 
-function numberOf(error: unknown): number {
+/** Null: no error of files. */
+function numberOf(error: unknown): number | null {
   const {code, errno} = error as {code?: string; errno?: number};
   if (typeof code === 'string' && code in kErrors) return kErrors[code]!;
-  // A node of Emscripten's file system has WASI's numbers. Those of node are negative.
-  return typeof errno === 'number' && errno > 0 ? errno : kIo;
+  // Errors of Emscripten's file system have WASI's numbers. Those of node are negative.
+  if (typeof errno === 'number') return errno > 0 ? errno : kIo;
+  return null;
 }
 
 /** A module's view of the host. One a module. */
@@ -338,8 +340,9 @@ export class Wasi<Handle> {
       try {
         return run(...words);
       } catch (error) {
-        if (error instanceof Exit) throw error;
-        return error instanceof Errno ? error.errno : numberOf(error);
+        const number = numberOf(error);
+        if (number === null) throw error;
+        return number;
       }
     };
   }
