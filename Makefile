@@ -52,7 +52,8 @@ help:
 	make gallery               the samples and links to each feature, for any web server:
 	                           build/release/gallery
 	make wheel                 the Python package: build/release/wheels/*.whl; ARCH=aarch64 compiles
-	                           it for that processor with g++-aarch64-linux-gnu
+	                           it for that processor with g++-aarch64-linux-gnu, ARCH=pure makes the
+	                           one for Pyodide, and for node on every system
 	make test-deb              install, use and remove them in a Debian of their own (needs root)
 	make build                 build only: build/release/bin/qtet and qtet-server
 	make setup                 install what is missing of .ci/packages.txt (asks sudo if not root), and

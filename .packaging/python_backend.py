@@ -2,9 +2,11 @@
 
 The wheel fits every Python 3.9 and later on one processor: this one, or aarch64, for which Debian's
 cross compiler makes the library. The modules reach the library by ctypes.
+A pure wheel fits all others. It holds the tool and the library as WebAssembly, for Pyodide and
+node.
 The same sources and build machine give the same bytes.
 
-   python_backend.py FOLDER [aarch64]"""
+   python_backend.py FOLDER [aarch64|pure]"""
 import base64
 import gzip
 import hashlib
@@ -17,12 +19,15 @@ import re
 import subprocess
 import sys
 import tarfile
+import tempfile
 import time
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/release"
 LIBRARY = "package/qtet/libqtet.so"
+TOOL = "qtet-tool.wasm"
+PURE = "py3-none-any"
 # Builds for another processor have its Debian packages in root/.
 AARCH64 = ROOT / "build/aarch64"
 # Processors as readelf calls them, and as tags of wheels do. Others build for themselves alone.
@@ -53,7 +58,7 @@ def date():
     return max(int(told or 0), _EARLIEST)
 
 
-def _metadata():
+def _metadata(system="POSIX :: Linux"):
     return f"""Metadata-Version: 2.4
 Name: {NAME}
 Version: {version()}
@@ -61,7 +66,7 @@ Summary: Tetrahedral meshes as small logs that a browser shows coarse-first
 License-Expression: Apache-2.0
 License-File: LICENSE
 License-File: third-party.txt
-Classifier: Operating System :: POSIX :: Linux
+Classifier: Operating System :: {system}
 Classifier: Programming Language :: Python :: 3
 Classifier: Topic :: Scientific/Engineering :: Visualization
 Requires-Python: >=3.9
@@ -92,31 +97,40 @@ def _notices(root):
     return "\n".join(parts)
 
 
-def _members(library, tag, notices):
-    """(name in the wheel, bytes, whether it may be executed), without the record."""
+def _viewer(folder):
+    """The viewer's files as members in a folder of the package."""
     viewer = BUILD / "share/qtet/viewer"
-    for needed in (library, viewer / "index.html"):
-        if not needed.is_file():
-            raise SystemExit(f"{needed} is missing; run make wheel")
-    without = json.loads((viewer / "viewer.json").read_text())["simplifier"]
-    members = [(f"{NAME}/libqtet.so", library.read_bytes(), True)]
-    for path in sorted((ROOT / "codec/python/qtet").iterdir()):
-        if path.suffix == ".py" or path.name == "py.typed":
-            members.append((f"{NAME}/{path.name}", path.read_bytes(), False))
+    # Compressed copies are made again where the viewer is published. Meshes are simplified by the
+    # library, not in the browser.
+    without = json.loads(_needed(viewer / "viewer.json"))["simplifier"]
     for path in sorted(viewer.rglob("*")):
-        # Compressed copies are made again where the viewer is published. Meshes are simplified by
-        # the library, not in the browser.
         is_copy = path.suffix in (".gz", ".br", ".zst")
         name = path.relative_to(viewer).as_posix()
         if path.is_file() and not is_copy and name not in without:
-            members.append((f"{NAME}/viewer/{name}", path.read_bytes(), False))
+            yield f"{NAME}/{folder}/{name}", path.read_bytes(), False
+
+
+def _needed(path):
+    if not path.is_file():
+        raise SystemExit(f"{path} is missing; run make wheel")
+    return path.read_bytes()
+
+
+def _members(parts, tag, notices):
+    """(name in the wheel, bytes, whether it may be executed), without the record. `parts` are those
+    of one kind of wheel."""
+    members = list(parts)
+    for path in sorted((ROOT / "codec/python/qtet").iterdir()):
+        if path.suffix == ".py" or path.name == "py.typed":
+            members.append((f"{NAME}/{path.name}", path.read_bytes(), False))
     info = f"{NAME}-{version()}.dist-info"
+    is_pure = tag == PURE
     wheel = (
-        f"Wheel-Version: 1.0\nGenerator: qtet {version()}\nRoot-Is-Purelib: false\n"
-        f"Tag: {tag}\n"
+        f"Wheel-Version: 1.0\nGenerator: qtet {version()}\n"
+        f"Root-Is-Purelib: {str(is_pure).lower()}\nTag: {tag}\n"
     )
     for name, text in (
-        ("METADATA", _metadata()),
+        ("METADATA", _metadata("OS Independent") if is_pure else _metadata()),
         ("WHEEL", wheel),
         ("entry_points.txt", "[console_scripts]\nqtet = qtet.__main__:main\n"),
         ("licenses/LICENSE", (ROOT / "LICENSE").read_text()),
@@ -141,20 +155,46 @@ def _make(*words):
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """Writes the wheel for this processor and returns its name."""
     _make("build", "TARGETS=--target qtet_package_library qtet_viewer")
-    return _write_wheel(wheel_directory, BUILD / LIBRARY, pathlib.Path("/"))
+    return _native_wheel(wheel_directory, BUILD / LIBRARY, pathlib.Path("/"))
 
 
 def build_aarch64_wheel(wheel_directory):
     """The same for aarch64. The modules and the viewer fit every processor."""
     _make("build", "TARGETS=--target qtet_viewer")
     _make("build-aarch64")
-    return _write_wheel(wheel_directory, AARCH64 / LIBRARY, AARCH64 / "root")
+    return _native_wheel(wheel_directory, AARCH64 / LIBRARY, AARCH64 / "root")
 
 
-def _write_wheel(wheel_directory, library, root):
+def build_pure_wheel(wheel_directory):
+    """The wheel with WebAssembly, without anything for one processor."""
+    _make("build", "TARGETS=--target qtet_tool_wasm qtet_viewer")
+    parts = [(f"{NAME}/web/{TOOL}", _needed(BUILD / "web-client" / TOOL), False)]
+    with tempfile.TemporaryDirectory(prefix="qtet-wheel-") as made:
+        for mode in ("node", "pyodide"):
+            vite = "node_modules/vite/bin/vite.js build --config vite.wheel.config.ts --mode"
+            subprocess.run(
+                ["node", *vite.split(), mode, "--logLevel", "warn"],
+                check=True,
+                cwd=ROOT / "web-client",
+                env={**os.environ, "QTET_WHEEL_OUT": made},
+                stdout=sys.stderr,
+            )
+        folder = pathlib.Path(made)
+        for name in ("qtet.mjs", "tool.js"):
+            parts.append((f"{NAME}/web/{name}", (folder / name).read_bytes(), False))
+        texts = ("third-party.txt", "qtet-tool.third-party.txt")
+        notices = "\n".join((folder / name).read_text() for name in texts)
+    return _write_wheel(wheel_directory, [*parts, *_viewer("web/viewer")], PURE, notices)
+
+
+def _native_wheel(wheel_directory, library, root):
+    parts = [(f"{NAME}/libqtet.so", _needed(library), True), *_viewer("viewer")]
     done = subprocess.run(["readelf", "-hVW", library], capture_output=True, text=True, check=True)
-    its_tag = tag(done.stdout)
-    members, own = _members(library, its_tag, _notices(root))
+    return _write_wheel(wheel_directory, parts, tag(done.stdout), _notices(root))
+
+
+def _write_wheel(wheel_directory, parts, its_tag, notices):
+    members, own = _members(parts, its_tag, notices)
     members.append((own, _record(members, own), False))
     name = f"{NAME}-{version()}-{its_tag}.whl"
     day = time.gmtime(date())[:6]
@@ -199,7 +239,11 @@ def build_sdist(sdist_directory, config_settings=None):
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1])
     processor = sys.argv[2] if len(sys.argv) > 2 else platform.machine()
-    builds = {"aarch64": build_aarch64_wheel, platform.machine(): build_wheel}
+    builds = {
+        "pure": build_pure_wheel,
+        "aarch64": build_aarch64_wheel,
+        platform.machine(): build_wheel,
+    }
     if processor not in builds:
         raise SystemExit(f"no wheel for {processor}; {' and '.join(builds)} can be made here")
     path = folder / builds[processor](folder)

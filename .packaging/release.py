@@ -31,8 +31,9 @@ def run(*words, cwd=ROOT):
 
 
 def wheels(folder):
-    """For this processor, and for aarch64 where Debian's compiler for it is installed."""
+    """For this processor, for aarch64 where Debian's compiler for it is installed, and for all."""
     backend.build_wheel(folder)
+    backend.build_pure_wheel(folder)
     if platform.machine() == "aarch64":
         return
     if shutil.which("aarch64-linux-gnu-g++"):

@@ -174,6 +174,11 @@ if(QTET_WEB)
       ${here}/browser/notebook.mjs --python ${QTET_VTK_PYTHON} --bin ${bin}
       --out ${CMAKE_BINARY_DIR}/notebook)
   endif()
+  if(QTET_VTK_PYTHON AND NOT QTET_SANITIZE)
+    qtet_system_test(wheel_pyodide ROOM codec COMMAND ${QTET_NODE}
+      ${here}/consumer/pyodide.mjs --python ${QTET_VTK_PYTHON} --bin ${bin}
+      --library $<TARGET_FILE:qtet_shared> --out ${out}/wheel_pyodide)
+  endif()
   # The npm package in an empty project of somebody else.
   qtet_system_test(package ROOM browser CHANCE SECONDS 1200 COMMAND ${QTET_NODE}
     ${here}/browser/package.mjs --bin ${bin} --wasm ${wasm} --out ${CMAKE_BINARY_DIR}/npm)

@@ -15,6 +15,9 @@ interface Exports {
   qtet_main(count: number, words: number): number;
 }
 
+/** An instance of the module, before `_initialize`. */
+export type Tool = Exports & Readonly<Record<string, (...words: (number | bigint)[]) => unknown>>;
+
 export interface Host<Handle> {
   files: HostFiles<Handle>;
   streams: Streams;
@@ -31,10 +34,7 @@ export function runTool<Handle>(
   words: readonly string[],
   host: Host<Handle>,
 ): number {
-  const wasi = new Wasi(host.files, host.streams, host.environment);
-  const instance = new WebAssembly.Instance(module, {wasi_snapshot_preview1: wasi.imports});
-  const tool = instance.exports as unknown as Exports;
-  wasi.attach(tool.memory);
+  const {tool, wasi} = started(module, host);
   try {
     tool._initialize();
     return tool.qtet_main(words.length + 1, placed(tool, ['qtet', ...words]));
@@ -47,8 +47,20 @@ export function runTool<Handle>(
   }
 }
 
+/** The module on a host. */
+export function started<Handle>(
+  module: WebAssembly.Module,
+  host: Host<Handle>,
+): {tool: Tool; wasi: Wasi<Handle>} {
+  const wasi = new Wasi(host.files, host.streams, host.environment);
+  const instance = new WebAssembly.Instance(module, {wasi_snapshot_preview1: wasi.imports});
+  const tool = instance.exports as unknown as Tool;
+  wasi.attach(tool.memory);
+  return {tool, wasi};
+}
+
 /** The words as main() takes them: pointers to texts that end in NUL, and a null pointer. */
-function placed(tool: Exports, words: readonly string[]): number {
+function placed(tool: Tool, words: readonly string[]): number {
   const texts = words.map((word) => new TextEncoder().encode(`${word}\0`));
   const pointers = tool.malloc(4 * (words.length + 1)) >>> 0;
   texts.forEach((text, i) => {
@@ -60,8 +72,12 @@ function placed(tool: Exports, words: readonly string[]): number {
   return pointers;
 }
 
-function reasonOf(tool: Exports, thrown: Error): string {
-  return tool.memory.buffer.byteLength > kNearlyAllMemory
+/** Whether the module has no more memory. */
+export const isFull = (tool: Tool): boolean => tool.memory.buffer.byteLength > kNearlyAllMemory;
+
+/** Why the module ended, for people. */
+export function reasonOf(tool: Tool, thrown: Error): string {
+  return isFull(tool)
     ? 'the mesh does not fit into the 4 GB that WebAssembly has; use the tool of the Python or ' +
         'Debian package'
     : `the file is damaged, or qtet has a defect: ${thrown.message}`;

@@ -56,7 +56,8 @@ def _serve(name: str, words: list[str]) -> int:
 
 def main() -> int:
     words = sys.argv[1:]
-    if words[:1] in (["view"], ["serve"]):
+    # The WebAssembly's `view` opens a file.
+    if words[:1] == ["serve"] or (words[:1] == ["view"] and not tool.is_wasm()):
         return _serve(words[0], words[1:])
     return tool.call(words)
 

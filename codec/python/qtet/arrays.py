@@ -38,12 +38,17 @@ class Arrays:
         return f"<qtet.Arrays {sizes}, fields: {names}>"
 
 
-def _copied(address: Any, count: int, width: int) -> NDArray[Any]:
+def _copied(log: Log, address: Any, count: int, width: int) -> NDArray[Any]:
     """Indices out of the library's memory."""
     if count == 0:
         return numpy.empty((0, width), "uint32")
-    packed = ctypes.string_at(address, 4 * width * count)
+    packed = log.c.bytes_at(address, 4 * width * count)
     return numpy.frombuffer(packed, "uint32").reshape(-1, width)
+
+
+def _memory(values: Any) -> Any:
+    """A packed array as one of ctypes, at the same place."""
+    return (ctypes.c_char * values.nbytes).from_buffer(values)
 
 
 def field_of(log: Log, number: int) -> NDArray[Any]:
@@ -54,7 +59,7 @@ def field_of(log: Log, number: int) -> NDArray[Any]:
     is_double = kind != "float32"
     values = numpy.empty(count, "float64" if is_double else "float32")
     if count:
-        log.copy_field(number, values.ctypes.data_as(ctypes.c_void_p), count, is_double)
+        log.copy_field(number, _memory(values), count, is_double)
     values = values.astype(kind, copy=False)
     return values.reshape(-1, info.components) if info.components > 1 else values
 
@@ -70,9 +75,9 @@ def arrays_of(
     wanted = log.fields_of(fields, time, method)
     points = numpy.empty((vertices, 3))
     if vertices:
-        log.copy_points(points.ctypes.data_as(ctypes.c_void_p), 3 * vertices, True)
-    cells = _copied(log.c.qtet_log_tetrahedra(log.handle), tetrahedra, 4)
-    boundary = _copied(log.c.qtet_log_boundary(log.handle), triangles, 3)
+        log.copy_points(_memory(points), 3 * vertices, True)
+    cells = _copied(log, log.c.qtet_log_tetrahedra(log.handle), tetrahedra, 4)
+    boundary = _copied(log, log.c.qtet_log_boundary(log.handle), triangles, 3)
     out = Arrays(points, cells.view("int32"), boundary.view("int32"), {}, {})
     for number, name, info in wanted:
         data = out.point_data if info.association == POINT else out.cell_data

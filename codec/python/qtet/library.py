@@ -1,4 +1,5 @@
-"""libqtet.so: where it is, and what its structs say (codec/api/qtet.h)."""
+"""libqtet.so: where it is, and what its structs say (codec/api/qtet.h). In Pyodide a WebAssembly
+module takes its place (wasm.py)."""
 from __future__ import annotations
 
 import ctypes
@@ -6,14 +7,40 @@ import ctypes.util
 import os
 import pathlib
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
-_u32, _u64, _f64, _text = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_char_p
+_u32, _u64, _f64, _address = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_void_p
 POINT, CELL = 0, 1
 
 
 class QtetError(RuntimeError):
     """What went wrong, where, and what to do, in the words of the library."""
+
+
+class _Text(ctypes.c_void_p):
+    """The address of a text in the library's memory."""
+
+
+class Library(Protocol):
+    """The functions of libqtet.so by their C names, and access to its memory. Addresses are int."""
+
+    calls_back: bool  # whether C can call Python
+
+    def text_at(self, address: int) -> str:
+        """A text that ends in NUL."""
+
+    def bytes_at(self, address: int, size: int) -> bytes:
+        """A copy."""
+
+    def place(self, data: Any) -> int:
+        """The address of what a packed array of numpy or an object of ctypes holds. The caller
+        keeps the object until release(), and does not change it."""
+
+    def release(self, address: int) -> None:
+        """Gives a place back."""
+
+    def __getattr__(self, name: str) -> Any:
+        """A function of C."""
 
 
 class CLogInfo(ctypes.Structure):
@@ -27,10 +54,10 @@ class CLogInfo(ctypes.Structure):
         ("latticeBits", _u32),
         ("latticeStep", _f64),
         ("latticeOrigin", _f64 * 3),
-        ("digest", _text),
-        ("source", _text),
-        ("generator", _text),
-        ("timeUnit", _text),
+        ("digest", _Text),
+        ("source", _Text),
+        ("generator", _Text),
+        ("timeUnit", _Text),
     ]
 
 
@@ -44,10 +71,10 @@ class CFieldInfo(ctypes.Structure):
         ("minimum", _f64 * 16),
         ("range", _f64 * 2),
         ("bytes", _u64),
-        ("name", _text),
-        ("type", _text),
-        ("unit", _text),
-        ("labels", _text),
+        ("name", _Text),
+        ("type", _Text),
+        ("unit", _Text),
+        ("labels", _Text),
         ("largestRoundingError", _f64),
     ]
 
@@ -71,7 +98,7 @@ class CLevelInfo(ctypes.Structure):
 
 
 class CSeriesInfo(ctypes.Structure):
-    _fields_ = [("association", _u32), ("instants", _u32), ("name", _text)]
+    _fields_ = [("association", _u32), ("instants", _u32), ("name", _Text)]
 
 
 # Copies in Python's own types, with the members of qtet.h: they outlive their log.
@@ -127,16 +154,34 @@ class LevelInfo:
     volumeGained: float
 
 
-def _plain(value: Any) -> Any:
+def _plain(c: Library, value: Any) -> Any:
     """A member of a struct without the library's memory."""
-    if isinstance(value, bytes):
-        return value.decode(errors="replace")
+    if isinstance(value, _Text):
+        return c.text_at(value.value or 0)
     return tuple(value) if isinstance(value, ctypes.Array) else value
 
 
-def members_of(struct: ctypes.Structure) -> dict[str, Any]:
+def members_of(c: Library, struct: ctypes.Structure) -> dict[str, Any]:
     names = (entry[0] for entry in struct._fields_)
-    return {name: _plain(getattr(struct, name)) for name in names if name != "reserved"}
+    return {name: _plain(c, getattr(struct, name)) for name in names if name != "reserved"}
+
+
+class _SharedLibrary(ctypes.CDLL):
+    """libqtet.so itself, as a Library."""
+
+    calls_back = True
+
+    def text_at(self, address: int) -> str:
+        return ctypes.string_at(address).decode(errors="replace")
+
+    def bytes_at(self, address: int, size: int) -> bytes:
+        return ctypes.string_at(address, size)
+
+    def place(self, data: Any) -> int:
+        return int(data.ctypes.data) if hasattr(data, "ctypes") else ctypes.addressof(data)
+
+    def release(self, address: int) -> None:
+        pass
 
 
 def _candidates() -> list[str]:
@@ -154,27 +199,20 @@ def _candidates() -> list[str]:
     return [*installed, "libqtet.so.0", ctypes.util.find_library("qtet") or "libqtet.so"]
 
 
-_loaded: ctypes.CDLL | None = None
-
-
-def library() -> ctypes.CDLL:
-    """libqtet.so, loaded once."""
-    global _loaded
-    if _loaded is not None:
-        return _loaded
+def _shared_library() -> _SharedLibrary:
     tried = []
     for name in _candidates():
         try:
-            c = ctypes.CDLL(name)
+            c = _SharedLibrary(name)
         except OSError as error:
             tried.append(str(error))
             continue
         for function, result in (
-            ("create", ctypes.c_void_p),
-            ("error", _text),
-            ("tetrahedra", ctypes.c_void_p),
-            ("boundary", ctypes.c_void_p),
-            ("lattice_points", ctypes.c_void_p),
+            ("create", _address),
+            ("error", _address),
+            ("tetrahedra", _address),
+            ("boundary", _address),
+            ("lattice_points", _address),
             ("field_count", ctypes.c_size_t),
             ("series_count", _u32),
             ("level", _u32),
@@ -185,7 +223,9 @@ def library() -> ctypes.CDLL:
                     "install the same version of both"
                 )
             getattr(c, "qtet_log_" + function).restype = result
-        _loaded = c
+        for function in ("version_text", "simplified_create", "simplified_error", "simplified_log"):
+            if hasattr(c, "qtet_" + function):
+                getattr(c, "qtet_" + function).restype = _address
         return c
     raise QtetError(
         "libqtet.so is not found ("
@@ -194,8 +234,23 @@ def library() -> ctypes.CDLL:
     )
 
 
+_loaded: Library | None = None
+
+
+def library() -> Library:
+    """libqtet.so, loaded once; in Pyodide the module."""
+    global _loaded
+    from . import wasm
+
+    if wasm.IS_HERE:
+        if not isinstance(_loaded, wasm.WasmLibrary) or _loaded.is_broken:
+            _loaded = wasm.WasmLibrary()
+    elif _loaded is None:
+        _loaded = _shared_library()
+    return _loaded
+
+
 def version() -> str:
     """That of libqtet.so: "0.4.0"."""
-    text = library().qtet_version_text
-    text.restype = _text
-    return str(text().decode())
+    c = library()
+    return c.text_at(c.qtet_version_text())

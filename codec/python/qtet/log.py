@@ -1,5 +1,5 @@
 """qtet logs from Python: what a log holds, and its mesh at any level. Standard library alone;
-libqtet.so decodes (codec/api/qtet.h).
+libqtet.so decodes (library.py).
 
     with Log("part.qtet") as log:
         log.refine(log.level_of_error("Density", 0.01))
@@ -195,7 +195,7 @@ class Log:
 
     def check(self, status: int) -> None:
         if status != 0:
-            raise QtetError(self.c.qtet_log_error(self.handle).decode(errors="replace"))
+            raise QtetError(self.c.text_at(self.c.qtet_log_error(self.handle)))
 
     def _struct(
         self, kind: type[ctypes.Structure], function: Callable[..., Any], *arguments: Any
@@ -203,10 +203,10 @@ class Log:
         out = kind()
         self.check(
             function(
-                self.handle, *arguments, ctypes.c_size_t(ctypes.sizeof(kind)), ctypes.byref(out)
+                self.handle, *arguments, ctypes.c_size_t(ctypes.sizeof(kind)), ctypes.pointer(out)
             )
         )
-        return members_of(out)
+        return members_of(self.c, out)
 
     def _field_info(self, field: int) -> FieldInfo:
         members = self._struct(CFieldInfo, self.c.qtet_log_get_field, _u32(field))
@@ -226,9 +226,9 @@ class Log:
         return Series(info["name"], info["association"], tuple(times), tuple(fields))
 
     def _level(self, function: Callable[..., Any], *arguments: Any) -> int:
-        level = _u32()
-        self.check(function(self.handle, *arguments, ctypes.byref(level)))
-        return level.value
+        level = (_u32 * 1)()
+        self.check(function(self.handle, *arguments, level))
+        return level[0]
 
     def _known_level(self, level: int) -> int:
         number = operator.index(level)
@@ -400,7 +400,7 @@ class Log:
         return to_xarray(self, fields)
 
     def copy_points(self, target: Any, count: int, is_double: bool) -> None:
-        """Writes 3 numbers a vertex to ctypes' `target`."""
+        """Writes 3 numbers a vertex to `target`, an array of ctypes or its address."""
         function = (
             self.c.qtet_log_copy_points_double if is_double else self.c.qtet_log_copy_points_float
         )
@@ -411,7 +411,7 @@ class Log:
         return count
 
     def copy_field(self, field: int, target: Any, count: int, is_double: bool) -> None:
-        """Writes a field's values to ctypes' `target`; NaN where one is missing."""
+        """Writes a field's values to `target`, as copy_points(); NaN where one is missing."""
         function = (
             self.c.qtet_log_copy_field_double if is_double else self.c.qtet_log_copy_field_float
         )

@@ -14,7 +14,7 @@ import numpy
 
 from . import tool
 from .grids import Grid, grid_of, mesh_array, packed_array, series_of
-from .library import QtetError, library
+from .library import Library, QtetError, library
 from .sources import check_output
 
 if TYPE_CHECKING:
@@ -22,13 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Cancelled", "simplify"]
 
-_u32, _u64, _f64, _text, _address = (
-    ctypes.c_uint32,
-    ctypes.c_uint64,
-    ctypes.c_double,
-    ctypes.c_char_p,
-    ctypes.c_void_p,
-)
+_u32, _u64, _f64, _address = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_void_p
 _POINT, _CELL = 0, 1
 _CANCELLED, _OUT_OF_MEMORY = 12, 103
 _TYPES = {
@@ -62,7 +56,7 @@ class Cancelled(QtetError):
 
 class _Field(ctypes.Structure):
     _fields_ = [
-        ("name", _text),
+        ("name", _address),
         ("association", _u32),
         ("type", _u32),
         ("components", _u32),
@@ -79,18 +73,18 @@ class _Mesh(ctypes.Structure):
         ("tetrahedronCount", _u64),
         ("pointType", _u32),
         ("idType", _u32),
-        ("fields", ctypes.POINTER(_Field)),
+        ("fields", _address),
         ("fieldCount", _u32),
         ("fieldBytes", _u32),
     ]
 
 
 class _NamedNumber(ctypes.Structure):
-    _fields_ = [("name", _text), ("value", _f64)]
+    _fields_ = [("name", _address), ("value", _f64)]
 
 
 class _ErrorBound(ctypes.Structure):
-    _fields_ = [("name", _text), ("value", _f64), ("unit", _text)]
+    _fields_ = [("name", _address), ("value", _f64), ("unit", _address)]
 
 
 _Progress = ctypes.CFUNCTYPE(ctypes.c_int, _address, _u32, _f64)
@@ -113,12 +107,12 @@ class _Options(ctypes.Structure):
         ("exactCoarse", _u32),
         ("threads", _u32),
         ("maxBoundaryError", _f64),
-        ("maxFieldErrors", ctypes.POINTER(_NamedNumber)),
-        ("fieldWeights", ctypes.POINTER(_NamedNumber)),
+        ("maxFieldErrors", _address),
+        ("fieldWeights", _address),
         ("maxFieldErrorCount", _u32),
         ("fieldWeightCount", _u32),
-        ("regions", _text),
-        ("source", _text),
+        ("regions", _address),
+        ("source", _address),
         ("progress", _Progress),
         ("user", _address),
         ("originalIds", _u32),
@@ -126,21 +120,55 @@ class _Options(ctypes.Structure):
         ("baseError", _f64),
         ("timeStatistics", _u32),
         ("labelWeightCount", _u32),
-        ("labelWeights", ctypes.POINTER(_NamedNumber)),
-        ("errors", ctypes.POINTER(_ErrorBound)),
+        ("labelWeights", _address),
+        ("errors", _address),
         ("errorCount", _u32),
         ("errorReserved", _u32),
     ]
 
 
-def _library() -> ctypes.CDLL:
+def _library() -> Library:
     c = library()
     if not hasattr(c, "qtet_simplify"):
         raise QtetError("this libqtet.so makes no logs; install a newer libqtet0")
-    c.qtet_simplified_create.restype = _address
-    c.qtet_simplified_error.restype = _text
-    c.qtet_simplified_log.restype = _address
     return c
+
+
+class _Places:
+    """Data that structs of C point to, until free()."""
+
+    def __init__(self, c: Library) -> None:
+        self.c = c
+        self.kept: list[tuple[int, Any]] = []
+
+    def of(self, data: Any) -> int:
+        """The address of a packed array of numpy, or of an array of ctypes."""
+        self.kept.append((self.c.place(data), data))
+        return self.kept[-1][0]
+
+    def text(self, text: str) -> int:
+        return self.of(ctypes.create_string_buffer(text.encode()))
+
+    def named(self, numbers: Mapping[str, float] | None) -> tuple[int, int]:
+        """The address of the entries, and how many there are."""
+        entries = [_NamedNumber(self.text(name), x) for name, x in (numbers or {}).items()]
+        return self.of((_NamedNumber * len(entries))(*entries)), len(entries)
+
+    def bounds(self, errors: Mapping[str, float | str] | None) -> tuple[int, int]:
+        """The same of bounds of fields: numbers, or texts such as "0.1%" and "0.5 K"."""
+        entries = []
+        for name, bound in (errors or {}).items():
+            match = _BOUND.fullmatch(bound if isinstance(bound, str) else repr(float(bound)))
+            if match is None:
+                raise ValueError(
+                    f"errors[{name!r}] is {bound!r}; give a number above 0, '0.1%' or '0.5K'"
+                )
+            entries.append(_ErrorBound(self.text(name), float(match[1]), self.text(match[2])))
+        return self.of((_ErrorBound * len(entries))(*entries)), len(entries)
+
+    def free(self) -> None:
+        while self.kept:
+            self.c.release(self.kept.pop()[0])
 
 
 def _points(points: Any) -> NDArray[Any]:
@@ -164,52 +192,48 @@ def _cells(cells: Any) -> NDArray[Any]:
     )
 
 
-class _Input:
-    """The C struct of a mesh, and the arrays that it points into."""
-
-    def __init__(
-        self,
-        points: Any,
-        cells: Any,
-        point_data: Mapping[str, Any] | None,
-        cell_data: Mapping[str, Any] | None,
-    ) -> None:
-        self.points, self.cells = _points(points), _cells(cells)
-        self.values: list[NDArray[Any]] = []
-        fields = [
-            self._field(name, values, association, tuples)
-            for data, association, tuples in (
-                (point_data, _POINT, len(self.points)),
-                (cell_data, _CELL, len(self.cells)),
-            )
-            for name, values in (data or {}).items()
-        ]
-        self.mesh = _Mesh(
-            self.points.ctypes.data,
-            len(self.points),
-            self.cells.ctypes.data,
-            len(self.cells),
-            _TYPES[self.points.dtype.name],
-            _TYPES[self.cells.dtype.name],
-            (_Field * len(fields))(*fields),
-            len(fields),
-            ctypes.sizeof(_Field),
+def _mesh(
+    places: _Places,
+    points: Any,
+    cells: Any,
+    point_data: Mapping[str, Any] | None,
+    cell_data: Mapping[str, Any] | None,
+) -> _Mesh:
+    """The C struct of a mesh."""
+    points, cells = _points(points), _cells(cells)
+    fields = [
+        _field(places, name, values, association, tuples)
+        for data, association, tuples in (
+            (point_data, _POINT, len(points)),
+            (cell_data, _CELL, len(cells)),
         )
+        for name, values in (data or {}).items()
+    ]
+    return _Mesh(
+        places.of(points),
+        len(points),
+        places.of(cells),
+        len(cells),
+        _TYPES[points.dtype.name],
+        _TYPES[cells.dtype.name],
+        places.of((_Field * len(fields))(*fields)),
+        len(fields),
+        ctypes.sizeof(_Field),
+    )
 
-    def _field(self, name: str, values: Any, association: int, tuples: int) -> _Field:
-        if not isinstance(name, str) or "\0" in name:
-            raise ValueError(f"the name {name!r} of a field is no str without NUL")
-        array = packed_array(values, f"field {name!r}")
-        components = int(numpy.prod(array.shape[1:]))
-        if array.ndim == 0 or len(array) != tuples or not 1 <= components <= _MAX_COMPONENTS:
-            raise ValueError(
-                f"field {name!r} has the shape {array.shape}; give ({tuples},) or ({tuples}, "
-                f"components), at most {_MAX_COMPONENTS} of these"
-            )
-        self.values.append(array)
-        return _Field(
-            name.encode(), association, _TYPES[array.dtype.name], components, 0, array.ctypes.data
+
+def _field(places: _Places, name: str, values: Any, association: int, tuples: int) -> _Field:
+    if not isinstance(name, str) or "\0" in name:
+        raise ValueError(f"the name {name!r} of a field is no str without NUL")
+    array = packed_array(values, f"field {name!r}")
+    components = int(numpy.prod(array.shape[1:]))
+    if array.ndim == 0 or len(array) != tuples or not 1 <= components <= _MAX_COMPONENTS:
+        raise ValueError(
+            f"field {name!r} has the shape {array.shape}; give ({tuples},) or ({tuples}, "
+            f"components), at most {_MAX_COMPONENTS} of these"
         )
+    number = _TYPES[array.dtype.name]
+    return _Field(places.text(name), association, number, components, 0, places.of(array))
 
 
 def _check_numbers(numbers: Mapping[str, Any]) -> None:
@@ -226,24 +250,6 @@ def _check_numbers(numbers: Mapping[str, Any]) -> None:
             raise ValueError(f"{name} is {value}; give an integer")
 
 
-def _named(numbers: Mapping[str, float] | None) -> tuple[Any, int]:
-    entries = [_NamedNumber(name.encode(), value) for name, value in (numbers or {}).items()]
-    return (_NamedNumber * len(entries))(*entries), len(entries)
-
-
-def _bounds(errors: Mapping[str, float | str] | None) -> tuple[Any, int]:
-    """Bounds of fields: numbers, or texts such as "0.1%" and "0.5 K"."""
-    entries = []
-    for name, bound in (errors or {}).items():
-        match = _BOUND.fullmatch(bound if isinstance(bound, str) else repr(float(bound)))
-        if match is None:
-            raise ValueError(
-                f"errors[{name!r}] is {bound!r}; give a number above 0, '0.1%' or '0.5K'"
-            )
-        entries.append(_ErrorBound(name.encode(), float(match[1]), match[2].encode()))
-    return (_ErrorBound * len(entries))(*entries), len(entries)
-
-
 def _choice(choices: Mapping[str, int], word: str, what: str) -> int:
     if word not in choices:
         raise ValueError(f"{what} {word!r} is not known; give one of {', '.join(choices)}")
@@ -254,11 +260,12 @@ class _Work:
     """One call of qtet_simplify in a thread of its own: Python handles Ctrl-C between two steps of
     the thread that waits, and would lose it in a callback from C."""
 
-    def __init__(self, c: ctypes.CDLL, source: _Input, options: _Options) -> None:
-        self.c, self.source, self.options = c, source, options
+    def __init__(self, c: Library, mesh: _Mesh, options: _Options) -> None:
+        self.c, self.mesh, self.options = c, mesh, options
         self.stage, self.fraction, self.is_stopped, self.status = 0, 0.0, False, 0
         self.is_over = threading.Event()
-        options.progress = _Progress(self._tell)
+        if c.calls_back:
+            options.progress = _Progress(self._tell)
         self.made = _address(c.qtet_simplified_create())
         if not self.made:
             raise MemoryError("no memory for a log")
@@ -272,14 +279,17 @@ class _Work:
             self.status = self.c.qtet_simplify(
                 self.made,
                 ctypes.c_size_t(ctypes.sizeof(_Mesh)),
-                ctypes.byref(self.source.mesh),
+                ctypes.pointer(self.mesh),
                 ctypes.c_size_t(ctypes.sizeof(_Options)),
-                ctypes.byref(self.options),
+                ctypes.pointer(self.options),
             )
         finally:
             self.is_over.set()
 
     def run(self, progress: Callable[[str, float], bool | None] | None) -> None:
+        if not self.c.calls_back:  # nor are there threads
+            self._call()
+            return self.check(self.status)
         thread = threading.Thread(target=self._call, name="qtet.simplify")
         try:
             thread.start()
@@ -289,7 +299,7 @@ class _Work:
         finally:
             self.is_stopped = True
             self._wait_for_end(thread)
-        self.check(self.status)
+        return self.check(self.status)
 
     def _wait_for_end(self, thread: threading.Thread) -> None:
         """Whatever else is interrupted meanwhile: C must not write into memory that is gone."""
@@ -303,18 +313,18 @@ class _Work:
     def check(self, status: int) -> None:
         if status == 0:
             return
-        text = self.c.qtet_simplified_error(self.made).decode(errors="replace")
+        text = self.c.text_at(self.c.qtet_simplified_error(self.made))
         if status == _OUT_OF_MEMORY:
             raise MemoryError(text)
         raise (Cancelled if status == _CANCELLED else QtetError)(text)
 
     def log(self) -> bytes:
-        size = ctypes.c_size_t()
-        address = self.c.qtet_simplified_log(self.made, ctypes.byref(size))
-        return ctypes.string_at(address, size.value)
+        size = (ctypes.c_size_t * 1)()
+        address = self.c.qtet_simplified_log(self.made, size)
+        return self.c.bytes_at(address, size[0])
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        self.check(self.c.qtet_simplified_write(self.made, os.fsencode(path)))
+        self.check(self.c.qtet_simplified_write(self.made, os.fsencode(os.path.abspath(path))))
 
     def close(self) -> None:
         self.c.qtet_simplified_destroy(self.made)
@@ -481,7 +491,7 @@ def simplify(
         points, point_data, cell_data = grid.points, grid.point_data, grid.cell_data
     c = _library()
     options = _Options()
-    if c.qtet_simplify_defaults(ctypes.c_size_t(ctypes.sizeof(options)), ctypes.byref(options)):
+    if c.qtet_simplify_defaults(ctypes.c_size_t(ctypes.sizeof(options)), ctypes.pointer(options)):
         raise QtetError(
             "libqtet.so and the package qtet are of different versions; install both again"
         )
@@ -507,13 +517,29 @@ def simplify(
     options.timeStatistics = bool(time_statistics)
     options.baseCells = int(base_cells or 0)
     options.threads = int(threads)
-    options.maxFieldErrors, options.maxFieldErrorCount = _named(max_field_errors)
-    options.errors, options.errorCount = _bounds(errors)
-    options.fieldWeights, options.fieldWeightCount = _named(field_weights)
-    options.labelWeights, options.labelWeightCount = _named(label_weights)
-    options.regions = regions.encode() if regions is not None else None
-    options.source = source.encode()
-    work = _Work(c, _Input(points, cells, point_data, cell_data), options)
+    places = _Places(c)
+    try:
+        options.maxFieldErrors, options.maxFieldErrorCount = places.named(max_field_errors)
+        options.errors, options.errorCount = places.bounds(errors)
+        options.fieldWeights, options.fieldWeightCount = places.named(field_weights)
+        options.labelWeights, options.labelWeightCount = places.named(label_weights)
+        options.regions = places.text(regions) if regions is not None else None
+        options.source = places.text(source)
+        mesh = _mesh(places, points, cells, point_data, cell_data)
+        return _made(c, mesh, options, path, progress)
+    finally:
+        places.free()
+
+
+def _made(
+    c: Library,
+    mesh: _Mesh,
+    options: _Options,
+    path: str | os.PathLike[str] | None,
+    progress: Callable[[str, float], bool | None] | None,
+) -> Any:
+    """The log, or the path to which it was written."""
+    work = _Work(c, mesh, options)
     try:
         work.run(progress)
         if path is None:

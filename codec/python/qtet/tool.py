@@ -1,37 +1,88 @@
-"""The program `qtet` from Python: the one in the package's library, or the one that is installed."""
+"""The program `qtet` from Python: the one in the package's library, the one that is installed, or
+the one of the package's WebAssembly, which node runs, and Pyodide in its own process."""
 from __future__ import annotations
 
 import ctypes
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
 import sys
 from typing import Callable, Sequence
 
+from . import wasm
 from .library import QtetError, library
 
-__all__ = ["call", "run"]
+__all__ = ["call", "is_wasm", "run"]
 
 _PACKAGE = pathlib.Path(__file__).resolve().parent
 _FAILED = 1
 _INTERVAL_S = 0.1
+# The oldest that runs the WebAssembly.
+_NODE = 20
+_COMMAND = wasm.WEB / "qtet.mjs"
 
 
 def _is_in_library() -> bool:
-    return hasattr(library(), "qtet_main")
+    """Whether libqtet.so holds the tool, as that of a wheel for one processor does."""
+    try:
+        return not wasm.IS_HERE and hasattr(library(), "qtet_main")
+    except QtetError:
+        return False
+
+
+def _program() -> list[str]:
+    """The first words of a command that runs the tool. Raises QtetError where there is none."""
+    if _is_in_library():
+        # Within ParaView the program is no Python.
+        is_python = pathlib.Path(sys.executable or "").name.startswith("python")
+        python = sys.executable if is_python else shutil.which("python3")
+        if python is None:
+            raise QtetError("the program python3 is not found; install it")
+        return [python, "-m", "qtet"]
+    # Elsewhere the only one is this package's, which pip made a program.
+    program = shutil.which("qtet") if os.name == "posix" else None
+    if program is not None and not _is_this_package(program):
+        return [program]
+    if not _COMMAND.is_file():
+        raise QtetError("the program qtet is not found; install the package qtet")
+    node = shutil.which("node")
+    told = subprocess.run([node, "--version"], capture_output=True, text=True) if node else None
+    version = re.match(r"v(\d+)", told.stdout) if told else None
+    if node is None or version is None or int(version[1]) < _NODE:
+        found = f"node is {told.stdout.strip()}" if told else "node is not found"
+        raise QtetError(
+            f"{found}; this package of qtet needs node {_NODE} or later for it. "
+            "Linux on x86_64 and aarch64 has packages without node"
+        )
+    return [node, str(_COMMAND)]
+
+
+def is_wasm() -> bool:
+    """Whether the tool is the WebAssembly, which publishes nothing, or is not there at all."""
+    try:
+        return wasm.IS_HERE or _program()[-1] == str(_COMMAND)
+    except QtetError:
+        return True
 
 
 def call(words: Sequence[str | os.PathLike[str]]) -> int:
     """Runs `qtet WORDS...` in this process and returns its exit code. The process can do nothing
-    else meanwhile: it is for the command `qtet`, and run() for everybody else."""
+    else meanwhile: it is for the command `qtet`, and run() for everybody else. A tool that is not
+    in the library runs in a process of its own."""
+    if wasm.IS_HERE:
+        code, printed, said = wasm.run(words)
+        sys.stdout.write(printed)
+        sys.stderr.write(said)
+        return code
     if not _is_in_library():
-        program = shutil.which("qtet")
-        if program is None or _is_this_package(program):
-            sys.stderr.write("qtet: this libqtet.so holds no tool; install the package qtet\n")
+        try:
+            return subprocess.call([*_program(), *words])
+        except QtetError as error:
+            sys.stderr.write(f"qtet: {error}\n")
             return _FAILED
-        return subprocess.call([program, *words])
     # Python's own handlers would wait for the end.
     for number in (signal.SIGINT, signal.SIGPIPE):
         signal.signal(number, signal.SIG_DFL)
@@ -41,8 +92,8 @@ def call(words: Sequence[str | os.PathLike[str]]) -> int:
     )
     given = [b"qtet", *(os.fsencode(word) for word in words)]
     sys.stdout.flush()
-    code: int = library().qtet_main(len(given), (ctypes.c_char_p * (len(given) + 1))(*given, None))
-    return code
+    main = library().qtet_main
+    return int(main(len(given), (ctypes.c_char_p * (len(given) + 1))(*given, None)))
 
 
 def _is_this_package(program: str) -> bool:
@@ -56,23 +107,33 @@ def run(
     told: bool = False,
     goes_on: Callable[[], bool | None] | None = None,
 ) -> str | None:
-    """Runs `qtet WORDS...` in a process of its own. Returns what it printed. Raises QtetError with
-    its own text where it fails, KeyboardInterrupt after Ctrl-C. `told`: what it says of a success
-    goes to the standard error. `goes_on` is called about ten times a second; the answer False ends
-    the process, and None is returned."""
+    """Runs `qtet WORDS...` in a process of its own, in Pyodide in this one. Returns what it printed.
+    Raises QtetError with its own text where it fails, KeyboardInterrupt after Ctrl-C. `told`: what
+    it says of a success goes to the standard error. `goes_on` is called about ten times a second,
+    in Pyodide never. The answer False ends the process, and None is returned."""
+    code, printed, said = wasm.run(words) if wasm.IS_HERE else _run_apart(words, goes_on)
+    if code is None:
+        return None
+    if code == -signal.SIGINT:
+        raise KeyboardInterrupt
+    if code != 0:
+        lines = [line.removeprefix("qtet: ") for line in said.splitlines()]
+        raise QtetError("\n".join(lines) or f"qtet ended with {code}")
+    if told:
+        sys.stderr.write(said)
+    return printed
+
+
+def _run_apart(
+    words: Sequence[str | os.PathLike[str]], goes_on: Callable[[], bool | None] | None
+) -> tuple[int | None, str, str]:
+    """The exit code, and what was printed to the output and the errors. None: it was stopped."""
     environment = dict(os.environ)
     environment["PYTHONPATH"] = os.pathsep.join(
         filter(None, [str(_PACKAGE.parent), environment.get("PYTHONPATH")])
     )
-    # Within ParaView the program is no Python.
-    is_python = pathlib.Path(sys.executable or "").name.startswith("python")
-    python = sys.executable if is_python else shutil.which("python3")
-    program = python if _is_in_library() else shutil.which("qtet")
-    if program is None:
-        raise QtetError("the program qtet is not found; install the package qtet")
-    command = [program, "-m", "qtet"] if _is_in_library() else [program]
     with subprocess.Popen(
-        [*command, *(os.fspath(word) for word in words)],
+        [*_program(), *(os.fspath(word) for word in words)],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -89,15 +150,8 @@ def run(
                     if goes_on and goes_on() is False:
                         process.terminate()
                         process.communicate()
-                        return None
+                        return None, "", ""
         except BaseException:
             process.kill()
             raise
-    if process.returncode == -signal.SIGINT:
-        raise KeyboardInterrupt
-    if process.returncode != 0:
-        lines = [line.removeprefix("qtet: ") for line in said.splitlines()]
-        raise QtetError("\n".join(lines) or f"qtet ended with {process.returncode}")
-    if told:
-        sys.stderr.write(said)
-    return printed
+    return process.returncode, printed, said
