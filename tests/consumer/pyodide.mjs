@@ -110,6 +110,39 @@ assert "qtet page" in raised(lambda: qtet.view("box.qtet"))
 `);
 }
 
+/** Of a log behind HTTP the front is fetched. Node has no XMLHttpRequest, so this answers. */
+function checkFetched(pyodide) {
+  const log = readFileSync(join(out, 'work/box.qtet'));
+  globalThis.XMLHttpRequest = class {
+    open(method, url, isAsync) {
+      assert.deepEqual([method, isAsync], ['GET', false]);
+      this.responseURL = url;
+    }
+    setRequestHeader(name, value) {
+      assert.equal(name, 'Range');
+      [this.first, this.last] = value.match(/\d+/g).map(Number);
+    }
+    send() {
+      assert.equal(this.responseType, 'arraybuffer');
+      this.status = this.responseURL.endsWith('/box.qtet') ? 206 : 404;
+      this.statusText = this.status === 404 ? 'Not Found' : '';
+      this.response = new Uint8Array(log.subarray(this.first, this.last + 1)).buffer;
+    }
+    getResponseHeader(name) {
+      return name === 'ETag' ? '"box"' : null;
+    }
+  };
+  pyodide.runPython(`
+with qtet.open("http://meshes.example/box.qtet") as there, qtet.open("box.qtet") as here:
+    assert [there.refine(0), here.refine(0)] == [0, 0]
+    assert of_arrays(there) == of_arrays(here)
+    assert there.remote.have == here.level_info(0).prefixBytes < here.info.bytes
+    assert [there.refine(there.last_level), here.refine(here.last_level)]
+    assert of_arrays(there) == of_arrays(here)
+assert "HTTP 404 Not Found" in raised(lambda: qtet.open("http://meshes.example/nothing.qtet"))
+`);
+}
+
 /** Where there is no native library, node runs the tool. */
 function checkNode() {
   const only = join(out, 'only');
@@ -141,6 +174,7 @@ const pyodide = await pyodideWith(wheel);
 const start = performance.now();
 assert.deepEqual(answersOf(pyodide), native);
 const seconds = ((performance.now() - start) / 1000).toFixed(1);
+checkFetched(pyodide);
 checkBroken(pyodide);
 checkNode();
 console.log(`the wheel has ${statSync(wheel).size} bytes; Pyodide answers in ${seconds} s`);

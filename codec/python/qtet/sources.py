@@ -11,6 +11,7 @@ import urllib.parse
 import urllib.request
 from typing import Any
 
+from . import wasm
 from .library import QtetError
 
 _HEADER_BYTES = 64  # FORMAT.md, "Header"
@@ -74,11 +75,8 @@ class Remote:
     def _get(self, first: int, end: int) -> bytes:
         """Writes the bytes [first, end) of the log to the file; the first ones of them are the
         answer."""
-        request = urllib.request.Request(
-            self.url, headers={"Range": f"bytes={first}-{end - 1}", "Accept-Encoding": "identity"}
-        )
         try:
-            with urllib.request.urlopen(request, timeout=_TIMEOUT_S) as answer:
+            with _asked(self.url, f"bytes={first}-{end - 1}") as answer:
                 self._same_log(answer)
                 return self._store(answer, first if answer.status == 206 else 0, end)
         except (urllib.error.URLError, OSError, ValueError) as error:
@@ -106,6 +104,15 @@ class Remote:
             )
         self.have = max(self.have, at)
         return start
+
+
+def _asked(url: str, bytes_: str) -> Any:
+    """The answer to a GET of a range of bytes."""
+    headers = {"Range": bytes_}
+    if wasm.IS_HERE:
+        return wasm.fetch(url, headers)
+    request = urllib.request.Request(url, headers={**headers, "Accept-Encoding": "identity"})
+    return urllib.request.urlopen(request, timeout=_TIMEOUT_S)
 
 
 def log_url(source: str | os.PathLike[str]) -> str | None:

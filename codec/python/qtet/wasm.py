@@ -6,16 +6,17 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import io
 import json
 import os
 import pathlib
 import sys
 import tempfile
-from typing import Any, Sequence
+from typing import Any, Mapping, Sequence
 
 from .library import QtetError
 
-__all__ = ["IS_HERE", "WasmLibrary", "run"]
+__all__ = ["IS_HERE", "WEB", "Answer", "WasmLibrary", "fetch", "run"]
 
 IS_HERE = sys.platform == "emscripten"
 # What the wheel without a native library carries.
@@ -49,6 +50,38 @@ def run(words: Sequence[str | os.PathLike[str]]) -> tuple[int, str, str]:
     """Runs `qtet WORDS...`: the exit code, and what it printed to the output and the errors."""
     code, printed, said = _module().run(json.dumps([os.fspath(w) for w in words]), _environment())
     return code, printed, said
+
+
+class Answer(io.BytesIO):
+    """What a server answered, as urllib has it."""
+
+    def __init__(self, request: Any) -> None:
+        super().__init__(request.response.to_bytes())
+        self.status = int(request.status)
+        self.headers = {"ETag": request.getResponseHeader("ETag")}
+        self._url = str(request.responseURL)
+
+    def geturl(self) -> str:
+        return self._url
+
+
+def fetch(url: str, headers: Mapping[str, str]) -> Answer:
+    """GET by the browser, which waits for no answer but in a worker. Raises OSError."""
+    import js
+    from pyodide.ffi import JsException
+
+    request = js.XMLHttpRequest.new()
+    try:
+        request.open("GET", url, False)
+        request.responseType = "arraybuffer"
+        for name, value in headers.items():
+            request.setRequestHeader(name, value)
+        request.send()
+    except JsException as error:
+        raise OSError(str(error)) from error
+    if not 200 <= request.status < 300:
+        raise OSError(f"HTTP {request.status} {request.statusText}")
+    return Answer(request)
 
 
 class WasmLibrary:
