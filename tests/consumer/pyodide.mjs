@@ -110,7 +110,7 @@ assert "qtet page" in raised(lambda: qtet.view("box.qtet"))
 `);
 }
 
-/** Of a log behind HTTP the front is fetched. Node has no XMLHttpRequest, so this answers. */
+/** The front of a log behind HTTP is fetched. Node has no XMLHttpRequest, so this answers. */
 function checkFetched(pyodide) {
   const log = readFileSync(join(out, 'work/box.qtet'));
   globalThis.XMLHttpRequest = class {

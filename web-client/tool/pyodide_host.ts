@@ -13,7 +13,7 @@ interface EmscriptenStatus extends Omit<Status, 'mtimeMs'> {
   mtime: Date;
 }
 
-/** What we use of Emscripten's file system. Errors have WASI's numbers. */
+/** The part of Emscripten's file system that is used here. Errors have WASI's numbers. */
 export interface EmscriptenFiles {
   open(name: string, flags: number): Stream;
   close(file: Stream): void;

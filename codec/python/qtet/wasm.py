@@ -19,7 +19,7 @@ from .library import QtetError
 __all__ = ["IS_HERE", "WEB", "Answer", "WasmLibrary", "fetch", "run"]
 
 IS_HERE = sys.platform == "emscripten"
-# What the wheel without a native library carries.
+# The wheel without a native library carries this.
 WEB = pathlib.Path(__file__).resolve().parent / "web"
 _NULL = 0
 
