@@ -152,7 +152,7 @@ function checkNode() {
   const settings = {cwd: join(out, 'work'), env, encoding: 'utf8'};
   const without = spawnSync(options.python, words, settings);
   assert.equal(without.status, 1);
-  assert.match(without.stderr, /^qtet: node is not found; this package of qtet needs node 20/);
+  assert.match(without.stderr, /^qtet: node is not found; this package of qtet needs node 18/);
   symlinkSync(process.execPath, join(only, 'node'));
   python(words, {env});
   const [log, native] = ['node.qtet', 'box.qtet'].map((name) =>

@@ -21,7 +21,9 @@ _PACKAGE = pathlib.Path(__file__).resolve().parent
 _FAILED = 1
 _INTERVAL_S = 0.1
 # The oldest that runs the WebAssembly.
-_NODE = 20
+_NODE = 18
+# pip's scripts have some 200 bytes, and a path.
+_SCRIPT_BYTES = 8192
 _COMMAND = wasm.WEB / "qtet.mjs"
 
 
@@ -99,7 +101,7 @@ def call(words: Sequence[str | os.PathLike[str]]) -> int:
 def _is_this_package(program: str) -> bool:
     """Whether the program is the script that pip made of this package."""
     with open(program, "rb") as file:
-        return file.read(2) == b"#!"
+        return b"qtet.__main__" in file.read(_SCRIPT_BYTES)
 
 
 def run(

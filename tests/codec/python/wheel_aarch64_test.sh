@@ -15,7 +15,7 @@ skip() { echo "skipped: $*"; exit 77; }
 
 qemu=$(command -v qemu-aarch64 || command -v qemu-aarch64-static) || skip "install qemu-user"
 wheel=$(find "$build/wheels" -name '*_aarch64.whl' -printf '%T@ %p\n' 2>/dev/null | sort -n |
-  sed -n '$s/^[^ ]* //p')
+  sed -n '$s/^[^ ]* //p') || true  # where nothing was made
 [[ -n $wheel ]] || skip "there is no wheel; run make wheel ARCH=aarch64"
 [[ $wheel -nt $build/bin/qtet ]] || skip "qtet is newer; run make wheel ARCH=aarch64 again"
 bytes=$(stat -c %s "$wheel")
