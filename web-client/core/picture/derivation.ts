@@ -1,4 +1,4 @@
-// What core/derived does for pictures, once it is loaded.
+// The part of core/derived for pictures, once it is loaded.
 
 import type {Manifest} from '../protocol/manifest';
 import type {ShownDerived, ValuesOf} from './derived_field';
@@ -9,7 +9,7 @@ import type {FieldScale, Scalar} from './field_scale';
 export interface DerivedColor {
   /** The part of scalarRange that occurs. */
   extent: [number, number];
-  /** Of a series: the extent of all pictures so far, which `extent` is, too. */
+  /** The extent of all pictures of a series so far, which `extent` is, too. */
   ofSeries: [number, number] | undefined;
   made: {derivedId: number; inputs: readonly number[]};
 }
@@ -20,7 +20,7 @@ export interface Drawn {
   inputs?: readonly number[];
 }
 
-/** What computes. It is loaded with the first derived field. */
+/** It computes, and is loaded with the first derived field. */
 export const derivation: {
   scale?: (field: ShownDerived['fields'][number], valuesOf: ValuesOf) => FieldScale | null;
   /** Undefined: the colour is no derived one. */
