@@ -41,6 +41,7 @@ const kAfterLayers = [
   'length-unit',
   'ground',
   'points',
+  'flux',
   'quality',
   'projection',
   'camera',

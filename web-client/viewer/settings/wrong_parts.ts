@@ -153,6 +153,14 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
         ? `warp="${warp}" moves nothing: it takes a field of points with three components.`
         : `warp="${warp}" moves nothing: the mesh has no such field.${hint(warp, keys)} ${has}`,
     );
+  const flux = read('flux');
+  const vector = parseScalar(flux, fields);
+  if (flux !== null && fields[vector?.field ?? -1]?.components !== 3)
+    sentences.push(
+      vector
+        ? `flux="${flux}" is not shown: it takes a field with three components.`
+        : `flux="${flux}" is not shown: the mesh has no such field.${hint(flux, keys)} ${has}`,
+    );
   for (const layer of fieldLayers()) {
     const text = read(layer.name);
     if (text === null || !layer.isRight(text)) continue;
