@@ -129,6 +129,44 @@ async function areExact(context) {
   return 'a box of 1 x 2 x 3: volume, means, areas, force and flux are exact';
 }
 
+/** The marks lie at the ends of a linear field, follow clips and fields, and are undone. */
+async function markExtremes(context) {
+  const {server, browser} = context;
+  const Height = (x, y, z) => z;
+  await serveMesh(context, 'marked', linearBox(3, {Height}));
+  const textsOf = ({page}) => page.locator('qtet-viewer .pin button:first-child').allInnerTexts();
+  const marked = (viewer, text) =>
+    viewer.page.locator('qtet-viewer .pin', {hasText: text}).waitFor({state: 'attached'});
+  const query = 'mesh=marked&field=Height&extremes=on&points=0.5,0,1';
+  for (const [name, device] of Object.entries({desktop: kDesktop, phone: kCoarsePhone})) {
+    const viewer = await browser.openSettled(`${server.url}?${query}`, device);
+    const {page} = viewer;
+    await marked(viewer, 'Largest 3.0');
+    assert.equal((await textsOf(viewer)).length, 3);
+    await viewer.screenshot(`extremes-${name}-light`);
+    assert.deepEqual(await viewer.accessibilityViolations(), []);
+    if (name === 'desktop') {
+      await set(viewer, 'clip', 'z:0.5');
+      await marked(viewer, 'Largest 1.5');
+      await set(viewer, 'field', 'x');
+      await marked(viewer, 'Largest 1.0');
+      await page.waitForTimeout(kRestMs);
+      await page.locator('qtet-viewer .scene').focus();
+      await page.keyboard.press('m');
+      await page.locator('qtet-viewer .pin', {hasText: 'Largest'}).waitFor({state: 'detached'});
+      await page.waitForURL((url) => !url.searchParams.has('extremes'));
+      await page.waitForTimeout(kRestMs);
+      await page.keyboard.press('Control+z');
+      await marked(viewer, 'Largest 1.0');
+      await page.getByRole('button', {name: 'Remove largest'}).click();
+      assert.equal(await page.getByLabel('Mark least and largest').isChecked(), false);
+    }
+    assert.deepEqual(viewer.problems, []);
+    await browser.closePages();
+  }
+}
+
 export const numberChecks = {
+  numbersMarkExtremes: markExtremes,
   numbersAreExact: areExact,
 };

@@ -20,9 +20,9 @@ import {
 } from './simplices';
 
 export interface SurfaceIntegrals extends Moments {
-  /** Of the coloured value times the normal; null without a colour. */
+  /** That of the coloured value times the normal; null without a colour. */
   force: Vector | null;
-  /** Of a vector field times the normal; null: there is none. */
+  /** That of a vector field times the normal; null: there is none. */
   flux: number | null;
 }
 

@@ -1,16 +1,20 @@
 // The worker's answers to questions about the mesh. They are loaded with the first question.
 
 import type {Display} from '../picture/display';
-import type {Inspector} from './inspector';
+import type {Assembler} from '../decode/assembler';
+import {Inspector} from './inspector';
 import type {Answer, Inspected} from './worker_messages';
 
-export {Inspector} from './inspector';
+/** An inspector remembers the cells that it found. */
+const inspectors = new WeakMap<Assembler, Inspector>();
 
 export async function answerTo(
   question: Inspected,
-  inspector: Inspector,
+  assembler: Assembler,
   display: Display,
 ): Promise<Answer> {
+  const inspector = inspectors.get(assembler) ?? new Inspector(assembler);
+  inspectors.set(assembler, inspector);
   switch (question.type) {
     case 'pick':
       return inspector.pick(question.ray, display);

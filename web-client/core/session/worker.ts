@@ -10,7 +10,6 @@ import type {DerivedFields} from '../picture/derived_field';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
-import type {Inspector} from './inspector';
 import {Publisher} from './publisher';
 import {Session} from './session';
 import {buffersOf} from './snapshot_buffers';
@@ -48,7 +47,6 @@ function start(baseUrl: string, codecUrl: string): Parts {
   const assembler = new Assembler(codec, kDraco);
   const publisher = (globalThis.qtetPublisher = new Publisher(assembler, postSnapshot));
   let whole: Promise<WebAssembly.Module> | null = null;
-  let inspector: Inspector | null = null;
   const becomeWhole = async (): Promise<WebAssembly.Module> => {
     const module = await retry(() => compile(codecUrl), Math.random, mayPass);
     codec.become(module);
@@ -78,8 +76,8 @@ function start(baseUrl: string, codecUrl: string): Parts {
     coarse,
     session,
     answer: async (question) => {
-      const {answerTo, Inspector} = await retry(() => import('./answers'));
-      return answerTo(question, (inspector ??= new Inspector(assembler)), publisher.now);
+      const {answerTo} = await retry(() => import('./answers'));
+      return answerTo(question, assembler, publisher.now);
     },
     derive: async (text) => {
       const derived = await retry(() => import('../derived/derived'));

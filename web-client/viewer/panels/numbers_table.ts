@@ -109,9 +109,9 @@ function directionOf(normal: Vector): string {
 }
 
 /**
- * The parts of the original that the level lacks, and those that it has too much, change a mean by
- * no more than their larger share times the range. Inside of both, the rms bounds the change. The
- * log knows both of the whole mesh alone.
+ * A level lacks parts of the original, and has others too much. They change a mean by no more than
+ * the larger share of the volume times the range. Elsewhere the rms bounds the change. The log
+ * knows both of the whole mesh alone.
  */
 function knownErrors(
   {body, color, isWhole, level}: Numbers,

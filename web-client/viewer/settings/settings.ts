@@ -42,6 +42,7 @@ const kAfterLayers = [
   'ground',
   'points',
   'flux',
+  'extremes',
   'quality',
   'projection',
   'camera',

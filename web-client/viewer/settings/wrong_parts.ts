@@ -74,6 +74,7 @@ const kRules: Partial<Record<Name, Rule>> = {
   'warp-scale': [(text) => parseNumbers(text).length === 1, 'a number; 1 is the true size'],
   'rest-edges': oneOf('on', 'off'),
   axes: oneOf('on', 'off'),
+  extremes: oneOf('on', 'off'),
   ground: [isGround, `${kGrounds.join(', ')}, or a colour, 3c3c3c`, kGrounds],
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
