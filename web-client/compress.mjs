@@ -12,10 +12,11 @@ import {gzipSync} from 'node:zlib';
 
 /**
  * Page, scripts and WebAssembly, including what is loaded on demand: one second at 2.5 Mbit/s. Own
- * fields, which are loaded on use, took it from 300 to 308 kB. The notices and the simplifier do
+ * fields, which are loaded on use, took it from 300 to 308 kB, and numbers about what is drawn to
+ * 315 kB. The notices and the simplifier do
  * not count: a visit fetches the one never and the other with the first mesh that is dropped.
  */
-const kMaxBytes = 308000;
+const kMaxBytes = 315000;
 
 const folder = process.argv[2];
 const files = readdirSync(folder, {recursive: true, withFileTypes: true}).filter(

@@ -22,6 +22,7 @@ import {legendChecks} from './legend_checks.mjs';
 import {lineChecks} from './line_checks.mjs';
 import {monkeyChecks} from './monkey_checks.mjs';
 import {movieChecks} from './movie_checks.mjs';
+import {numberChecks} from './number_checks.mjs';
 import {pageChecks} from './page_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {pinChecks} from './pin_checks.mjs';
@@ -60,7 +61,14 @@ const lists = {
   transport: {...transportChecks, ...movieChecks, ...segmentChecks},
   publish: {...publishChecks, ...posterChecks, ...pageChecks, ...dropChecks, ...galleryChecks},
   volume: volumeChecks,
-  edge: {...edgeChecks, ...warpChecks, ...axesChecks, ...groundChecks, ...pinChecks},
+  edge: {
+    ...edgeChecks,
+    ...warpChecks,
+    ...axesChecks,
+    ...groundChecks,
+    ...pinChecks,
+    ...numberChecks,
+  },
   legend: {...legendChecks, ...derivedChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,

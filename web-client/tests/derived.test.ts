@@ -12,13 +12,14 @@ import {
   kMaxText,
   parseExpression,
 } from '../core/derived/parse';
-import {compile, type ErrorFactors} from '../core/derived/program';
+import {compile} from '../core/derived/program';
 import {kTensorQuantities} from '../core/derived/tensors';
 import {parseScalar, scalarText} from '../core/layers/field_values';
 import {kMissing} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {LevelInfo, Manifest} from '../core/protocol/manifest';
 import {markSeries} from '../core/protocol/series';
+import {randomOf} from './random';
 
 /** Values are the integers themselves, from -128 to 127. */
 const field = (name: string, components = 1, more: Partial<FieldInfo> = {}): FieldInfo => ({
@@ -42,7 +43,7 @@ const fields = [
   field('Heat flux'),
   field('mat', 1, {association: 'cell'}),
 ];
-/** One vertex each, and a second one where everything is missing. */
+/** The values of one vertex; at a second one everything is missing. */
 const numbers: Record<string, number[]> = {
   p: [10],
   T: [4],
@@ -198,22 +199,42 @@ describe('tensors', () => {
 });
 
 test('knownErrorsFollowByRuleWhereTheyCan', () => {
-  const factorsOf = (text: string): ErrorFactors | null =>
-    compile(parseExpression(text), fields).errors;
-  const right: [string, Record<string, number>][] = [
-    ['p - T', {p: 1, T: 1}],
-    ['2 * p - p / 4 + 5', {p: 2.25}],
-    ['-(3 - p)', {p: 1}],
-    ['mag(U)', {U: 1}],
-    ['mag(U - 2 * V)', {U: 1, V: 2}],
-    ['U.x', {U: 1}],
-    ['max(p, abs(T))', {p: 1, T: 1}],
-    ['S.hydrostatic', {S: Math.sqrt(1 / 3)}],
+  const sizes: Record<string, number> = {p: 1, T: 10, U: 100, V: 1000, S: 1};
+  const errorOf = (text: string): number | null =>
+    compile(parseExpression(text), fields).errors?.((key) => {
+      const max = sizes[key]!;
+      return {mean: max / 2, max};
+    }).max ?? null;
+  const [most, length] = [128, 128 * Math.sqrt(3)];
+  const right: [string, number][] = [
+    ['p - T', 11],
+    ['2 * p - p / 4 + 5', 2.25],
+    ['-(3 - p)', 1],
+    ['mag(U)', 100],
+    ['mag(U - 2 * V)', 2100],
+    ['U.x', 100],
+    ['max(p, abs(T))', 11],
+    ['S.hydrostatic', Math.sqrt(1 / 3)],
+    ['p * T', most * 11 + 10],
+    ['p^2', most * 2 + 1],
+    ['mag(p * U)', most * 100 + length * 1 + 100],
+    ['dot(U, V)', length * 1100 + 100 * 1000],
   ];
-  for (const [text, factors] of right)
-    expect(Object.fromEntries(factorsOf(text)!)).toEqual(factors);
-  for (const text of ['p * T', 'p / T', 'p^2', 'sqrt(p)', 'p > T', 'dot(U, V)'])
-    expect(factorsOf(text)).toBe(null);
+  for (const [text, error] of right) expect(errorOf(text), text).toBeCloseTo(error, 9);
+  for (const text of ['p / T', 'p^3', 'sqrt(p)', 'p > T', 'p * sqrt(T)'])
+    expect(errorOf(text), text).toBe(null);
+});
+
+test('noProductIsFurtherOffThanItsRuleSays', () => {
+  const rule = compile(parseExpression('p * T'), fields).errors!;
+  const random = randomOf(3);
+  const any = (most: number): number => most * (2 * random() - 1);
+  for (let i = 0; i < 1000; ++i) {
+    const [a, b, da, db] = [any(127), any(127), any(5), any(5)];
+    const known: Record<string, number> = {p: Math.abs(da), T: Math.abs(db)};
+    const {max} = rule((key) => ({mean: 0, max: known[key]!}));
+    expect(Math.abs((a + da) * (b + db) - a * b)).toBeLessThanOrEqual(max + 1e-9);
+  }
 });
 
 describe('definitions', () => {
@@ -294,16 +315,6 @@ describe('definitions', () => {
     expect(kDerivation.scale!({id, info, inputs: [2, 0]}, () => null)).toBe(null);
   });
 });
-
-/** The same numbers in [0, 1) for the same seed (mulberry32). */
-function randomOf(seed: number): () => number {
-  return () => {
-    seed = (seed + 0x6d2b79f5) | 0;
-    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
 
 describe('hostileTexts', () => {
   const kPieces = [

@@ -1,6 +1,6 @@
 // A viewer's requests to its worker: what to show. A request is sent only if it has changed.
 
-import {sharesOf} from '../core/layers/field_values';
+import {parseScalar, sharesOf} from '../core/layers/field_values';
 import {fieldLayers} from '../core/layers/layers';
 import {kPlainDisplay, type Display} from '../core/picture/display';
 import type {Plane} from '../core/protocol/geometry';
@@ -51,6 +51,7 @@ export function displayOf(
     warp: warpOf(settings, {manifest: mesh.manifest, ...mesh.base}),
     restEdges: settings.restEdges,
     volume: settings.volume !== null,
+    flux: parseScalar(read('flux'), fields),
     ...(ahead.length > 0 && {ahead}),
   };
   const used = [color?.field];

@@ -8,6 +8,7 @@ import {groundPanel} from './panels/ground_panel';
 import {histogramPanel} from './panels/histogram_panel';
 import {kToolMarkup} from './panels/inspect';
 import {levelPanel} from './panels/level_panel';
+import {numbersPanel} from './panels/numbers_panel';
 import type {PanelKind} from './panels/panel';
 import {ownFieldsPanel} from './panels/own_fields_panel';
 import {pinsPanel} from './panels/pins';
@@ -37,6 +38,7 @@ const kSections: readonly Section[] = [
     panels: [clipPanel, ...valuePanels(true), volumePanel, ...valuePanels(false)],
   },
   {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}, pinsPanel]},
+  {name: 'numbers', title: 'Numbers', isFolded: true, panels: [numbersPanel]},
   {name: 'level', title: 'Level of detail', isFolded: true, panels: [levelPanel]},
   {name: 'view', title: 'View', isFolded: true, panels: [viewPanel, axesPanel, groundPanel]},
   {name: 'file', title: 'File', isFolded: true, panels: [filePanel]},

@@ -3,7 +3,7 @@
 
 import type {DerivedField, DerivedFields} from '../picture/derived_field';
 import {fieldKeys, widthOfValues, type FieldInfo} from '../protocol/fields';
-import type {LevelInfo, Manifest, Spread} from '../protocol/manifest';
+import type {Manifest, Spread} from '../protocol/manifest';
 import {fieldOfKey} from '../layers/field_values';
 import {instantsOf} from '../protocol/series';
 import {definitionsIn} from './definitions';
@@ -99,22 +99,26 @@ function derivedField(name: string, value: Value, manifest: Manifest): DerivedFi
 
 /** By level, where the log knows its errors: how far the field is from the last level's. */
 function errorsOf(
-  {errors: factors}: Value,
+  {errors: rule}: Value,
   {range: [low, high], derived}: FieldInfo,
   {fields, levels}: Manifest,
 ): (Spread | null)[] {
   const width = high - low;
-  const shareOf = ({error}: LevelInfo, kind: keyof Spread): number =>
-    [...factors!].reduce((sum, [key, factor]) => {
-      const most = sameSeries(fields, key).map(
-        (field) => (error!.fields[field]?.[kind] ?? NaN) * widthOfValues(fields[field]!),
-      );
-      return sum + (factor * Math.max(...most)) / width;
-    }, 0);
-  const isKnown = factors !== null && derived === 'bounded' && width > 0;
-  return levels.map((level) =>
-    level.error && isKnown ? {mean: shareOf(level, 'mean'), max: shareOf(level, 'max')} : null,
-  );
+  if (!rule || derived !== 'bounded' || !(width > 0)) return levels.map(() => null);
+  return levels.map(({error}) => {
+    if (!error) return null;
+    const {mean, max} = rule((key) => {
+      const its = sameSeries(fields, key);
+      const most = (kind: keyof Spread): number =>
+        Math.max(
+          ...its.map(
+            (field) => (error.fields[field]?.[kind] ?? NaN) * widthOfValues(fields[field]!),
+          ),
+        );
+      return {mean: most('mean'), max: most('max')};
+    });
+    return {mean: mean / width, max: max / width};
+  });
 }
 
 /** The field; all instants of a series that is named without a time. */

@@ -2,7 +2,7 @@
 
 /** Nobody reads a longer formula, and links with several of them stay below 8 kB. */
 export const kMaxText = 1000;
-/** So many parentheses, signs and choices stand in each other: the parser's stack stays small. */
+/** Parentheses, signs and choices in each other: the parser's stack stays small. */
 export const kMaxDepth = 50;
 /** Each takes some 2 ms for a million values, so that a picture waits at most half a second. */
 export const kMaxOperators = 200;

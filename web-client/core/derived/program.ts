@@ -1,9 +1,10 @@
-// From the tree of an expression to a program for blocks of values. The range of its result is
-// known, and how the known errors of the fields bound its own.
+// Makes a program for blocks of values from the tree of an expression. The program knows the range
+// of its result, and how the known errors of the fields bound the result's.
 
 import {componentNames, fieldOfKey} from '../layers/field_values';
 import {kMagnitude} from '../picture/field_scale';
 import type {FieldInfo} from '../protocol/fields';
+import type {Spread} from '../protocol/manifest';
 import {kOperations, type Block, type Interval, type Operation} from './operations';
 import {ExpressionError, type Tree} from './parse';
 import {kTensorQuantities, type Quantity} from './tensors';
@@ -18,8 +19,8 @@ export interface Leaf {
 
 export type Step = {load: Leaf} | {value: number} | {run: Operation};
 
-/** By field: a change of it changes the result by no more than so many times as much. */
-export type ErrorFactors = ReadonlyMap<string, number>;
+/** The known error of a result by those of the fields, none as a share of a range. */
+export type ErrorRule = (of: (key: string) => Spread) => Spread;
 
 interface Component {
   steps: Step[];
@@ -30,8 +31,8 @@ interface Component {
 export interface Value {
   components: Component[];
   association: FieldInfo['association'] | null;
-  /** The error of the whole vector; null: no rule bounds it. */
-  errors: ErrorFactors | null;
+  /** That of the whole vector; null: no rule bounds it. */
+  errors: ErrorRule | null;
   /** It is this field as it is. */
   field?: {key: string; info: FieldInfo};
 }
@@ -40,6 +41,8 @@ export interface Value {
 const kMaxSteps = 1000;
 /** A message lists so many fields. */
 const kListed = 9;
+
+const kExact: Spread = {mean: 0, max: 0};
 
 const kOne: Block = new Float64Array(1);
 
@@ -137,7 +140,7 @@ const kOfVectors: Record<string, {arity: number; make(tree: Tree, values: Value[
       if (a!.length !== b!.length) throw unequal(tree, values);
       const products = a!.map((its, i) => operate(tree, kOperations['*']!, [its, b![i]!]));
       const association = together(tree, values);
-      return {components: [sumOf(tree, products)], association, errors: null};
+      return {components: [sumOf(tree, products)], association, errors: ofProduct(values)};
     },
   },
 };
@@ -179,29 +182,59 @@ function applied(
 const isTwo = ({components: [its]}: Value): boolean => constantOf(its!) === 2;
 
 /** The rules by which known errors follow; null: there is none. */
-function errorsOf(operation: Operation, values: Value[]): ErrorFactors | null {
+function errorsOf(operation: Operation, values: Value[]): ErrorRule | null {
   const [a, b] = values;
-  const {'*': times, '/': over} = kOperations;
+  const {'*': times, '/': over, square} = kOperations;
   if (operation.isSteady) return added(values.map(({errors}) => errors));
-  const factor = b?.components.length === 1 ? constantOf(b.components[0]!) : null;
-  if (operation === over && factor !== null) return scaled(a!.errors, 1 / factor);
-  if (operation !== times) return null;
-  if (factor !== null) return scaled(a!.errors, factor);
-  const first = a!.components.length === 1 ? constantOf(a!.components[0]!) : null;
-  return first === null ? null : scaled(b!.errors, first);
+  if (operation === times) return ofProduct(values);
+  if (operation === kOperations['^'] && isTwo(b!)) return ofProduct([a!, a!]);
+  if (operation === square) return ofProduct([a!, a!]);
+  const divisor = operation === over ? constantOf(b!.components[0]!) : null;
+  return divisor === null ? null : scaled(a!.errors, 1 / divisor);
 }
 
-function added(all: (ErrorFactors | null)[]): ErrorFactors | null {
-  const sums = new Map<string, number>();
-  for (const factors of all) {
-    if (!factors) return null;
-    for (const [key, factor] of factors) sums.set(key, (sums.get(key) ?? 0) + factor);
-  }
-  return sums;
+function added(all: (ErrorRule | null)[]): ErrorRule | null {
+  const rules = all.filter((its) => its !== null);
+  if (rules.length < all.length) return null;
+  return (of) => {
+    const errors = rules.map((rule) => rule(of));
+    return {
+      mean: errors.reduce((sum, {mean}) => sum + mean, 0),
+      max: errors.reduce((sum, {max}) => sum + max, 0),
+    };
+  };
 }
 
-function scaled(factors: ErrorFactors | null, by: number): ErrorFactors | null {
-  return factors && new Map([...factors].map(([key, factor]) => [key, factor * Math.abs(by)]));
+function scaled(rule: ErrorRule | null, by: number): ErrorRule | null {
+  return (
+    rule &&
+    ((of) => {
+      const {mean, max} = rule(of);
+      return {mean: mean * Math.abs(by), max: max * Math.abs(by)};
+    })
+  );
+}
+
+/** |d(ab)| <= |a| |db| + |b| |da| + |da| |db|, also of vectors, by their lengths. */
+function ofProduct([a, b]: Value[]): ErrorRule | null {
+  const [ofA, ofB] = [a!.errors, b!.errors];
+  const [mostA, mostB] = [largest(a!), largest(b!)];
+  if (!ofA || !ofB || !Number.isFinite(mostA * mostB)) return null;
+  return (of) => {
+    const [da, db] = [ofA(of), ofB(of)];
+    return {
+      mean: mostA * db.mean + mostB * da.mean + da.max * db.mean,
+      max: mostA * db.max + mostB * da.max + da.max * db.max,
+    };
+  };
+}
+
+/** No value is larger, and no vector longer. */
+function largest({components, field}: Value): number {
+  const ends = (field ? [field.info] : components).map(({range: [low, high]}) =>
+    Math.max(Math.abs(low), Math.abs(high)),
+  );
+  return Math.hypot(...ends);
 }
 
 const constantOf = ({steps}: Component): number | null =>
@@ -211,7 +244,7 @@ function constant(value: number): Value {
   return {
     components: [{steps: [{value}], range: [value, value]}],
     association: null,
-    errors: new Map(),
+    errors: () => kExact,
   };
 }
 
@@ -226,7 +259,7 @@ function valueOf(key: string, info: FieldInfo): Value {
       components === 1 ? info.range : ([Math.max(from, -most), Math.min(to, most)] as const);
     return {steps: [{load: {key, component}}], range};
   });
-  return {components: all, association, errors: new Map([[key, 1]]), field};
+  return {components: all, association, errors: (of) => of(key), field};
 }
 
 /** A number of the field that `vector` is. */
@@ -242,7 +275,7 @@ function leafOf(
   return {
     components: [{steps: [{load}], range}],
     association,
-    errors: new Map([[key, factor]]),
+    errors: scaled((of) => of(key), factor),
   };
 }
 

@@ -21,6 +21,7 @@ export function fieldsOf(display: Display): number[] {
   const scalars = [
     display.color,
     display.warp,
+    display.flux,
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];
   const named = scalars.filter((scalar) => scalar != null).map(({field}) => field);

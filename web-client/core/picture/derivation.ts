@@ -1,4 +1,4 @@
-// The work of core/derived for pictures, once it is loaded.
+// The part of core/derived for pictures, once it is loaded.
 
 import type {Manifest} from '../protocol/manifest';
 import type {ShownDerived, ValuesOf} from './derived_field';
@@ -20,7 +20,7 @@ export interface Drawn {
   inputs?: readonly number[];
 }
 
-/** They compute. It is loaded with the first derived field. */
+/** It computes, and is loaded with the first derived field. */
 export const derivation: {
   scale?: (field: ShownDerived['fields'][number], valuesOf: ValuesOf) => FieldScale | null;
   /** Undefined: the colour is no derived one. */

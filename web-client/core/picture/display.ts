@@ -36,6 +36,8 @@ export interface Display extends MayDerive {
   restEdges: boolean;
   /** Shows the cells themselves, translucent, coloured by `color`. */
   volume: boolean;
+  /** The vector field whose flux is asked for, so that it is fetched; by default the colour. */
+  flux?: Scalar | null;
   /** Fields that may be shown soon: they are fetched and decoded behind all else. */
   ahead?: number[];
   /** Layers without a member of their own, by name; the values are in [0, 1], too. */

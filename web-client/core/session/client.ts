@@ -9,7 +9,7 @@ import type {Axis, Histogram} from '../picture/histogram';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
 import type {Limit} from '../protocol/limit';
-import type {LineValues, Pick, Probe} from './inspector';
+import type {LineValues, Numbers, Pick, Probe} from './inspector';
 import {
   kNoSource,
   type FromWorker,
@@ -118,6 +118,11 @@ export class Client {
   /** Counts the values of the coloured field, as they are now; null while there are none. */
   histogram(axis: Axis): Promise<Histogram | null> {
     return this.ask({type: 'histogram', axis});
+  }
+
+  /** Integrals over what is drawn; null while there is no mesh. */
+  numbers(): Promise<Numbers | null> {
+    return this.ask({type: 'numbers'});
   }
 
   /**

@@ -2,6 +2,7 @@
 // field along a line.
 
 import type {Assembler} from '../decode/assembler';
+import type {Integrals} from '../integrals/integrals';
 import {kLayerWork} from '../layers/layer_work';
 import {keptCells} from '../layers/shown';
 import {
@@ -17,13 +18,14 @@ import {
 } from '../picture/cell_ray';
 import {infoIn} from '../picture/derived_field';
 import {cuttingPlanes, type Display, type MeshArrays} from '../picture/display';
-import {FieldScale, kMagnitude, scalarRange} from '../picture/field_scale';
+import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../picture/field_scale';
 import {histogramOf, type Axis, type Histogram} from '../picture/histogram';
 import {meshArrays} from '../picture/mesh_arrays';
 import type {Cells} from '../picture/section';
 import {positionOf, type Vector} from '../protocol/geometry';
 import type {FieldInfo} from '../protocol/fields';
 import type {Manifest} from '../protocol/manifest';
+import {retry} from '../transport/retry';
 
 /** The values of one field at a place, one a component; NaN if missing. */
 export interface FieldValue {
@@ -64,12 +66,34 @@ export interface LineValues {
   fields: FieldValue[];
 }
 
+export interface Numbers extends Integrals {
+  /** The level of the mesh that they are of. */
+  level: number;
+  color: Scalar | null;
+  /** Where the least and the largest value of it is; null: there is none. */
+  extremes: (Pick | null)[];
+}
+
 export class Inspector {
   /** The cells of places that were asked about, in which mesh. */
   private found: {chunks: number; manifest: Manifest | null; cells: Map<string, number>} | null =
     null;
 
   constructor(private readonly assembler: Assembler) {}
+
+  /** Null while there is no mesh. The integrals are loaded on use. */
+  async numbers(display: Display): Promise<Numbers | null> {
+    const {extremesOf, ShownIntegrals} = await retry(() => import('../integrals/integrals'));
+    const mesh = meshArrays(this.assembler, display);
+    if (!mesh) return null;
+    const integrals = new ShownIntegrals(mesh, display, this.assembler.manifest!).all();
+    const {level} = this.assembler.statistics([]);
+    const extremes = extremesOf(integrals).map((extreme) => {
+      const cell = extreme ? cellAt(mesh, extreme.place) : -1;
+      return extreme && cell >= 0 ? this.pickAt(mesh, cell, extreme.place, display) : null;
+    });
+    return {...integrals, extremes, level, color: display.color};
+  }
 
   /** The first visible thing that `ray` (lattice coordinates) meets; null if there is none. */
   pick(ray: Ray, display: Display): Pick | null {

@@ -7,15 +7,13 @@ import {isForbidden, decoderFailure} from '../protocol/wasm_policy';
 import {fieldsOf} from '../layers/shown';
 import {derivation} from '../picture/derivation';
 import type {DerivedFields} from '../picture/derived_field';
-import type {Display} from '../picture/display';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
-import type {Inspector} from './inspector';
 import {Publisher} from './publisher';
 import {Session} from './session';
 import {buffersOf} from './snapshot_buffers';
-import type {Answer, FromWorker, Posted, Question, Snapshot, ToWorker} from './worker_messages';
+import type {Answer, FromWorker, Inspected, Posted, Snapshot, ToWorker} from './worker_messages';
 
 interface Parts {
   session: Session;
@@ -24,8 +22,7 @@ interface Parts {
   /** The mesh's; empty while there is none. */
   digest(): Promise<string>;
   derive(text: string): Promise<DerivedFields>;
-  /** Loaded with the first question. */
-  inspector(): Promise<Inspector>;
+  answer(question: Inspected): Promise<Answer>;
 }
 
 declare global {
@@ -50,7 +47,6 @@ function start(baseUrl: string, codecUrl: string): Parts {
   const assembler = new Assembler(codec, kDraco);
   const publisher = (globalThis.qtetPublisher = new Publisher(assembler, postSnapshot));
   let whole: Promise<WebAssembly.Module> | null = null;
-  let inspector: Inspector | null = null;
   const becomeWhole = async (): Promise<WebAssembly.Module> => {
     const module = await retry(() => compile(codecUrl), Math.random, mayPass);
     codec.become(module);
@@ -79,9 +75,9 @@ function start(baseUrl: string, codecUrl: string): Parts {
     publisher,
     coarse,
     session,
-    inspector: async () => {
-      const {Inspector} = await retry(() => import('./inspector'));
-      return (inspector ??= new Inspector(assembler));
+    answer: async (question) => {
+      const {answerTo} = await retry(() => import('./answers'));
+      return answerTo(question, assembler, publisher.now);
     },
     derive: async (text) => {
       const derived = await retry(() => import('../derived/derived'));
@@ -138,16 +134,6 @@ function obey(
       return reply(message, its.derive(message.text));
     case 'digest':
       return reply(message, its.digest());
-    case 'pick':
-    case 'probe':
-    case 'line':
-    case 'at':
-    case 'values':
-    case 'histogram':
-      return reply(
-        message,
-        its.inspector().then((inspector) => answered(inspector, publisher.now, message)),
-      );
     case 'coarse': {
       const {id, have} = message;
       const send = (answer: CoarseCells | null): void =>
@@ -156,32 +142,19 @@ function obey(
         });
       return void coarse.cells(have, publisher.now).then(send, () => send(null));
     }
+    case 'pick':
+    case 'probe':
+    case 'line':
+    case 'at':
+    case 'values':
+    case 'histogram':
+    case 'numbers':
+      return reply(message, its.answer(message));
   }
 }
 
 function reply({id}: {id: number}, coming: Promise<Answer>): void {
   coming.then((answer) => post({type: 'answer', id, answer}), fail);
-}
-
-function answered(
-  inspector: Inspector,
-  display: Display,
-  question: Extract<Question, {type: 'pick' | 'probe' | 'line' | 'at' | 'values' | 'histogram'}>,
-): Answer {
-  switch (question.type) {
-    case 'pick':
-      return inspector.pick(question.ray, display);
-    case 'probe':
-      return inspector.probe(question.from, question.to, display);
-    case 'line':
-      return inspector.line(question.from, question.to, display);
-    case 'at':
-      return inspector.at(question.place, display);
-    case 'values':
-      return inspector.values(question.place, question.fields);
-    case 'histogram':
-      return inspector.histogram(question.axis, display);
-  }
 }
 
 function post(message: FromWorker): void {

@@ -18,7 +18,7 @@ import type {Vector, Plane} from '../protocol/geometry';
 import {kFull, type Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
 import type {LogAddress} from '../transport/transports';
-import type {LineValues, Pick, Probe} from './inspector';
+import type {LineValues, Numbers, Pick, Probe} from './inspector';
 
 /** The state of the stream. `paused`: by the user; `held`: it has reached the limit. */
 export type StreamState =
@@ -80,6 +80,8 @@ export type Question =
   | {type: 'values'; place: Vector; fields: readonly number[]}
   /** Counts the values of the coloured field. */
   | {type: 'histogram'; axis: Axis}
+  /** Asks for integrals over what is drawn. */
+  | {type: 'numbers'}
   /** Asks for a volume with few cells. The page has version `have`. */
   | {type: 'coarse'; have: number};
 
@@ -128,6 +130,9 @@ export interface Snapshot extends LayerSoups {
 /** With its run. Messages without one come from before the first start. */
 export type Posted = FromWorker & {run?: number};
 
+/** The questions that an Inspector answers. */
+export type Inspected = Exclude<Question, {type: 'digest' | 'derive' | 'coarse'}>;
+
 export type Answer =
   | string
   | DerivedFields
@@ -136,6 +141,7 @@ export type Answer =
   | LineValues[]
   | number[][]
   | Histogram
+  | Numbers
   | CoarseCells
   | null;
 

@@ -122,6 +122,8 @@ export class Actions {
         return page.write('edges', edges ? 'off' : null);
       case 'axes':
         return page.write('axes', axes ? null : 'on');
+      case 'extremes':
+        return page.write('extremes', page.read('extremes') === 'on' ? null : 'on');
       case 'clip':
         return page.write('clip', planes.length > 0 ? clipText([], hasFirstCut) : 'x:0.5');
       case 'pause':

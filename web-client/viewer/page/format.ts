@@ -36,17 +36,19 @@ export function formatError(error: number): string {
   return `${percent.toExponential(1).replaceAll('-', '\u2212')}\u202f%`;
 }
 
+/** A number above 0 with two digits, rounded up. */
+export function roundedUp(bound: number): number {
+  const digit = 10 ** (Math.floor(Math.log10(bound)) - 1);
+  return Number((Math.ceil(bound / digit) * digit).toPrecision(2));
+}
+
 /**
  * "T is within 0.05 K at the last level", with two digits, rounded up. Before it, the largest error
  * of the level on the screen, as sampled; 0 where that is the last one, or not known.
  */
 export function formatWithin(info: FieldInfo, error: number, now = 0): string {
   const name = info.instant?.name ?? info.name;
-  const bound = (of: number): string => {
-    const digit = 10 ** (Math.floor(Math.log10(of)) - 1);
-    const rounded = `${Number((Math.ceil(of / digit) * digit).toPrecision(2))}`;
-    return `${rounded}${info.unit ? `\u202f${info.unit}` : ''}`;
-  };
+  const bound = (of: number): string => `${roundedUp(of)}${info.unit ? `\u202f${info.unit}` : ''}`;
   const last = error === 0 ? 'exact' : `within ${bound(error)}`;
   return now === 0
     ? `${name} is ${last} at the last level`

@@ -15,6 +15,7 @@ export const kKeyHelp: readonly (readonly [string, string])[] = [
   ['Space', 'pause, continue; play a series'],
   [', .', 'instant before, next instant'],
   ['< >', 'first, last instant'],
+  ['M', 'mark the least and the largest value'],
   ['I', 'what lies in the middle'],
   ['P', 'save a picture'],
   ['W', 'whole screen'],
@@ -36,7 +37,7 @@ export interface KeyActions {
   centre(): void;
   zoom(factor: number): void;
   look(direction: number | null): void;
-  toggle(what: 'parallel' | 'edges' | 'axes' | 'clip' | 'pause' | 'fullscreen'): void;
+  toggle(what: 'parallel' | 'edges' | 'axes' | 'clip' | 'extremes' | 'pause' | 'fullscreen'): void;
   moveClip(share: number): void;
   stepTime(by: number): void;
   /** The first instant is 0, and the last one -1. */
@@ -73,6 +74,7 @@ export function bindKeys(canvas: HTMLElement, actions: KeyActions): void {
     '.': () => actions.stepTime(1),
     '<': () => actions.goToTime(0),
     '>': () => actions.goToTime(-1),
+    m: () => actions.toggle('extremes'),
     i: () => actions.inspect(),
     p: () => actions.picture(),
     f: () => actions.centre(),

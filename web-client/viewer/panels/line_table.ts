@@ -72,7 +72,7 @@ function withNames(values: readonly number[], info: FieldInfo): (string | number
 const hasNames = ({labels}: FieldInfo): boolean => labels !== undefined && labels.size > 0;
 
 /** The first row has the titles. */
-function csvOf(table: (string | number)[][], same: Same): Blob {
+export function csvOf(table: (string | number)[][], same: Same): Blob {
   const rows = table.map((row, i) => [
     ...row,
     ...same.map(([title, value]) => (i > 0 ? value : title)),

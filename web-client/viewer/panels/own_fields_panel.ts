@@ -1,6 +1,7 @@
 // The definitions of own fields: a line for each, and an empty one for another.
 
 import {definitionsIn} from '../../core/derived/definitions';
+import {fieldLayers} from '../../core/layers/layers';
 import type {Page} from '../page/page';
 import type {Panel, PanelKind, PanelsHost} from './panel';
 
@@ -61,14 +62,30 @@ class OwnFieldsPanel implements Panel {
     const lines = this.inputs.map(({value}) => value.trim().replace(/;+$/, ''));
     const all = lines.filter((line) => line !== '');
     const last = all.length > before.length ? all.at(-1)! : '';
-    this.added = last.split('=')[0]!.trim();
+    this.added = nameOf(last);
+    const names = all.map(nameOf);
+    this.giveUp(before.map(nameOf).filter((name) => !names.includes(name)));
     this.page.write('derived', all.length > 0 ? all.join('; ') : null);
+  }
+
+  /** Names that end show nothing any more: the first field colours instead. */
+  private giveUp(names: readonly string[]): void {
+    const all = [
+      ['field', (text: string) => text] as const,
+      ...fieldLayers().map((layer) => [layer.name, (text: string) => layer.fieldOf(text)] as const),
+    ];
+    for (const [attribute, fieldOf] of all) {
+      const text = this.page.read(attribute);
+      if (text !== null && names.includes(fieldOf(text))) this.page.write(attribute, null);
+    }
   }
 
   private get inputs(): HTMLInputElement[] {
     return [...this.list.querySelectorAll('input')];
   }
 }
+
+const nameOf = (definition: string): string => definition.split('=')[0]!.trim();
 
 export const ownFieldsPanel: PanelKind = {
   markup: kMarkup,

@@ -3,6 +3,7 @@
 
 import type {Probe} from '../../core/session/inspector';
 import {placeCard, type Point, type Surroundings} from '../page/card_place';
+import {copy} from '../page/copy';
 import {find, onClick} from '../page/find';
 
 interface Plot {
@@ -38,7 +39,7 @@ export class ResultCard {
     actions: CardActions,
   ) {
     this.card = find(root, '.result');
-    onClick(root, '.copy-result', () => void this.copy());
+    onClick(root, '.copy-result', () => void copy(this.text, this.announce));
     onClick(root, '.save-table', () => actions.saveTable());
     onClick(root, '.keep-point', () => actions.keep());
     onClick(root, '.over-time', () => actions.overTime());
@@ -169,15 +170,5 @@ export class ResultCard {
       title.addEventListener(end, () => title.removeEventListener('pointermove', move), {
         once: true,
       });
-  }
-
-  /** Pages without https have no clipboard. */
-  private async copy(): Promise<void> {
-    const clipboard = navigator.clipboard as Clipboard | undefined;
-    const copied = await clipboard?.writeText(this.text).then(
-      () => true,
-      () => false,
-    );
-    this.announce(copied ? 'Copied' : 'The browser does not let this page copy');
   }
 }

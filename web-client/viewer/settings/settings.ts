@@ -41,6 +41,8 @@ const kAfterLayers = [
   'length-unit',
   'ground',
   'points',
+  'flux',
+  'extremes',
   'quality',
   'projection',
   'camera',

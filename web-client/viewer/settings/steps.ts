@@ -85,6 +85,8 @@ const kTitles: Record<string, string> = {
   iso: 'isosurfaces',
   'length-unit': 'unit of length',
   points: 'kept points',
+  extremes: 'least and largest',
+  flux: 'field of the flux',
   quality: 'level of detail',
 };
 

@@ -74,6 +74,7 @@ const kRules: Partial<Record<Name, Rule>> = {
   'warp-scale': [(text) => parseNumbers(text).length === 1, 'a number; 1 is the true size'],
   'rest-edges': oneOf('on', 'off'),
   axes: oneOf('on', 'off'),
+  extremes: oneOf('on', 'off'),
   ground: [isGround, `${kGrounds.join(', ')}, or a colour, 3c3c3c`, kGrounds],
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...Object.fromEntries(
@@ -152,6 +153,14 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
       parseScalar(warp, fields)
         ? `warp="${warp}" moves nothing: it takes a field of points with three components.`
         : `warp="${warp}" moves nothing: the mesh has no such field.${hint(warp, keys)} ${has}`,
+    );
+  const flux = read('flux');
+  const vector = parseScalar(flux, fields);
+  if (flux !== null && fields[vector?.field ?? -1]?.components !== 3)
+    sentences.push(
+      vector
+        ? `flux="${flux}" is not shown: it takes a field with three components.`
+        : `flux="${flux}" is not shown: the mesh has no such field.${hint(flux, keys)} ${has}`,
     );
   for (const layer of fieldLayers()) {
     const text = read(layer.name);
