@@ -72,6 +72,10 @@ Result<LogFile> LogFile::map(int file, const std::string& name, DigestOf digestO
   if (::fstat(file, &info) != 0) return io("cannot be read");
   if (!S_ISREG(info.st_mode)) return fail(ErrorCode::kIo, name + ": not a regular file");
   if (info.st_size == 0) return fail(ErrorCode::kTruncated, name + ": the file is empty", 0);
+  if (!std::in_range<std::size_t>(info.st_size))
+    return fail(ErrorCode::kLimitExceeded,
+                name + ": has " + std::to_string(info.st_size) +
+                    " bytes, more than a program of 32 bits can address; use one of 64 bits");
   void* address =
       ::mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_PRIVATE, file, 0);
   if (address == MAP_FAILED) return io("cannot be mapped into memory");

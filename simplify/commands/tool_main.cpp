@@ -33,8 +33,11 @@ int toolMain(int argc, const char* const* argv) {
   try {
     return runTool(argc < 1 ? Words() : Words(argv + 1, argv + argc), console);
   } catch (const std::bad_alloc&) {
-    std::cerr << "qtet: the mesh does not fit into memory; use a machine with more, or a part of "
-                 "the mesh\n";
+    constexpr std::size_t kBytesOfWasm = 4;
+    std::cerr << "qtet: the mesh does not fit into memory; use "
+              << (sizeof(void*) == kBytesOfWasm ? "the tool of the Python or Debian package"
+                                                : "a machine with more")
+              << ", or a part of the mesh\n";
   } catch (const std::exception& error) {
     std::cerr << "qtet: " << error.what() << "\n";
   }

@@ -40,7 +40,10 @@ Result<PipelineOutput> simplifyAndReport(TetMesh&& mesh, PipelineOptions options
   return simplifyToLog(std::move(mesh), options);
 }
 
-GuardedFolder::GuardedFolder(std::string_view purpose) { unguarded_.emplace(purpose); }
+// The native tool knows none of these names: it would take a folder without a lock for abandoned.
+GuardedFolder::GuardedFolder(std::string_view purpose) {
+  unguarded_.emplace("node-" + std::string(purpose));
+}
 GuardedFolder::~GuardedFolder() = default;
 Status GuardedFolder::made() const {
   if (!failure()) return {};

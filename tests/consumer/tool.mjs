@@ -3,15 +3,22 @@
 //   node tool.mjs --bin DIR --wasm FILE --out DIR
 
 import assert from 'node:assert/strict';
-import {execFileSync, spawnSync} from 'node:child_process';
+import {execFile, execFileSync, spawnSync} from 'node:child_process';
 import {
+  chmodSync,
+  closeSync,
+  copyFileSync,
   existsSync,
+  fstatSync,
   mkdirSync,
+  openSync,
   readdirSync,
   readFileSync,
   rmSync,
   statSync,
+  truncateSync,
   writeFileSync,
+  writeSync,
 } from 'node:fs';
 import {join, resolve} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
@@ -100,6 +107,65 @@ for (const words of [
   assert.ok(status > 0 && /Python (or Debian )?package/.test(said), said);
 }
 
+// Runs at a time do not take each other's temporary files for abandoned.
+const program = [join(built, 'qtet.js'), 'check', 'packed.vtu.gz'];
+const runs = await Promise.all(
+  [1, 2, 3, 4].map(
+    () =>
+      new Promise((end) => {
+        execFile(process.execPath, program, settings, (error, said) => end({error, said}));
+      }),
+  ),
+);
+for (const {error, said} of runs) assert.equal(error, null, said);
+
+// A pipe with a name, one that nobody reads, permissions, and sizes beyond 32 bits.
+const shell = (line) => {
+  const env = {...settings.env, NODE: process.execPath, QTET: join(built, 'qtet.js')};
+  const {status, stdout, stderr} = spawnSync('bash', ['-c', line], {...settings, env});
+  return {status, said: `${stdout}${stderr}`};
+};
+const piped = shell('"$NODE" "$QTET" check <(cat box.vtu) --format vtu');
+assert.equal(piped.status, 0, piped.said);
+const unread = shell('"$NODE" "$QTET" check box.vtu | true; exit ${PIPESTATUS[0]}');
+assert.deepEqual(unread, {status: 141, said: ''});
+chmodSync(join(out, 'tool_coarse.vtu'), 0o600);
+assert.equal(
+  tool(['extract', 'native_fin.qtet', '--level', '0', '-o', 'tool_coarse.vtu']).status,
+  0,
+);
+assert.equal(statSync(join(out, 'tool_coarse.vtu')).mode & 0o777, 0o600);
+const long = join(out, 'long.qtet');
+copyFileSync(join(out, 'native_fin.qtet'), long);
+truncateSync(long, 2 ** 32 + statSync(long).size);
+const tooLong = tool(['info', 'long.qtet']);
+assert.ok(tooLong.status === 1 && /32 bits/.test(tooLong.said), tooLong.said);
+rmSync(long);
+const array = (type, words, offset) =>
+  `<DataArray type="${type}" ${words} format="appended" offset="${offset}"/>`;
+const kPoints = 1e8;
+const large = openSync(join(out, 'large.vtu'), 'w');
+writeSync(
+  large,
+  '<VTKFile type="UnstructuredGrid" byte_order="LittleEndian" header_type="UInt64">' +
+    `<UnstructuredGrid><Piece NumberOfPoints="${kPoints}" NumberOfCells="0">` +
+    `<Points>${array('Float64', 'NumberOfComponents="3"', 0)}</Points><Cells>` +
+    array('Int64', 'Name="connectivity"', 8 + 24 * kPoints) +
+    array('Int64', 'Name="offsets"', 8 + 24 * kPoints) +
+    array('UInt8', 'Name="types"', 8 + 24 * kPoints) +
+    '</Cells></Piece></UnstructuredGrid><AppendedData encoding="raw">_',
+);
+const {size: at} = fstatSync(large);
+writeSync(large, BigUint64Array.of(BigInt(24 * kPoints)), 0, 8, at);
+writeSync(large, new Uint8Array(8), 0, 8, at + 8 + 24 * kPoints);
+writeSync(large, '</AppendedData></VTKFile>', at + 16 + 24 * kPoints);
+closeSync(large);
+const tooLarge = tool(['check', 'large.vtu']);
+assert.ok(tooLarge.status === 1 && /not fit into memory/.test(tooLarge.said), tooLarge.said);
+rmSync(join(out, 'large.vtu'));
+
+for (const words of [['--help'], ['missing.vtu']]) tool(['view', ...words]);
+assert.deepEqual(readdirSync(temporary), [], 'temporary files are left behind');
 const viewed = tool(['view', 'box.vtu', '--no-open']);
 assert.equal(viewed.status, 0, viewed.said);
 const page = /file:\S+/.exec(viewed.said)[0];

@@ -8,6 +8,8 @@ test('names of Windows', () => {
   expect(toolName('data\\part.vtu', true)).toBe('data/part.vtu');
   expect(hostName('/C/data/part.vtu', true)).toBe('C:\\data\\part.vtu');
   expect(hostName('/C', true)).toBe('C:\\');
+  expect(toolName('\\\\server\\share\\part.vtu', true)).toBe('/UNC/server/share/part.vtu');
+  expect(hostName('/UNC/server/share/part.vtu', true)).toBe('\\\\server\\share\\part.vtu');
 });
 
 test('other systems keep their names', () => {
@@ -18,4 +20,5 @@ test('other systems keep their names', () => {
 test('words with names', () => {
   expect(toolWord('--output=c:\\a.qtet', true)).toBe('--output=/C/a.qtet');
   expect(toolWord('-o', true)).toBe('-o');
+  expect(toolWord('point:a\\,b', true)).toBe('point:a\\,b');
 });

@@ -4,22 +4,29 @@ import {webcrypto} from 'node:crypto';
 import fs from 'node:fs';
 import os from 'node:os';
 import tty from 'node:tty';
-import type {HostFiles, Streams} from './wasi';
+import {Exit, type HostFiles, type Streams} from './wasi';
 import type {Host} from './run_tool';
 
 /** A pipe that has nothing yet, or has no room, is asked again after so many ms. */
 const kPauseMs = 5;
+/** As a shell reports a program that SIGPIPE ended. */
+const kNobodyReads = 141;
 
-/** `C:\a\b` as the tool names it. Others keep their slashes. */
+/** A share's name, `\\server\share\a`, has this before it in place of two slashes. */
+const kShare = '/UNC/';
+
+/** `C:\a\b` as the tool names it. Others keep their slashes. `\,` is a comma within a name. */
 export function toolName(name: string, windows = isWindows): string {
   if (!windows) return name;
   const drive = /^([A-Za-z]):[\\/]/.exec(name);
-  const slashes = name.replaceAll('\\', '/');
+  const slashes = name.replaceAll(/\\(?!,)/g, '/').replace(/^\/\/(?=[^/])/, kShare);
   return drive ? `/${drive[1]!.toUpperCase()}${slashes.slice(2)}` : slashes;
 }
 
 /** The host's name of a file that the tool names. */
 export function hostName(name: string, windows = isWindows): string {
+  if (windows && name.startsWith(kShare))
+    return `\\\\${name.slice(kShare.length)}`.replaceAll('/', '\\');
   const drive = windows ? /^\/([A-Za-z])(\/.*)?$/s.exec(name) : null;
   return drive ? `${drive[1]}:${(drive[2] ?? '/').replaceAll('/', '\\')}` : name;
 }
@@ -35,6 +42,15 @@ if (!('crypto' in globalThis)) Object.assign(globalThis, {crypto: webcrypto});
 
 const isWindows = process.platform === 'win32';
 
+const kPermissions = 0o7777;
+
+/** The tool has no permissions (posix.h). So a file gets those of the one that it replaces. */
+function rename(from: string, to: string): void {
+  const replaced = fs.statSync(hostName(to), {throwIfNoEntry: false});
+  if (replaced) fs.chmodSync(hostName(from), replaced.mode & kPermissions);
+  fs.renameSync(hostName(from), hostName(to));
+}
+
 const files: HostFiles<number> = {
   open: (name, flags) => fs.openSync(hostName(name), flags),
   close: (file) => fs.closeSync(file),
@@ -47,7 +63,7 @@ const files: HostFiles<number> = {
   makeFolder: (name) => fs.mkdirSync(hostName(name)),
   removeFolder: (name) => fs.rmdirSync(hostName(name)),
   remove: (name) => fs.unlinkSync(hostName(name)),
-  rename: (from, to) => fs.renameSync(hostName(from), hostName(to)),
+  rename,
   link: (from, to) => fs.linkSync(hostName(from), hostName(to)),
   readLink: (name) => toolName(fs.readlinkSync(hostName(name))),
   constants: fs.constants,
@@ -75,8 +91,13 @@ const streams: Streams = {
     }
   },
   write(stream, bytes) {
-    for (let at = 0; at < bytes.length;)
-      at += patiently(() => fs.writeSync(stream, bytes, at, bytes.length - at));
+    try {
+      for (let at = 0; at < bytes.length;)
+        at += patiently(() => fs.writeSync(stream, bytes, at, bytes.length - at));
+    } catch (error) {
+      if ((error as NodeJS.ErrnoException).code === 'EPIPE') throw new Exit(kNobodyReads);
+      throw error;
+    }
   },
   isTerminal: (stream) => tty.isatty(stream),
 };

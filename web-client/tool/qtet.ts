@@ -2,9 +2,9 @@
 // The command `qtet` of the npm package: the tool as WebAssembly.
 
 import {spawn} from 'node:child_process';
-import {existsSync, mkdtempSync, readFileSync} from 'node:fs';
+import {existsSync, mkdtempSync, readFileSync, rmdirSync} from 'node:fs';
 import {tmpdir} from 'node:os';
-import {join} from 'node:path';
+import {dirname, join} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 import {nodeHost, toolName, toolWord} from './node_host';
 import {runTool} from './run_tool';
@@ -28,11 +28,12 @@ function openPage(url: string): void {
 
 const words = process.argv.slice(2).map((word) => toolWord(word));
 const isView = words[0] === 'view';
-const page = isView ? join(mkdtempSync(join(tmpdir(), 'qtet-view-')), 'page.html') : '';
+const page = isView ? join(mkdtempSync(join(tmpdir(), 'qtet-node-view-')), 'page.html') : '';
 const module = new WebAssembly.Module(readFileSync(beside('qtet-tool.wasm')));
 const host = nodeHost({QTET_VIEWER: toolName(beside('viewer')), QTET_VIEW_PAGE: toolName(page)});
 process.exitCode = runTool(module, words, host);
-if (isView && existsSync(page)) {
+if (isView && !existsSync(page)) rmdirSync(dirname(page));
+else if (isView) {
   const url = pathToFileURL(page).href;
   console.log(url);
   if (!words.includes('--no-open')) openPage(url);

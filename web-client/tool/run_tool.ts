@@ -1,6 +1,6 @@
 // The tool `qtet` as WebAssembly (simplify/portable/in_node.cpp), on the files of a host.
 
-import {type HostFiles, type Streams, Wasi} from './wasi';
+import {Exit, type HostFiles, type Streams, Wasi} from './wasi';
 
 /** Exit codes of the tool (simplify/words/console.h). */
 export const kFailed = 1;
@@ -39,7 +39,9 @@ export function runTool<Handle>(
     tool._initialize();
     return tool.qtet_main(words.length + 1, placed(tool, ['qtet', ...words]));
   } catch (thrown) {
-    if (!(thrown instanceof WebAssembly.RuntimeError)) throw thrown;
+    if (thrown instanceof Exit) return thrown.code;
+    // a stack that is full is no error of WebAssembly's own
+    if (!(thrown instanceof WebAssembly.RuntimeError || thrown instanceof RangeError)) throw thrown;
     host.streams.write(2, new TextEncoder().encode(`qtet: ${reasonOf(tool, thrown)}\n`));
     return kFailed;
   } finally {

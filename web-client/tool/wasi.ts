@@ -80,10 +80,12 @@ const kErrors: Readonly<Record<string, number>> = {
   EXDEV: 75,
 };
 const kBadFile = kErrors.EBADF!;
-const kFileType = {other: 0, character: 2, folder: 3, file: 4, link: 7};
+/** WASI has no pipes. wasi-libc takes sockets for them. */
+const kFileType = {other: 0, character: 2, folder: 3, file: 4, pipe: 6, link: 7};
 /** POSIX puts the kind of a file into its mode. */
 const kModeType = 0o170000;
 const kModeTypes = new Map([
+  [0o010000, kFileType.pipe],
   [0o020000, kFileType.character],
   [0o040000, kFileType.folder],
   [0o100000, kFileType.file],
@@ -107,9 +109,9 @@ const kMostChance = 65536;
 type Opened<Handle> =
   | {kind: 'stream'; stream: number}
   | {kind: 'folder'; name: string; entries?: string[]}
-  | {kind: 'file'; handle: Handle; at: number; appends: boolean};
+  | {kind: 'file'; handle: Handle; at: number; appends: boolean; isPipe: boolean};
 
-/** Thrown where the module ends by itself. */
+/** Ends the module, which gives back what it holds. */
 export class Exit extends Error {
   constructor(readonly code: number) {
     super(`exit ${code}`);
@@ -245,7 +247,7 @@ export class Wasi<Handle> {
           into,
           this.transfer(vectors, count, (bytes) => {
             if (opened.kind === 'stream') return this.streams.read(bytes);
-            const got = this.files.read(opened.handle, bytes, opened.at);
+            const got = this.files.read(opened.handle, bytes, opened.isPipe ? null : opened.at);
             opened.at += got;
             return got;
           }),
@@ -271,7 +273,8 @@ export class Wasi<Handle> {
               this.streams.write(opened.stream === 2 ? 2 : 1, bytes);
               return bytes.length;
             }
-            const done = this.files.write(opened.handle, bytes, opened.appends ? null : opened.at);
+            const isNext = opened.appends || opened.isPipe;
+            const done = this.files.write(opened.handle, bytes, isNext ? null : opened.at);
             opened.at += done;
             return done;
           }),
@@ -380,8 +383,8 @@ export class Wasi<Handle> {
 
   private file(fd: number): Extract<Opened<Handle>, {kind: 'file'}> {
     const opened = this.of(fd);
-    if (opened.kind !== 'file')
-      throw new Errno(opened.kind === 'stream' ? kErrors.ESPIPE! : kBadFile);
+    if (opened.kind === 'folder') throw new Errno(kBadFile);
+    if (opened.kind === 'stream' || opened.isPipe) throw new Errno(kErrors.ESPIPE!);
     return opened;
   }
 
@@ -412,7 +415,8 @@ export class Wasi<Handle> {
     if ((how & kOpen.truncate) !== 0) bits |= constants.O_TRUNC;
     const appends = (flags & kAppend) !== 0;
     if (appends) bits |= constants.O_APPEND;
-    return {kind: 'file', handle: this.files.open(name, bits), at: 0, appends};
+    const isPipe = type === kFileType.pipe;
+    return {kind: 'file', handle: this.files.open(name, bits), at: 0, appends, isPipe};
   }
 
   /** Null: there is nothing of that name. */

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 _u32, _u64, _f64, _address = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_void_p
 POINT, CELL = 0, 1
+OUT_OF_MEMORY = 103
 
 
 class QtetError(RuntimeError):

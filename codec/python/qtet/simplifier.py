@@ -14,7 +14,7 @@ import numpy
 
 from . import tool
 from .grids import Grid, grid_of, mesh_array, packed_array, series_of
-from .library import Library, QtetError, library
+from .library import OUT_OF_MEMORY, Library, QtetError, library
 from .sources import check_output
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ __all__ = ["Cancelled", "simplify"]
 
 _u32, _u64, _f64, _address = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_double, ctypes.c_void_p
 _POINT, _CELL = 0, 1
-_CANCELLED, _OUT_OF_MEMORY = 12, 103
+_CANCELLED = 12
 _TYPES = {
     "float32": 1,
     "float64": 2,
@@ -314,7 +314,7 @@ class _Work:
         if status == 0:
             return
         text = self.c.text_at(self.c.qtet_simplified_error(self.made))
-        if status == _OUT_OF_MEMORY:
+        if status == OUT_OF_MEMORY:
             raise MemoryError(text)
         raise (Cancelled if status == _CANCELLED else QtetError)(text)
 

@@ -19,6 +19,8 @@ __all__ = ["call", "is_wasm", "run"]
 
 _PACKAGE = pathlib.Path(__file__).resolve().parent
 _FAILED = 1
+# As a shell reports a program that Ctrl-C ended.
+_INTERRUPTED = 130
 _INTERVAL_S = 0.1
 # The oldest that runs the WebAssembly.
 _NODE = 18
@@ -82,6 +84,8 @@ def call(words: Sequence[str | os.PathLike[str]]) -> int:
     if not _is_in_library():
         try:
             return subprocess.call([*_program(), *words])
+        except KeyboardInterrupt:
+            return _INTERRUPTED
         except QtetError as error:
             sys.stderr.write(f"qtet: {error}\n")
             return _FAILED

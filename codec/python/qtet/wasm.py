@@ -14,7 +14,7 @@ import sys
 import tempfile
 from typing import Any, Mapping, Sequence
 
-from .library import QtetError
+from .library import OUT_OF_MEMORY, QtetError
 
 __all__ = ["IS_HERE", "WEB", "Answer", "WasmLibrary", "fetch", "run"]
 
@@ -138,6 +138,11 @@ class WasmLibrary:
                 else:
                     words.append(_word_of(given))
             result = self._run(name, *words)
+            if name == "qtet_simplify" and result == OUT_OF_MEMORY:
+                # Functions that know no exceptions have not given their memory back.
+                text = self.text_at(self._run("qtet_simplified_error", words[0]))
+                self._failure = MemoryError, text
+                raise MemoryError(text)
             for given, address in placed:
                 if not isinstance(given, bytes):
                     size = ctypes.sizeof(given)

@@ -61,6 +61,13 @@ std::int32_t signedNumber(const std::uint8_t*& at) {
 
 }  // namespace
 
+/// That of the C++ library ends the program where memory runs out. Its other forms call this one.
+void* operator new(std::size_t bytes) {
+  void* memory = std::malloc(bytes == 0 ? 1 : bytes);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
 extern "C" {
 
 /// A landing pad says where it is, and reads which of its handlers takes the object.

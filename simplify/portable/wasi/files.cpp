@@ -1,5 +1,6 @@
 // Functions of POSIX for files that wasi-libc lacks.
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -35,8 +36,13 @@ int makeNamed(char* name, const Make& make) {
 
 extern "C" {
 
-/// Nobody else has the file: hosts know no locks.
-int flock(int, int) { return 0; }
+/// Hosts know no locks. So one's own file is taken for locked, and another's for in use: who tries
+/// without waiting would remove what lies there.
+int flock(int, int how) {
+  if ((how & LOCK_NB) == 0) return 0;
+  errno = EWOULDBLOCK;
+  return -1;
+}
 
 int gethostname(char* name, std::size_t bytes) {
   if (bytes > 0) *name = '\0';
