@@ -107,6 +107,9 @@ first.close()
 assert qtet.library.library() is not broken
 assert of_log("box.qtet")["levels"]
 assert "qtet page" in raised(lambda: qtet.view("box.qtet"))
+from qtet import tool
+for words in (["extract", "box.qtet", "--level", "0", "-o", "-"], ["view", "box.qtet"]):
+    assert "in Pyodide" in raised(lambda: tool.run(words))
 `);
 }
 

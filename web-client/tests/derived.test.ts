@@ -200,8 +200,9 @@ describe('tensors', () => {
 
 test('knownErrorsFollowByRuleWhereTheyCan', () => {
   const sizes: Record<string, number> = {p: 1, T: 10, U: 100, V: 1000, S: 1};
-  const errorOf = (text: string): number | null =>
-    compile(parseExpression(text), fields).errors?.((key) => {
+  const ofCells = fields.map((its) => ({...its, association: 'cell' as const}));
+  const errorOf = (text: string, of = ofCells as readonly FieldInfo[]): number | null =>
+    compile(parseExpression(text), of).errors?.((key) => {
       const max = sizes[key]!;
       return {mean: max / 2, max};
     }).max ?? null;
@@ -223,10 +224,17 @@ test('knownErrorsFollowByRuleWhereTheyCan', () => {
   for (const [text, error] of right) expect(errorOf(text), text).toBeCloseTo(error, 9);
   for (const text of ['p / T', 'p^3', 'sqrt(p)', 'p > T', 'p * sqrt(T)'])
     expect(errorOf(text), text).toBe(null);
+  // Between points only what is linear keeps to its rule.
+  const ofPoints = (text: string): number | null => errorOf(text, fields);
+  for (const text of ['abs(p)', 'p * T', 'p^2', 'mag(U)', 'mag(U - V)', 'dot(U, V)', 'S.mises'])
+    expect(ofPoints(text), text).toBe(null);
+  for (const text of ['p - T', '2 * p - p / 4 + 5', '-(3 - p)', 'U.x', 'S.hydrostatic'])
+    expect(ofPoints(text), text).toBeCloseTo(errorOf(text)!, 9);
 });
 
 test('noProductIsFurtherOffThanItsRuleSays', () => {
-  const rule = compile(parseExpression('p * T'), fields).errors!;
+  const ofCells = fields.map((its) => ({...its, association: 'cell' as const}));
+  const rule = compile(parseExpression('p * T'), ofCells).errors!;
   const random = randomOf(3);
   const any = (most: number): number => most * (2 * random() - 1);
   for (let i = 0; i < 1000; ++i) {
@@ -287,7 +295,8 @@ describe('definitions', () => {
     const text = (count: number): string =>
       Array.from({length: count}, (_, i) => `a${i} = p + ${i}`).join(';');
     expect(deriveFields(text(kMaxDefinitions), manifest).errors).toEqual([]);
-    expect(deriveFields(text(kMaxDefinitions + 1), manifest).errors.length).toBe(1);
+    for (const more of [1, 1000])
+      expect(deriveFields(text(kMaxDefinitions + more), manifest).errors.length).toBe(1);
   });
 
   test('cannotDoubleTheirStepsAgainAndAgain', () => {

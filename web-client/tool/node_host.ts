@@ -60,7 +60,9 @@ const files: HostFiles<number> = {
   statusOf: (file) => fs.fstatSync(file),
   status: (name, followLink) => (followLink ? fs.statSync : fs.lstatSync)(hostName(name)),
   names: (folder) => fs.readdirSync(hostName(folder)),
-  makeFolder: (name) => fs.mkdirSync(hostName(name)),
+  // Temporary folders are their owner's alone (simplify/portable/in_node.cpp).
+  makeFolder: (name) =>
+    fs.mkdirSync(hostName(name), /\/qtet-node-[^/]+$/.test(name) ? 0o700 : 0o777),
   removeFolder: (name) => fs.rmdirSync(hostName(name)),
   remove: (name) => fs.unlinkSync(hostName(name)),
   rename,

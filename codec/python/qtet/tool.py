@@ -76,13 +76,13 @@ def call(words: Sequence[str | os.PathLike[str]]) -> int:
     """Runs `qtet WORDS...` in this process and returns its exit code. The process can do nothing
     else meanwhile: it is for the command `qtet`, and run() for everybody else. A tool that is not
     in the library runs in a process of its own."""
-    if wasm.IS_HERE:
-        code, printed, said = wasm.run(words)
-        sys.stdout.write(printed)
-        sys.stderr.write(said)
-        return code
     if not _is_in_library():
         try:
+            if wasm.IS_HERE:
+                code, printed, said = wasm.run(words)
+                sys.stdout.write(printed)
+                sys.stderr.write(said)
+                return code
             return subprocess.call([*_program(), *words])
         except KeyboardInterrupt:
             return _INTERRUPTED

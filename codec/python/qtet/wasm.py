@@ -47,8 +47,14 @@ def _environment() -> str:
 
 
 def run(words: Sequence[str | os.PathLike[str]]) -> tuple[int, str, str]:
-    """Runs `qtet WORDS...`: the exit code, and what it printed to the output and the errors."""
-    code, printed, said = _module().run(json.dumps([os.fspath(w) for w in words]), _environment())
+    """Runs `qtet WORDS...`: the exit code, and what it printed to the output and the errors. Raises
+    QtetError for what a page cannot take: bytes on the standard output, and another page."""
+    given = [os.fspath(word) for word in words]
+    if any(word in ("-", "-o-") or word.endswith("=-") for word in given):
+        raise QtetError("in Pyodide files have names; give one instead of -")
+    if given[:1] == ["view"]:
+        raise QtetError("in Pyodide qtet.show shows a mesh or a log in a notebook's cell")
+    code, printed, said = _module().run(json.dumps(given), _environment())
     return code, printed, said
 
 

@@ -39,6 +39,7 @@ export function deriveFields(text: string, manifest: Manifest): DerivedFields {
     } catch (thrown) {
       if (!(thrown instanceof ExpressionError)) throw thrown;
       errors.push(`"${definition}", column ${thrown.at + 1}: ${thrown.message}.`);
+      if (i >= kMaxDefinitions) break; // an address may hold thousands
     }
   }
   return {fields: [...all, ...tensorFields(manifest)], errors};

@@ -127,10 +127,10 @@ const kOfVectors: Record<string, {arity: number; make(tree: Tree, values: Value[
     make(tree, [vector]) {
       const {components, errors, field} = vector!;
       if (components.length === 1) return applied(tree, kOperations['abs']!, [vector!]);
-      if (field) return leafOf(vector!, kMagnitude, field.info.range, 1);
+      if (field) return bent(leafOf(vector!, kMagnitude, field.info.range, 1));
       const squares = components.map((its) => operate(tree, kOperations['square']!, [its]));
       const root = operate(tree, kOperations['sqrt']!, [sumOf(tree, squares)]);
-      return {...vector!, components: [root], errors};
+      return bent({...vector!, components: [root], errors});
     },
   },
   dot: {
@@ -140,7 +140,7 @@ const kOfVectors: Record<string, {arity: number; make(tree: Tree, values: Value[
       if (a!.length !== b!.length) throw unequal(tree, values);
       const products = a!.map((its, i) => operate(tree, kOperations['*']!, [its, b![i]!]));
       const association = together(tree, values);
-      return {components: [sumOf(tree, products)], association, errors: ofProduct(values)};
+      return bent({components: [sumOf(tree, products)], association, errors: ofProduct(values)});
     },
   },
 };
@@ -176,8 +176,20 @@ function applied(
       values.map((its) => its.components[its.components.length > 1 ? c : 0]!),
     ),
   );
-  return {components, association, errors: errorsOf(operation, values)};
+  const out = {components, association, errors: errorsOf(operation, values)};
+  const isConstant = ({components: all}: Value): boolean =>
+    all.every((its) => constantOf(its) !== null);
+  const isLinear =
+    isAdded || (operation === times && values.some(isConstant)) || operation === over;
+  return isLinear ? out : bent(out);
 }
+
+/**
+ * The result of what is not linear. It is computed at points and interpolated between them. So the
+ * error of a field of points, which holds everywhere, bounds it there alone: it is not known.
+ */
+const bent = (value: Value): Value =>
+  value.association === 'point' ? {...value, errors: null} : value;
 
 const isTwo = ({components: [its]}: Value): boolean => constantOf(its!) === 2;
 
@@ -291,7 +303,8 @@ function partOf(tree: Tree, value: Value, part: string): Value {
   if (quantity) {
     const most = quantity.factor * field!.info.range[1];
     const range: Interval = [quantity.isSigned ? -most : 0, most];
-    return leafOf(value, kMagnitude, range, quantity.factor, quantity);
+    const made = leafOf(value, kMagnitude, range, quantity.factor, quantity);
+    return quantity.isLinear ? made : bent(made);
   }
   const all = [...names, ...quantities.map(({name}) => name)];
   const has =

@@ -9,6 +9,7 @@ export interface Quantity {
   title: string;
   /** It can be below 0. */
   isSigned: boolean;
+  isLinear?: true;
   /**
    * No value is larger than so many times the length of the six components. A change of them
    * changes it by no more times its length: each is a norm, or an eigenvalue (Weyl).
@@ -47,6 +48,7 @@ export const kTensorQuantities: readonly Quantity[] = [
     name: 'hydrostatic',
     title: 'hydrostatic',
     isSigned: true,
+    isLinear: true,
     factor: Math.sqrt(1 / 3),
     of: mean,
   },
