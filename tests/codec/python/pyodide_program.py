@@ -22,7 +22,8 @@ def raised(call):
     except OSError as error:  # its number is another one
         return f"{type(error).__name__}: {error.filename}"
     except Exception as error:
-        text = re.sub(r"qtet-(node-)?page-\w+", "TEMPORARY", str(error)).replace(os.getcwd(), "HERE")
+        text = re.sub(r"qtet-(node-)?page-\w+", "TEMPORARY", str(error))
+        text = text.replace(os.getcwd(), "HERE")
         return f"{type(error).__name__}: {text}"
     return "nothing"
 
