@@ -65,7 +65,9 @@ test('errors have the codes and texts of the tool, and the name of the file', ()
   expect(cut.message).toMatch(/^cut\.mesh, line 3: /);
   const missing = failure([], 'none.mesh');
   expect(missing.code).toBe('not-found');
-  expect(failure([fileOf('a.exo', 'x')], 'a.exo').message).toMatch(/neither in browsers nor in node/);
+  expect(failure([fileOf('a.exo', 'x')], 'a.exo').message).toMatch(
+    /neither in browsers nor in node/,
+  );
 });
 
 test('a file finds those that it names beside it', () => {

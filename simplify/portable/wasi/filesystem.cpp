@@ -146,7 +146,10 @@ uintmax_t __remove_all(const path& name, error_code* code) {
     vector<path> within;
     for (directory_iterator at(name, failed), end; !failed && at != end; at.increment(failed))
       within.push_back(at->path());
-    for (const path& one : within) count += __remove_all(one, code);
+    for (const path& one : within) {
+      count += __remove_all(one, code);
+      if (code != nullptr && *code) return count;
+    }
   }
   return count + (__remove(name, code) ? 1 : 0);
 }
@@ -159,12 +162,19 @@ void __create_hard_link(const path& to, const path& link, error_code* code) {
   told(::link(to.c_str(), link.c_str()) == 0, code);
 }
 
+/// No options are known: a file that is there is not replaced.
 bool __copy_file(const path& from, const path& to, copy_options, error_code* code) {
+  struct stat status{};
+  if (::stat(to.c_str(), &status) == 0) {
+    errno = EEXIST;
+    return told(false, code);
+  }
   ifstream in(from, ios::binary);
+  if (!in.is_open()) return told(false, code);
   ofstream out(to, ios::binary);
-  errno = EIO;
-  return told(in.is_open() && (__file_size(from, code) == 0 || (out << in.rdbuf())) && out.flush(),
-              code);
+  if (!out.is_open()) return told(false, code);
+  if (in.peek() != ifstream::traits_type::eof()) out << in.rdbuf();
+  return told(!in.bad() && out.flush(), code);
 }
 
 // ---- folders
@@ -181,7 +191,7 @@ class __dir_stream {
  public:
   __dir_stream(const path& folder, error_code* code)
       : folder_(folder), names_(::opendir(folder.c_str())) {
-    if (told(names_ != nullptr, code)) next();
+    if (told(names_ != nullptr, code)) told(next(), code);
   }
   __dir_stream(const __dir_stream&) = delete;
   __dir_stream& operator=(const __dir_stream&) = delete;
@@ -192,14 +202,17 @@ class __dir_stream {
   bool isAtEnd() const { return names_ == nullptr || isAtEnd_; }
   const directory_entry& entry() const { return entry_; }
 
-  void next() {
+  /// Returns whether the folder could be read.
+  bool next() {
     const dirent* found = nullptr;
     do {
+      errno = 0;
       found = ::readdir(names_);
     } while (found != nullptr && (path(found->d_name) == "." || path(found->d_name) == ".."));
     isAtEnd_ = found == nullptr;
     error_code ignored;
     if (found != nullptr) entry_.assign(folder_ / found->d_name, ignored);
+    return found != nullptr || errno == 0;
   }
 
  private:
@@ -214,8 +227,7 @@ directory_iterator::directory_iterator(const path& folder, error_code* code, dir
   if (__imp_->isAtEnd()) __imp_.reset();
 }
 directory_iterator& directory_iterator::__increment(error_code* code) {
-  told(true, code);
-  __imp_->next();
+  told(__imp_->next(), code);
   if (__imp_->isAtEnd()) __imp_.reset();
   return *this;
 }
