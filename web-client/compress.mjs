@@ -12,9 +12,9 @@ import {gzipSync} from 'node:zlib';
 
 /**
  * Page, scripts and WebAssembly, including what is loaded on demand: one second at 2.5 Mbit/s. Own
- * fields, which are loaded on use, took it from 300 to 308 kB, and numbers about what is drawn to
- * 315 kB. The notices and the simplifier do
- * not count: a visit fetches the one never and the other with the first mesh that is dropped.
+ * fields and numbers about what is drawn took it from 300 to 315 kB; they are loaded on use. The
+ * notices and the simplifier do not count: a visit fetches the one never and the other with the
+ * first mesh that is dropped.
  */
 const kMaxBytes = 315000;
 

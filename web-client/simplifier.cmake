@@ -162,13 +162,19 @@ qtet_simplifier_objects(${QTET_WASM_CXX} draco_page "${draco_meshes}" ${draco_fl
 foreach(source IN ITEMS simplify/portable/in_browser.cpp simplify/api/wasm_simplify.cpp)
   qtet_simplifier_object(${QTET_WASM_CXX} ${PROJECT_SOURCE_DIR}/${source} ${own_flags} -Os)
 endforeach()
-set(simplifier_wasm ${CMAKE_CURRENT_BINARY_DIR}/qtet-simplify.wasm)
-add_custom_command(
-  OUTPUT ${simplifier_wasm}
-  COMMAND ${QTET_WASM_CXX} --target=wasm32-wasi -O3 -mexec-model=reactor -Wl,--strip-all
-          -Wl,-z,stack-size=8388608 -Wl,--stack-first -Wl,--max-memory=4294967296
-          -lwasi-emulated-getpid ${simplifier_exports} -o ${simplifier_wasm}
-          -Wl,--start-lib ${simplifier_objects} -Wl,--end-lib
-  DEPENDS ${simplifier_objects}
-  COMMENT "Linking qtet-simplify.wasm"
-  VERBATIM)
+
+# Adds the command that links a module NAME of these objects, and names its file in OUT. The rest
+# are the options of its exports.
+function(qtet_link_wasm out name objects)
+  set(wasm ${CMAKE_CURRENT_BINARY_DIR}/${name}.wasm)
+  add_custom_command(
+    OUTPUT ${wasm}
+    COMMAND ${QTET_WASM_CXX} --target=wasm32-wasi -O3 -mexec-model=reactor -Wl,--strip-all
+            -Wl,-z,stack-size=8388608 -Wl,--stack-first -Wl,--max-memory=4294967296
+            -lwasi-emulated-getpid ${ARGN} -o ${wasm} -Wl,--start-lib ${objects} -Wl,--end-lib
+    DEPENDS ${objects}
+    COMMENT "Linking ${name}.wasm"
+    VERBATIM)
+  set(${out} ${wasm} PARENT_SCOPE)
+endfunction()
+qtet_link_wasm(simplifier_wasm qtet-simplify "${simplifier_objects}" ${simplifier_exports})

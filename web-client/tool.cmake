@@ -61,14 +61,5 @@ foreach(header IN ITEMS codec/api/qtet.h simplify/api/qtet_simplify.h)
     endif()
   endforeach()
 endforeach()
-set(tool_wasm ${CMAKE_CURRENT_BINARY_DIR}/qtet-tool.wasm)
-add_custom_command(
-  OUTPUT ${tool_wasm}
-  COMMAND ${QTET_WASM_CXX} --target=wasm32-wasi -O3 -mexec-model=reactor -Wl,--strip-all
-          -Wl,-z,stack-size=8388608 -Wl,--stack-first -Wl,--max-memory=4294967296
-          -lwasi-emulated-getpid ${tool_exports} -o ${tool_wasm}
-          -Wl,--start-lib ${simplifier_objects} ${both_objects} -Wl,--end-lib
-  DEPENDS ${simplifier_objects} ${both_objects}
-  COMMENT "Linking qtet-tool.wasm"
-  VERBATIM)
+qtet_link_wasm(tool_wasm qtet-tool "${simplifier_objects};${both_objects}" ${tool_exports})
 add_custom_target(qtet_tool_wasm ALL DEPENDS ${tool_wasm})

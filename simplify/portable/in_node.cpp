@@ -45,11 +45,6 @@ GuardedFolder::GuardedFolder(std::string_view purpose) {
   unguarded_.emplace("node-" + std::string(purpose));
 }
 GuardedFolder::~GuardedFolder() = default;
-Status GuardedFolder::made() const {
-  if (!failure()) return {};
-  return fail(ErrorCode::kIo, "no temporary folder could be made (" + failure().message() +
-                                  "); let TMPDIR name one with room");
-}
 
 void followFiles(const std::vector<std::string>&, std::chrono::milliseconds,
                  const std::function<Result<bool>()>&, Console&) {

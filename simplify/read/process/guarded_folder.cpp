@@ -90,12 +90,6 @@ GuardedFolder::GuardedFolder(std::string_view purpose) {
   if (!startGuard(purpose)) unguarded_.emplace(purpose);
 }
 
-Status GuardedFolder::made() const {
-  if (!failure()) return {};
-  return fail(ErrorCode::kIo, "no temporary folder could be made (" + failure().message() +
-                                  "); let TMPDIR name one with room");
-}
-
 GuardedFolder::~GuardedFolder() {
   if (life_ >= 0) ::close(life_);
   while (guard_ > 0 && ::waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) {

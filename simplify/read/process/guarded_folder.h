@@ -33,7 +33,11 @@ class GuardedFolder {
     return unguarded_ ? unguarded_->failure() : failure_;
   }
   /// Whether there is one. Error: io, with failure() and what to do.
-  [[nodiscard]] Status made() const;
+  [[nodiscard]] Status made() const {
+    if (!failure()) return {};
+    return fail(ErrorCode::kIo, "no temporary folder could be made (" + failure().message() +
+                                    "); let TMPDIR name one with room");
+  }
 
  private:
   [[nodiscard]] bool startGuard(std::string_view purpose);

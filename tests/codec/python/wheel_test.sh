@@ -25,18 +25,9 @@ bytes=$(stat -c %s "$wheel")
 
 "$python" -m zipfile -e "$wheel" unpacked
 library=unpacked/qtet/libqtet.so
-others=$(ldd "$library" | grep -vE 'linux-vdso|ld-linux|lib(c|m|dl|pthread)\.so\.' || true)
-[[ -z $others ]] || fail "its library needs $others"
-newest=$(objdump -T "$library" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -1)
-# Releases are built on Debian 12, whose own is 2.36.
-most=GLIBC_$(getconf GNU_LIBC_VERSION | cut -d' ' -f2)
-[[ $most != GLIBC_2.36 ]] || most=GLIBC_2.28
-[[ $(printf '%s\n' "$newest" "$most" | sort -V | tail -1) == "$most" ]] ||
-  fail "its library needs $newest"
+source "$source/tests/codec/python/wheel_library.sh"
 [[ $wheel == *-manylinux_2_${newest#GLIBC_2.}_* ]] ||
   fail "it is called $wheel, but needs $newest"
-foreign=$(objdump -T "$library" | awk '/ g / && !/UND/ {print $NF}' | grep -v '^qtet_' || true)
-[[ -z $foreign ]] || fail "its library exports $foreign"
 
 "$python" -m venv alone
 alone/bin/pip install -q --no-index --no-deps "$wheel"
