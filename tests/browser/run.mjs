@@ -24,6 +24,7 @@ import {monkeyChecks} from './monkey_checks.mjs';
 import {movieChecks} from './movie_checks.mjs';
 import {numberChecks} from './number_checks.mjs';
 import {pageChecks} from './page_checks.mjs';
+import {partChecks} from './part_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {pinChecks} from './pin_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
@@ -69,7 +70,14 @@ const lists = {
     ...pinChecks,
     ...numberChecks,
   },
-  legend: {...legendChecks, ...derivedChecks, ...colorChecks, ...histogramChecks, ...undoChecks},
+  legend: {
+    ...partChecks,
+    ...legendChecks,
+    ...derivedChecks,
+    ...colorChecks,
+    ...histogramChecks,
+    ...undoChecks,
+  },
   panel: {...panelChecks, ...pictureChecks, ...timeChecks},
   recovery: recoveryChecks,
   monkey: monkeyChecks,

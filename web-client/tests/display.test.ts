@@ -10,7 +10,7 @@ import {
   type MeshArrays,
 } from '../core/picture/display';
 import {isosurfacesWork} from '../core/layers/isosurfaces';
-import {fieldsOf, keptCells} from '../core/layers/shown';
+import {fieldsOf, isJagged, keptCells} from '../core/layers/shown';
 import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/fields';
 import {isosurface} from '../core/picture/slice';
@@ -91,7 +91,9 @@ test('onlyAWholeSurfaceHasCreases', () => {
       0,
     );
   expect(sides(null, ofCells)).toBe(2 * 12 * 4);
-  expect(sides(new Uint8Array(cells).fill(1), ofCells)).toBeUndefined();
+  const range = {scalar: {field: 1, component: kMagnitude}, low: 0, high: 1};
+  expect(isJagged(mesh, display({threshold: range}))).toBe(true);
+  expect(isJagged(mesh, ofCells)).toBe(false);
   expect(surfaceOf(mesh, ofCells, null).creases).toBeUndefined();
 });
 

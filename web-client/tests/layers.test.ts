@@ -1,4 +1,4 @@
-// A new layer costs a file of its own, here toy_layer.ts, and a line in each of three lists.
+// A new layer costs a file of its own, here toy_layer.ts, and a line in each of four lists.
 
 import {readdirSync, readFileSync} from 'node:fs';
 import {expect, test, vi} from 'vitest';
@@ -17,6 +17,11 @@ import {unfittingParts, wrongParts} from '../viewer/settings/wrong_parts';
 import {kControls} from '../viewer/sections';
 import {toy} from './toy_layer';
 
+vi.mock('../core/layers/layer_rules', async (actual) => {
+  const its = await actual<{isFieldValues(count: number): unknown; kLayerRules: object}>();
+  const isToy = its.isFieldValues(1);
+  return {...its, kLayerRules: {...its.kLayerRules, toy: [isToy, 'a field, "=" and a number']}};
+});
 vi.mock('../core/layers/layers', async (original) => {
   const {kLayers: shipped} = await original<{kLayers: object[]}>();
   const {toy: added} = await import('./toy_layer');
@@ -55,8 +60,12 @@ function displayFor(attributes: Record<string, string>): ReturnType<typeof displ
 
 test('hasAnAttributeThatIsCheckedAndControls', () => {
   const first = kViewAttributes.indexOf('clip');
-  const layers = kViewAttributes.slice(first, first + 6).join(' ');
-  expect(layers).toBe('clip clip-mode iso threshold volume toy');
+  const layers = kViewAttributes
+    .slice(first, kViewAttributes.indexOf('toy' as never) + 1)
+    .join(' ');
+  expect(layers).toBe(
+    'clip clip-mode iso threshold parts hidden-parts part-opacity part-colors volume toy',
+  );
   expect(wrongParts(read({toy: 'p=1'}))).toEqual([]);
   expect(wrongParts(read({toy: 'p=1,2'}))).toEqual([
     'toy="p=1,2" is not understood. It takes a field, "=" and a number.',

@@ -10,8 +10,9 @@ import {
   scalarText,
   sharesOf,
 } from '../core/layers/field_values';
-import {clip, parseClip} from '../core/layers/clip';
+import {parseClip} from '../core/layers/clip';
 import {clipText} from '../core/layers/clip_text';
+import {kLayerRules} from '../core/layers/layer_rules';
 import {firstOpacities} from '../core/layers/volume';
 import {markSeries} from '../core/protocol/series';
 import type {Manifest} from '../core/protocol/manifest';
@@ -44,7 +45,7 @@ describe('clip planes', () => {
     expect(clipText([], false)).toBeNull();
     expect(clipText([], true)).toBe('none');
     expect(parseClip('none')).toEqual([]);
-    expect(clip.isRight('none')).toBe(true);
+    expect(kLayerRules.clip[0]('none')).toBe(true);
   });
   test.each(['', 'w', 'x:', 'x:2', '0,0,0:0.5', '1,2:0.5'])('%s isNone', (text) =>
     expect(parseClip(text)).toEqual([]),

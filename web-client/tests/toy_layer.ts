@@ -21,7 +21,6 @@ const common = fieldLayer('toy', {pointsOnly: true, count: 1});
 export const toy = {
   ...common,
   name: 'toy',
-  expected: 'a field, "=" and a number',
   draw: {edges: true},
 } as const satisfies FieldLayer;
 

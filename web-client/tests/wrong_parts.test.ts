@@ -41,6 +41,9 @@ const kRight: Record<string, string[]> = {
   'clip-mode': ['cut', 'cells', 'slice'],
   iso: ['p=1', 'p=1,2'],
   threshold: ['p=1,2'],
+  'hidden-parts': ['Steel,3', 'all but Steel'],
+  'part-opacity': ['Steel=0.3,3=.5'],
+  'part-colors': ['Steel=ff8800'],
   volume: ['', '0,0.5'],
   quality: ['full', '1%', 'cells:20000', 'error:0.01'],
   projection: ['parallel', 'perspective'],
@@ -62,6 +65,9 @@ const kWrong: Record<string, string[]> = {
   'clip-mode': ['flat'],
   iso: ['p', 'p=', '1'],
   threshold: ['p=1', 'p=1,2,3'],
+  'hidden-parts': [''],
+  'part-opacity': ['Steel', 'Steel=0', 'Steel=2'],
+  'part-colors': ['Steel=red'],
   volume: ['1', 'x', 'on', '0,2', Array(34).fill(0.5).join()],
   quality: ['0%', 'best', 'cells:-1'],
   projection: ['fish-eye'],
@@ -132,5 +138,22 @@ test('unknownParametersAreNamed', () => {
   expect(unknownNames(['colourmap', 'palette'])).toEqual([
     'The address has "colourmap", which means nothing here. Did you mean "colormap"?',
     'The address has "palette", which means nothing here.',
+  ]);
+});
+
+test('partsThatAreNotThereAreNamed', () => {
+  const said = (texts: Record<string, string>, fields = manifest.fields): string[] =>
+    unfittingParts(reading(texts), {...manifest, fields});
+  const block = {...field('Block', 'cell'), labels: new Map([[1, 'Steel']])};
+  const fields = [...manifest.fields, block];
+  expect(said({'hidden-parts': '1'})).toEqual([
+    'The mesh has no parts: none of its fields is a label of cells.',
+  ]);
+  expect(said({'hidden-parts': 'Steel,7'}, fields)).toEqual([]);
+  expect(said({'part-opacity': 'Stel=0.5'}, fields)).toEqual([
+    'part-opacity: the mesh has no part "Stel". Did you mean "Steel"?',
+  ]);
+  expect(said({parts: 'p'}, fields)).toEqual([
+    'parts="p" is not followed: the mesh has no such label. It has Block.',
   ]);
 });

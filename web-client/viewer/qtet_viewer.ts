@@ -31,6 +31,10 @@
 //   clip-mode    cut (default), cells, slice.
 //   iso          "FIELD=VALUE,VALUE...".
 //   threshold    "FIELD=LOW,HIGH".
+//   parts        name of a label of cells, whose values are parts; by default the first.
+//   hidden-parts names or numbers of parts, "Steel,3"; "all but Steel".
+//   part-opacity, part-colors
+//                "Steel=0.3,3=0.5"; "Steel=ff8800".
 //   volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen
 //                through instead of the surface; "auto" suits the mesh.
 //   axes         "on" draws a box with numbers round the mesh.

@@ -11,6 +11,7 @@ import {levelPanel} from './panels/level_panel';
 import {numbersPanel} from './panels/numbers_panel';
 import type {PanelKind} from './panels/panel';
 import {ownFieldsPanel} from './panels/own_fields_panel';
+import {partsPanel} from './panels/parts_panel';
 import {pinsPanel} from './panels/pins';
 import {statisticsPanel} from './panels/statistics_panel';
 import {surfacePanel} from './panels/surface_panel';
@@ -31,6 +32,7 @@ const kSections: readonly Section[] = [
   {name: 'colours', title: 'Field and colours', panels: [colorPanel, histogramPanel, stepsPanel]},
   {name: 'own-fields', title: 'Own fields', isFolded: true, panels: [ownFieldsPanel]},
   {name: 'surface', title: 'Surface', panels: [surfacePanel]},
+  {name: 'parts', title: 'Parts', isFolded: true, panels: [partsPanel]},
   {name: 'deform', title: 'Deform', panels: [warpPanel]},
   {
     name: 'inside',

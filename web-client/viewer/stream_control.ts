@@ -268,7 +268,8 @@ export class StreamControl {
     const plain = keys.filter((key) => entry?.series.includes(key) !== true);
     const defined = (page.read('derived') ?? '').split(/[;=]/).map((word) => word.trim());
     const warp = page.read('warp') ?? displacementKey(plain);
-    const named = [page.read('field') ?? first, warp === kNoWarp ? null : warp, ...ofLayers]
+    const parts = page.read('hidden-parts') && page.read('parts');
+    const named = [page.read('field') ?? first, warp === kNoWarp ? null : warp, parts, ...ofLayers]
       .filter((text) => text !== null && text !== '' && !defined.includes(text))
       .map((text) => keyToAsk(text!, keys, time));
     return named.length > 0 ? [...new Set(named)] : null;

@@ -6,14 +6,17 @@
 // gl_FragColor.
 
 import {kColorMapEntries} from '../core/picture/color_maps';
+import {kOpacitySteps, kPlainCode} from '../core/picture/paint';
 import {kBendShader} from '../core/picture/log_scale';
 
 export const kFieldVertexShader = /* glsl */ `
   uniform int firstHalf;
   in float value;
   in float creases; // creasesOf the triangle
+  in vec4 paint; // paintOf the triangle
   out float vValue;
   flat out vec3 vCreases;
+  flat out vec4 vPaint;
   // centroid: a place outside the triangle would leave pixels of slivers above a plane
   centroid out vec3 vLattice;
   centroid out float vReach; // half of the canvas's height there, in lattice units
@@ -26,6 +29,7 @@ export const kFieldVertexShader = /* glsl */ `
     // In triangles from firstHalf on, the side opposite to the first corner is a quad's diagonal.
     if (gl_VertexID / 3 >= firstHalf) vCorner.x = 1.0;
     vValue = value;
+    vPaint = paint;
     vCreases = vec3(ivec3(int(creases)) >> ivec3(0, 1, 2) & 1);
     vLattice = position;
     vec4 view = modelViewMatrix * vec4(position, 1.0);
@@ -46,6 +50,7 @@ export const kFieldFragmentShader = /* glsl */ `
   in vec3 vView;
   in vec3 vCorner;
   flat in vec3 vCreases;
+  flat in vec4 vPaint;
   uniform sampler2D colorMap;
   // the ends of the map, in units of vValue; of the value itself if logarithmic
   uniform vec2 range;
@@ -60,6 +65,7 @@ export const kFieldFragmentShader = /* glsl */ `
   uniform bool twoSided;
   uniform vec4 clipPlanes[3];
   uniform float opacity;
+  uniform int pass; // 0: all is drawn, 1: what is solid, 2: what is seen through
   uniform float edgeStrength;
   uniform float creaseStrength;
   uniform float edgeFade;
@@ -68,7 +74,8 @@ export const kFieldFragmentShader = /* glsl */ `
 
 ${kBendShader}
 
-  vec3 surfaceColor() {
+  vec3 surfaceColor(int code) {
+    if (code > 127) return vPaint.rgb;
     // a missing value makes its triangle plain
     if (!colored || isnan(vValue)) return plainColor;
     float t = (vValue - range.x) / max(range.y - range.x, 1e-12);
@@ -109,7 +116,12 @@ ${kBendShader}
     // A triangle seen edge-on is high within a pixel. It stands out by the size of two pixels.
     float pixels = 2.0 * vReach * abs(dFdy(vAcross.x / vAcross.y));
     if (any(greaterThan(heights, min(width, pixels * halfLine)))) discard;
-    vec3 color = surfaceColor();
+    int code = int(vPaint.a * 255.0 + 0.5);
+    if (code == ${kPlainCode}) code = ${kOpacitySteps};
+    float own = min(float(code & 63) / ${kOpacitySteps}.0, 1.0);
+    if (pass > 0 && (pass == 1) != (own == 1.0)) discard;
+    vec3 color = surfaceColor(code);
+    if ((code & 64) > 0) color = mix(color, vec3(1.0), 0.45); // it is selected
     if (lit) {
       // Flat shading from screen derivatives makes cells look like cells. A lamp is a little above
       // the eye, and light falls from the sky. All channels get one factor: the hue stays.
@@ -119,10 +131,11 @@ ${kBendShader}
       float facing = max(dot(normal, light), 0.0);
       float sky = 0.5 + 0.5 * normal.y;
       color *= 0.68 + 0.18 * facing + 0.14 * sky;
-      if (!gl_FrontFacing && !twoSided) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
+      bool isInside = !gl_FrontFacing && !twoSided && own == 1.0;
+      if (isInside) color = mix(color, vec3(0.24, 0.26, 0.30), 0.55);
     }
     vec2 line = lines(1.0 - smoothstep(vec3(0.0), max(width, 1e-6), abs(heights)));
     vec3 crease = onDark ? mix(color, vec3(1.0), 0.7) : color * 0.22;
     color = mix(mix(color, color * 0.22, line.x), crease, line.y);
-    gl_FragColor = vec4(min(color, 1.0), opacity);
+    gl_FragColor = vec4(min(color, 1.0), opacity * own);
   }`;

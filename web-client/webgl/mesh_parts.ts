@@ -4,6 +4,7 @@
 import {linearPart} from '../core/picture/log_scale';
 import {kMaxPlanes} from '../core/picture/display';
 import type {Snapshot} from '../core/session/worker_messages';
+import type {backToFront} from './clear_order';
 import {ColorTable} from './color_table';
 import {fadesOf} from './edge_fade';
 import {kFieldFragmentShader, kFieldVertexShader} from './field_shaders';
@@ -49,6 +50,8 @@ export class MeshParts {
   private bounds: readonly number[] = [];
   /** No plane cuts the surface. */
   private isClosed = true;
+  /** It is loaded with the first soup that needs it. */
+  order: ((...its: Parameters<typeof backToFront>) => Uint32Array | null) | null = null;
   /** The uniforms of all. */
   private readonly look: Record<string, Uniform>;
 
@@ -162,8 +165,7 @@ export class MeshParts {
     const ground = this.frame ?? this.look;
     const pixelRatio = Math.max(1, Number(ground.pixelRatio));
     const seen = {...this.look, pixelRatio, modelViewMatrix: toEye, projectionMatrix: toCube};
-    const drawSoup = (soup: Soup): void => {
-      const clear = isClear(soup);
+    const drawSoup = (soup: Soup, clear: boolean): void => {
       this.graphics.use({
         depths: clear ? 'tested' : 'written',
         culls: hidesInside && !clear && soup === this.surface,
@@ -172,16 +174,19 @@ export class MeshParts {
       this.program.use({
         ...seen,
         ...soup.look,
+        pass: !soup.hasClear || isClear(soup) ? 0 : clear ? 2 : 1,
         edgeStrength: soup.hasEdges ? lines.edges : 0,
         creaseStrength: soup.hasEdges ? lines.creases * lines.creaseFade : 0,
       });
-      soup.draw();
+      const {positions, paint} = soup.shown;
+      const isOrdered = clear && soup.hasClear && !isClear(soup);
+      soup.draw(isOrdered ? (this.order?.(positions, paint, toEye) ?? null) : null);
     };
-    visible.filter((soup) => !isClear(soup)).forEach(drawSoup);
+    for (const soup of visible) if (!isClear(soup)) drawSoup(soup, false);
     const onDark = Boolean(ground.onDark);
     this.restEdges.draw({toEye, toCube}, {onDark, opacity: lines.creaseFade, pixelRatio});
     // Soups that can be seen through come last, and hide nothing.
-    visible.filter(isClear).forEach(drawSoup);
+    for (const soup of visible) if (isClear(soup) || soup.hasClear) drawSoup(soup, true);
   }
 
   private get all(): Soup[] {

@@ -81,6 +81,8 @@ export class MeshView implements View {
         .then((loaded) =>
           this.show(loaded ? snapshot : {...snapshot, volume: null}, drawn, change),
         );
+    if (!scene.parts.order && [snapshot.surface, ...snapshot.cuts].some((soup) => soup?.hasClear))
+      return void scene.loadOrder().then(() => this.show(snapshot, drawn, change));
     if (change) scene.changeLattice(change);
     frames.waiting.push(drawn);
     // While a series plays, each instant has its turn: the next one would interrupt it.

@@ -45,6 +45,12 @@ export class Scene {
     return true;
   }
 
+  /** Where the network fails, triangles that are seen through have no order. */
+  async loadOrder(): Promise<void> {
+    const loaded = await import('./clear_order').catch(reportError);
+    this.parts.order = loaded ? loaded.backToFront : () => null;
+  }
+
   /** The next mesh lies on another lattice, in the same place. */
   changeLattice(change: LatticeChange): void {
     this.parts.clear(); // the picture may lack what the last one had

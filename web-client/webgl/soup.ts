@@ -1,6 +1,7 @@
 // A triangle soup in buffers that stay and grow. Only the parts of a new soup that differ are
 // uploaded.
 
+import {kPlainCode} from '../core/picture/paint';
 import type {TriangleSoup} from '../core/picture/triangle_soup';
 import type {Plane} from '../core/protocol/geometry';
 import {copyChanged} from './changed_ranges';
@@ -12,12 +13,14 @@ import type {Uniform} from './gl/program';
 /** A buffer gets this many times the room that it needs, for later levels. */
 const kGrowth = 1.5;
 /** The attributes of a corner, in the order of a program: their names, and their numbers. */
-export const kSoupAttributes = ['position', 'value', 'creases'] as const;
-const kNumbers = {position: 3, value: 1, creases: 1};
+export const kSoupAttributes = ['position', 'value', 'creases', 'paint'] as const;
+const kNumbers = {position: 3, value: 1, creases: 1, paint: 4};
 
 interface Buffers {
   vertices: WebGLVertexArrayObject;
   buffers: WebGLBuffer[];
+  /** The corners of triangles that are drawn in another order. */
+  order: WebGLBuffer;
 }
 
 export class Soup {
@@ -28,10 +31,14 @@ export class Soup {
     position: new Float32Array(0),
     value: new Float32Array(0),
     creases: new Uint8Array(0),
+    /** Empty without paint: all corners have that of the program. */
+    paint: new Uint8Array(0),
   };
   private corners = 0;
   /** The sides of its triangles are edges of cells. */
   hasEdges = true;
+  /** Some of its triangles may be seen through, others not. */
+  hasClear = false;
 
   /**
    * `lit` shades it as a surface, without `lit` it is flat, as a cut. The inside of a surface is
@@ -54,9 +61,9 @@ export class Soup {
     this.made = new Made(
       graphics,
       () => this.upload(),
-      ({vertices, buffers}) => {
+      ({vertices, buffers, order}) => {
         gl.deleteVertexArray(vertices);
-        for (const buffer of buffers) gl.deleteBuffer(buffer);
+        for (const buffer of [...buffers, order]) gl.deleteBuffer(buffer);
       },
     );
   }
@@ -65,11 +72,12 @@ export class Soup {
     return this.corners > 0;
   }
   /** Empty while it is invisible. */
-  get shown(): Lined {
-    const {position, creases} = this.data;
+  get shown(): Lined & {paint: Uint8Array} {
+    const {position, creases, paint} = this.data;
     return {
       positions: position.subarray(0, 3 * this.corners),
       creases: creases.subarray(0, this.corners),
+      paint: paint.subarray(0, 4 * this.corners),
     };
   }
 
@@ -80,21 +88,33 @@ export class Soup {
     this.hasEdges = soup.edges ?? true;
     const colored = soup.values.length > 0;
     Object.assign(this.look, {colored, firstHalf: soup.firstHalf});
-    if (this.corners > this.data.value.length) this.grow();
+    this.hasClear = soup.hasClear ?? false;
+    const isPainted = this.data.paint.length > 0;
+    if (this.corners > this.data.value.length || (soup.paint && !isPainted)) this.grow(soup);
     this.update('position', soup.positions);
     if (colored) this.update('value', soup.values);
     this.update('creases', soup.creases ?? new Uint8Array(this.corners));
+    if (soup.paint) this.update('paint', soup.paint);
+    else if (isPainted) this.update('paint', new Uint8Array(4 * this.corners).fill(kPlainCode));
   }
 
   setClip(planes: readonly Plane[]): void {
     this.look.clipPlanes = clipValues(planes);
   }
 
-  /** REQUIRES: a program with kSoupAttributes is in use. */
-  draw(): void {
+  /**
+   * `corners` are drawn in this order, or (null) all. REQUIRES: a program with kSoupAttributes is
+   * in use.
+   */
+  draw(corners: Uint32Array | null): void {
     const {gl} = this.graphics;
-    gl.bindVertexArray(this.made.get().vertices);
-    gl.drawArrays(gl.TRIANGLES, 0, this.corners);
+    const {vertices, order} = this.made.get();
+    gl.bindVertexArray(vertices);
+    if (corners) {
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, order);
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STREAM_DRAW);
+      gl.drawElements(gl.TRIANGLES, corners.length, gl.UNSIGNED_INT, 0);
+    } else gl.drawArrays(gl.TRIANGLES, 0, this.corners);
     gl.bindVertexArray(null);
   }
 
@@ -102,12 +122,13 @@ export class Soup {
     this.made.dispose();
   }
 
-  private grow(): void {
+  private grow({paint}: TriangleSoup): void {
     const capacity =
       this.data.value.length === 0 ? this.corners : Math.ceil(this.corners * kGrowth);
     this.data.position = new Float32Array(kNumbers.position * capacity);
     this.data.value = new Float32Array(capacity);
     this.data.creases = new Uint8Array(capacity);
+    this.data.paint = new Uint8Array(paint ? 4 * capacity : 0);
     this.made.dispose();
   }
 
@@ -129,12 +150,14 @@ export class Soup {
       const buffer = gl.createBuffer();
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.bufferData(gl.ARRAY_BUFFER, this.data[name], gl.DYNAMIC_DRAW);
-      gl.enableVertexAttribArray(at);
-      const type = name === 'creases' ? gl.UNSIGNED_BYTE : gl.FLOAT;
-      gl.vertexAttribPointer(at, kNumbers[name], type, false, 0, 0);
+      // WebGL's own value of one that is absent is plain
+      if (this.data[name].length > 0) gl.enableVertexAttribArray(at);
+      const isFloat = name === 'position' || name === 'value';
+      const type = isFloat ? gl.FLOAT : gl.UNSIGNED_BYTE;
+      gl.vertexAttribPointer(at, kNumbers[name], type, name === 'paint', 0, 0);
       return buffer;
     });
     gl.bindVertexArray(null);
-    return {vertices, buffers};
+    return {vertices, buffers, order: gl.createBuffer()};
   }
 }

@@ -2,7 +2,7 @@
 
 import {keepBelow} from '../picture/cell_choice';
 import type {Ray, Stretch} from '../picture/cell_ray';
-import {kClipModes, kMaxPlanes, type Display, type MeshArrays} from '../picture/display';
+import {kMaxPlanes, type Display, type MeshArrays} from '../picture/display';
 import {dot, type Plane} from '../protocol/geometry';
 import {parseNumbers} from './field_values';
 import type {Layer, LayerWork} from './layer';
@@ -58,21 +58,7 @@ export function axisOf({normal}: ClipSetting): {axis: number; flipped: boolean} 
 
 export const clip = {
   name: 'clip',
-  isRight(text: string): boolean {
-    if (text === kNoClip) return true;
-    const words = text.trim().split(/\s+/);
-    return words.length <= kMaxPlanes && parseClip(text).length === words.length;
-  },
-  expected:
-    `at most ${kMaxPlanes} planes with a share of the extent each: "x:0.5 -z:0.3", ` +
-    `or ${kNoClip}`,
-  more: [
-    {
-      name: 'clip-mode',
-      isRight: (text: string): boolean => (kClipModes as readonly string[]).includes(text),
-      expected: kClipModes.join(', '),
-    },
-  ],
+  more: [{name: 'clip-mode'}],
 
   requestOf: ({mode, planes}: Display): Plane[] | null => (mode === 'cells' ? planes : null),
 } as const satisfies Layer;

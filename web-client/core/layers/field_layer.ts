@@ -3,10 +3,10 @@
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {FieldInfo} from '../protocol/fields';
-import {parseFieldValues, parseNumbers, type FieldValues} from './field_values';
+import {parseFieldValues, type FieldValues} from './field_values';
 import type {FieldLayer} from './layer';
 
-type Common = Pick<FieldLayer, 'pointsOnly' | 'isRight' | 'read' | 'fieldOf' | 'put' | 'requestOf'>;
+type Common = Pick<FieldLayer, 'pointsOnly' | 'read' | 'fieldOf' | 'put' | 'requestOf'>;
 
 /** `count`: so many values; absent: any. */
 interface Allowed {
@@ -21,10 +21,6 @@ interface Allowed {
 export function fieldLayer(name: string, {pointsOnly, count}: Allowed): Common {
   return {
     pointsOnly,
-    isRight(text: string): boolean {
-      const {length} = parseNumbers(text.replace(/^.*=/s, ''));
-      return text.includes('=') && (count === undefined ? length > 0 : length === count);
-    },
     read(text: string | null, fields: readonly FieldInfo[]): FieldValues | null {
       const request = parseFieldValues(text, fields);
       if (!request) return null;

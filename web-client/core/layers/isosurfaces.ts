@@ -12,7 +12,6 @@ import type {FieldLayer, LayerWork} from './layer';
 export const isosurfaces = {
   ...fieldLayer('iso', {pointsOnly: true}),
   name: 'iso',
-  expected: 'a field, "=" and numbers with commas between them',
   // The polygons are sections of cells, not the mesh. Their edges would hide the shape.
   draw: {edges: false, member: 'isosurface'},
 
@@ -29,8 +28,9 @@ export const isosurfacesWork = {
     const levels = display.isosurfaces && mesh.scale(display.isosurfaces.scalar);
     if (!levels || levels.ofCells) return null;
     const scale = colorScale(mesh, display);
+    const cells = {...mesh, kept, paint: null};
     return joinSoups(
-      display.isosurfaces!.values.map((value) => isosurface({...mesh, kept}, levels, value, scale)),
+      display.isosurfaces!.values.map((value) => isosurface(cells, levels, value, scale)),
     );
   },
 

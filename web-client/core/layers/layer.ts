@@ -9,12 +9,9 @@ import type {TriangleSoup} from '../picture/triangle_soup';
 import type {FieldInfo} from '../protocol/fields';
 import type {FieldValues} from './field_values';
 
+/** The texts that it takes stand in layer_rules.ts. */
 export interface Attribute {
   readonly name: string;
-  /** Whether the text means something, whatever the mesh is. */
-  isRight(text: string): boolean;
-  /** The texts that it takes, for people. */
-  readonly expected: string;
 }
 
 export interface Layer extends Attribute {

@@ -4,6 +4,7 @@
 import {clipWork} from './clip';
 import {isosurfacesWork} from './isosurfaces';
 import type {LayerWork} from './layer';
+import {partsWork} from './parts';
 import {thresholdWork} from './threshold';
 import {volumeWork} from './volume';
 
@@ -11,5 +12,6 @@ export const kLayerWork: readonly LayerWork[] = [
   clipWork,
   isosurfacesWork,
   thresholdWork,
+  partsWork,
   volumeWork,
 ];

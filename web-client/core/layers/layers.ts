@@ -1,13 +1,14 @@
 // The layers, in the order of a link. A new one is a file beside this, a line here, one in
-// layer_work.ts, and its controls in viewer/panels/value_controls.ts.
+// layer_work.ts, its rules in layer_rules.ts, and its controls in viewer/panels/value_controls.ts.
 
 import {clip} from './clip';
 import {isosurfaces} from './isosurfaces';
 import type {FieldLayer, Layer} from './layer';
+import {parts} from './parts';
 import {threshold} from './threshold';
 import {volume} from './volume';
 
-const kAll = [clip, isosurfaces, threshold, volume] as const;
+const kAll = [clip, isosurfaces, threshold, parts, volume] as const;
 
 type Listed = (typeof kAll)[number];
 type Further = Extract<Listed, {more: unknown}>['more'][number]['name'];

@@ -8,6 +8,7 @@ import type {FieldInfo} from '../protocol/fields';
 import type {Layer} from './layer';
 import {kLayerWork} from './layer_work';
 import {fieldLayers, type LayerAttribute} from './layers';
+import {partsWork} from './parts';
 
 /** The part of a snapshot that layers make. Parts that have not changed are absent. */
 export interface LayerSoups {
@@ -22,6 +23,7 @@ export function fieldsOf(display: Display): number[] {
     display.color,
     display.warp,
     display.flux,
+    display.parts?.scalar,
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];
   const named = scalars.filter((scalar) => scalar != null).map(({field}) => field);
@@ -50,6 +52,11 @@ export function keptCells(mesh: MeshArrays, display: Display): Uint8Array | null
   const kept = new Uint8Array(mesh.tetrahedra.length / 4).fill(1);
   for (const hide of hiding) hide(kept);
   return kept;
+}
+
+/** Layers hide cells, which leaves a jagged surface. Only that of parts has a shape. */
+export function isJagged(mesh: MeshArrays, display: Display): boolean {
+  return kLayerWork.some((work) => work !== partsWork && work.hiding?.(mesh, display));
 }
 
 /** Two displays with the same key hide the same cells. */

@@ -9,7 +9,6 @@ import type {FieldLayer, LayerWork} from './layer';
 export const threshold = {
   ...fieldLayer('threshold', {pointsOnly: false, count: 2}),
   name: 'threshold',
-  expected: 'a field, "=" and two numbers: Density=1,2',
 
   put(display: Display, request: FieldValues | null): void {
     const [low, high] = request?.values ?? [];

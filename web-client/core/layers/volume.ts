@@ -72,7 +72,7 @@ function sharesAtKnots({shares: amounts, placeOf}: Amounts): number[] {
 }
 
 export function readVolume(text: string | null): VolumeSetting {
-  if (text === null || !isRight(text)) return {volume: null, hasFirstOpacities: false};
+  if (text === null || !isVolume(text)) return {volume: null, hasFirstOpacities: false};
   const given = opacitiesIn(text);
   return {volume: given ?? firstOpacities(0), hasFirstOpacities: !given};
 }
@@ -86,14 +86,12 @@ function opacitiesIn(text: string): number[] | null {
   return areOpacities ? numbers : null;
 }
 
-function isRight(text: string): boolean {
+export function isVolume(text: string): boolean {
   return text === '' || text === kAutoVolume || opacitiesIn(text) !== null;
 }
 
 export const volume = {
   name: 'volume',
-  isRight,
-  expected: `2 to ${kMaxOpacities} opacities from 0 to 1, or ${kAutoVolume}`,
   requestOf: (display: Display): true | null => display.volume || null,
 } as const satisfies Layer;
 

@@ -26,6 +26,8 @@ export function surfaceFaces(cells: Cells, boundary: Uint32Array): Uint32Array {
   const mask = 2 ** Math.ceil(Math.log2(2 * candidates.length + 2)) - 1;
   const slots = new Int32Array(mask + 1).fill(kEmpty);
   const inner = new Uint8Array(candidates.length);
+  const kinds = cells.paint?.kindOf;
+  const kindOf = (i: number): number => kinds?.(candidates[i]! >> 2) ?? 0;
   const corners = new Uint32Array(3 * candidates.length);
   for (let i = 0; i < candidates.length; ++i) {
     const [a, b, c] = sortedCorners(cells.tetrahedra, candidates[i]!);
@@ -39,16 +41,18 @@ export function surfaceFaces(cells: Cells, boundary: Uint32Array): Uint32Array {
       }
       if (corners[3 * other] !== a || corners[3 * other + 1] !== b || corners[3 * other + 2] !== c)
         continue;
-      inner[other] = inner[i] = 1;
+      const [kind, otherKind] = [kindOf(i), kindOf(other)];
+      if (kind <= otherKind) inner[i] = 1;
+      if (kind >= otherKind) inner[other] = 1;
       break;
     }
   }
   return candidates.filter((_, i) => inner[i] === 0);
 }
 
-/** The faces as a soup. A surface of a part of the cells is jagged, and has no creases. */
+/** The faces as a soup. */
 export function facesSoup(
-  {points, tetrahedra, kept}: Cells,
+  {points, tetrahedra, paint}: Cells,
   faces: Uint32Array,
   scale: FieldScale | null,
   creasesOf: CreasesOf | null = null,
@@ -60,18 +64,32 @@ export function facesSoup(
     scale &&
     ((corner: number): number => scale.at(scale.ofCells ? cellOf(corner) : triangles[corner]!));
   const soup = soupOf(points, triangles, valueOf);
-  return kept || !creasesOf ? soup : {...soup, creases: creasesOf(points, triangles)};
+  triangles.forEach((_, corner) => paint?.write(soup, corner, cellOf(corner)));
+  return creasesOf ? {...soup, creases: creasesOf(points, triangles)} : soup;
 }
 
 /**
- * Only faces between these vertices can be on the surface: vertices of the mesh's boundary, and of
- * cells that are not kept.
+ * Only faces between these vertices can be on the surface: vertices of the mesh's boundary, of
+ * cells that are not kept, and between kinds.
  */
-function verticesNearASide({points, tetrahedra, kept}: Cells, boundary: Uint32Array): Uint8Array {
+function verticesNearASide(
+  {points, tetrahedra, kept, paint}: Cells,
+  boundary: Uint32Array,
+): Uint8Array {
   const near = new Uint8Array(points.length / 3);
   for (const vertex of boundary) near[vertex] = 1;
-  if (!kept) return near;
-  for (let at = 0; at < tetrahedra.length; ++at) if (kept[at >> 2] === 0) near[tetrahedra[at]!] = 1;
+  if (kept)
+    for (let at = 0; at < tetrahedra.length; ++at)
+      if (kept[at >> 2] === 0) near[tetrahedra[at]!] = 1;
+  const kindOf = paint?.kindOf;
+  if (!kindOf) return near;
+  const first = new Int32Array(near.length).fill(kEmpty);
+  for (let at = 0; at < tetrahedra.length; ++at) {
+    const kind = kindOf(at >> 2);
+    const vertex = tetrahedra[at]!;
+    if (first[vertex] === kEmpty) first[vertex] = kind;
+    else if (first[vertex] !== kind) near[vertex] = 1;
+  }
   return near;
 }
 

@@ -1,10 +1,11 @@
 // The display that the page wants, and how it is made from the mesh: plain data in, triangles out.
 
+import type {PartsRequest} from './parts_request';
 import type {Plane} from '../protocol/geometry';
 import {facesSoup, surfaceFaces} from './cell_surface';
 import type {MayDerive} from './derived_field';
 import type {FieldScale, Scalar} from './field_scale';
-import type {Cells} from './section';
+import type {CellPaint, Cells} from './section';
 import {slice} from './slice';
 import {boundarySoup, type CreasesOf, type TriangleSoup} from './triangle_soup';
 import type {Warp} from './warp';
@@ -40,6 +41,7 @@ export interface Display extends MayDerive {
   flux?: Scalar | null;
   /** Fields that may be shown soon: they are fetched and decoded behind all else. */
   ahead?: number[];
+  parts?: PartsRequest | null;
   /** Layers without a member of their own, by name; the values are in [0, 1], too. */
   layers?: Record<string, {scalar: Scalar; values: number[]}>;
 }
@@ -61,6 +63,8 @@ export interface MeshArrays {
   points: Int32Array;
   tetrahedra: Uint32Array;
   boundary: Uint32Array;
+  /** As Cells.paint. */
+  paint?: CellPaint | null;
   scale(scalar: Scalar, labelColors?: boolean): FieldScale | null;
 }
 
@@ -89,7 +93,7 @@ export function surfaceOf(
   const scale = colorScale(mesh, display);
   const {points, boundary} = mesh;
   const cells: Cells = {...mesh, kept};
-  if (kept || scale?.ofCells)
+  if (kept || mesh.paint || scale?.ofCells)
     return facesSoup(cells, surfaceFaces(cells, boundary), scale, creasesOf);
   const soup = boundarySoup(points, boundary, scale);
   return creasesOf ? {...soup, creases: creasesOf(points, boundary)} : soup;

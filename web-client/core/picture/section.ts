@@ -13,6 +13,16 @@ export interface Cells {
   points: Int32Array;
   tetrahedra: Uint32Array;
   kept?: Uint8Array | null;
+  /** Null or absent: all are drawn alike. */
+  paint?: CellPaint | null;
+}
+
+/** How cells are drawn. */
+export interface CellPaint {
+  /** From 0 to 65535; null: all are alike. Between two kinds the side of the higher is drawn. */
+  kindOf: ((cell: number) => number) | null;
+  /** Gives a corner of the soup the paint of a cell. */
+  write(soup: TriangleSoup, corner: number, cell: number): void;
 }
 
 /** For each pattern of corners above zero: the corner alone, then the other three. */
@@ -48,7 +58,7 @@ export function section(
   distances: Float64Array,
   scale: FieldScale | null,
 ): TriangleSoup {
-  const {points, tetrahedra} = cells;
+  const {tetrahedra} = cells;
   const {crossed, triangles, quads} = crossedCells(cells, distances);
   const corners = 3 * (triangles + 2 * quads);
   const soup: TriangleSoup = {
@@ -56,7 +66,7 @@ export function section(
     values: new Float32Array(scale ? corners : 0),
     firstHalf: triangles,
   };
-  const cut = new CutWriter(points, distances, scale, soup);
+  const cut = new CutWriter(cells, distances, scale, soup);
   let triangle = 0;
   let half = triangles;
   for (const cell of crossed) {
@@ -123,7 +133,7 @@ class CutWriter {
   cell = 0;
 
   constructor(
-    private readonly points: Int32Array,
+    private readonly cells: Cells,
     private readonly distances: Float64Array,
     private readonly scale: FieldScale | null,
     private readonly soup: TriangleSoup,
@@ -135,10 +145,12 @@ class CutWriter {
    */
   write(corner: number, p: number, q: number): void {
     if (p > q) [p, q] = [q, p];
+    const {points, paint} = this.cells;
+    paint?.write(this.soup, corner, this.cell);
     const t = this.distances[p]! / (this.distances[p]! - this.distances[q]!);
     for (let axis = 0; axis < 3; ++axis) {
-      const from = this.points[3 * p + axis]!;
-      this.soup.positions[3 * corner + axis] = from + t * (this.points[3 * q + axis]! - from);
+      const from = points[3 * p + axis]!;
+      this.soup.positions[3 * corner + axis] = from + t * (points[3 * q + axis]! - from);
     }
     if (!this.scale) return;
     if (this.scale.ofCells) {

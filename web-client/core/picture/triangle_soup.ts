@@ -15,6 +15,10 @@ export interface TriangleSoup {
   firstHalf: number;
   /** False: the sides of its triangles are no edges of cells. */
   edges?: boolean;
+  /** paintOf each corner; absent: all are plain. */
+  paint?: Uint8Array;
+  /** Some of its triangles may be seen through. */
+  hasClear?: boolean;
   /** CreasesOf it; absent: it has none. */
   creases?: Uint8Array;
 }

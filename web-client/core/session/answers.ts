@@ -28,6 +28,8 @@ export async function answerTo(
       return inspector.values(question.place, question.fields);
     case 'histogram':
       return inspector.histogram(question.axis, display);
+    case 'parts':
+      return inspector.parts(question.field);
     case 'numbers':
       return inspector.numbers(display);
   }

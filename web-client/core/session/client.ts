@@ -6,6 +6,7 @@ import type {Ray} from '../picture/cell_ray';
 import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
 import type {Axis, Histogram} from '../picture/histogram';
+import type {PartCount} from '../picture/part_counts';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
 import type {Limit} from '../protocol/limit';
@@ -118,6 +119,11 @@ export class Client {
   /** Counts the values of the coloured field, as they are now; null while there are none. */
   histogram(axis: Axis): Promise<Histogram | null> {
     return this.ask({type: 'histogram', axis});
+  }
+
+  /** The parts that a label makes of the whole mesh; null while it has no values. */
+  parts(field: number): Promise<PartCount[] | null> {
+    return this.ask({type: 'parts', field});
   }
 
   /** Integrals over what is drawn; null while there is no mesh. */

@@ -3,6 +3,7 @@
 
 import type {Assembler} from '../decode/assembler';
 import type {Integrals} from '../integrals/integrals';
+import {labelsOfCells} from '../layers/part_cells';
 import {kLayerWork} from '../layers/layer_work';
 import {keptCells} from '../layers/shown';
 import {
@@ -21,6 +22,7 @@ import {cuttingPlanes, type Display, type MeshArrays} from '../picture/display';
 import {FieldScale, kMagnitude, scalarRange, type Scalar} from '../picture/field_scale';
 import {histogramOf, type Axis, type Histogram} from '../picture/histogram';
 import {meshArrays} from '../picture/mesh_arrays';
+import {countParts, type PartCount} from '../picture/part_counts';
 import type {Cells} from '../picture/section';
 import {positionOf, type Vector} from '../protocol/geometry';
 import type {FieldInfo} from '../protocol/fields';
@@ -196,6 +198,15 @@ export class Inspector {
     const info = color && mesh && infoIn(display, this.assembler.manifest!, color.field);
     const scale = color && mesh?.scale(color);
     return mesh && info && scale ? histogramOf(scale, mesh.tetrahedra, info, color, axis) : null;
+  }
+
+  /** The parts of the whole mesh at rest; null while the label has no values. */
+  parts(field: number): PartCount[] | null {
+    const mesh = meshArrays(this.assembler);
+    const info = this.assembler.manifest?.fields[field];
+    const scalar = {field, component: kMagnitude};
+    const labelOf = mesh && info && labelsOfCells(mesh, {scalar, range: info.range});
+    return labelOf ? countParts(mesh, labelOf) : null;
   }
 
   private unscaled(probe: Probe, display: Display): Probe {

@@ -12,6 +12,8 @@ export class KeptCreases {
   private chunks = 0;
   private boundary: Uint8Array | null = null;
   private faces: Uint8Array | null = null;
+  /** Tells sets of faces apart: parts may be hidden. */
+  private facesKey = 0;
 
   constructor(
     private readonly codec: Codec,
@@ -23,7 +25,7 @@ export class KeptCreases {
     this.boundary = this.faces = null;
   }
 
-  /** For surfaces of the mesh: of its boundary, or of the faces of all its cells. */
+  /** For surfaces of the mesh: of its boundary, or of faces of its cells. */
   of({boundary}: MeshArrays): CreasesOf {
     // A copy, because it is transferred.
     return (_, triangles) =>
@@ -42,6 +44,10 @@ export class KeptCreases {
 
   private ofFaces(triangles: Uint32Array): Uint8Array {
     this.follow();
+    let key = triangles.length;
+    for (const vertex of triangles) key = (Math.imul(key, 31) + vertex) | 0;
+    if (key !== this.facesKey) this.faces = null;
+    this.facesKey = key;
     return (this.faces ??= this.creasesOf(this.codec.points(), triangles));
   }
 

@@ -1,7 +1,8 @@
 // Makes pictures of the mesh as it is now: what is drawn, and the figures that go with it.
 
 import type {Assembler} from '../decode/assembler';
-import {keptCells, layerSoups, type LayerSoups} from '../layers/shown';
+import {partCells} from '../layers/parts';
+import {isJagged, keptCells, layerSoups, type LayerSoups} from '../layers/shown';
 import {derivation} from '../picture/derivation';
 import {derivedIn, infoIn} from '../picture/derived_field';
 import {
@@ -66,6 +67,7 @@ export class PictureMaker {
   make(display: Display, isOnlyCut: boolean): Picture | null {
     const mesh = meshArrays(this.assembler, display);
     if (!mesh) return null;
+    mesh.paint = (display.parts && partCells.paint?.(mesh, display.parts)) ?? null;
     const kept = keptCells(mesh, display);
     const measures = isOnlyCut && this.measures ? this.measures : this.measure(mesh, display);
     this.measures = measures;
@@ -81,8 +83,9 @@ export class PictureMaker {
   private body(mesh: MeshArrays, display: Display, kept: Uint8Array | null): Body {
     const hasSurface = display.body && display.mode !== 'slice';
     const scale = display.volume && colorScale(mesh, display);
+    const creasesOf = isJagged(mesh, display) ? null : this.creases?.of(mesh);
     return {
-      surface: hasSurface ? surfaceOf(mesh, display, kept, this.creases?.of(mesh)) : noSoup(),
+      surface: hasSurface ? surfaceOf(mesh, display, kept, creasesOf) : noSoup(),
       ...layerSoups(mesh, display, kept),
       volume: scale ? volumeCells(mesh, scale, kept) : null,
     };

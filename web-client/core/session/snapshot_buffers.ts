@@ -10,10 +10,10 @@ export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
   const soups = [surface, ...cuts, ...kLayers.map((layer) => soupOf(snapshot, layer))].filter(
     (soup) => soup !== undefined,
   );
-  const arrays: ArrayBufferView[] = soups.flatMap(({positions, values, creases}) => [
+  const arrays: ArrayBufferView[] = soups.flatMap(({positions, values, creases, paint}) => [
     positions,
     values,
-    ...(creases ? [creases] : []),
+    ...[creases, paint].filter((bytes) => bytes !== undefined),
   ]);
   return [
     ...arrays.map(({buffer}) => buffer as ArrayBuffer),

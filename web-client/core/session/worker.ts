@@ -5,8 +5,10 @@ import {WasmCodec} from '../decode/codec';
 import {kDraco} from '../decode/draco';
 import {isForbidden, decoderFailure} from '../protocol/wasm_policy';
 import {fieldsOf} from '../layers/shown';
+import {partCells} from '../layers/parts';
 import {derivation} from '../picture/derivation';
 import type {DerivedFields} from '../picture/derived_field';
+import type {Display} from '../picture/display';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
@@ -32,6 +34,8 @@ declare global {
 
 let parts: Parts;
 let run: number | undefined;
+/** The page's last wish. */
+let last: Display | null = null;
 
 self.onmessage = (event: MessageEvent<ToWorker>) => {
   if (event.data.type === 'load') parts = start(event.data.baseUrl, event.data.codecUrl);
@@ -118,8 +122,14 @@ function obey(
       run = message.run;
       return session.start(message.source);
     case 'display':
-      publisher.show(message.display);
-      return session.want(fieldsOf(message.display), message.display.ahead);
+      ({display: last} = message);
+      if (last.parts && !partCells.paint)
+        return void retry(() => import('../layers/part_cells')).then((cells) => {
+          Object.assign(partCells, cells);
+          obey({session, publisher, coarse, ...its}, {type: 'display', display: last!});
+        }, fail);
+      publisher.show(last);
+      return session.want(fieldsOf(last), last.ahead);
     case 'limit':
       return session.setLimit(message.limit);
     case 'pause':
@@ -148,6 +158,7 @@ function obey(
     case 'at':
     case 'values':
     case 'histogram':
+    case 'parts':
     case 'numbers':
       return reply(message, its.answer(message));
   }

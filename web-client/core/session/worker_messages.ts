@@ -10,6 +10,7 @@ import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
 import type {Scalar} from '../picture/field_scale';
 import type {Axis, Histogram} from '../picture/histogram';
+import type {PartCount} from '../picture/part_counts';
 import type {ShownLabels} from '../picture/labels';
 import type {TriangleSoup} from '../picture/triangle_soup';
 import type {CoarseCells, VolumeCells} from '../picture/volume';
@@ -80,6 +81,8 @@ export type Question =
   | {type: 'values'; place: Vector; fields: readonly number[]}
   /** Counts the values of the coloured field. */
   | {type: 'histogram'; axis: Axis}
+  /** Counts the cells of the parts that a label makes. */
+  | {type: 'parts'; field: number}
   /** Asks for integrals over what is drawn. */
   | {type: 'numbers'}
   /** Asks for a volume with few cells. The page has version `have`. */
@@ -141,6 +144,7 @@ export type Answer =
   | LineValues[]
   | number[][]
   | Histogram
+  | PartCount[]
   | Numbers
   | CoarseCells
   | null;

@@ -6,6 +6,8 @@ export const kMaxAhead = 512;
 export class FieldsAhead {
   /** The playing series shows them soon. */
   playing: readonly number[] = [];
+  /** Their values are listed: parts. */
+  listed: readonly number[] = [];
   /** They are plotted over time. */
   plotted: readonly number[] = [];
   /**
@@ -16,7 +18,8 @@ export class FieldsAhead {
 
   /** Those to ask for now. `here` are those that have come. */
   request(here: readonly number[]): number[] {
-    const all = [...new Set([...(this.filmed?.ahead ?? []), ...this.playing, ...this.plotted])];
+    const {filmed, listed, playing, plotted} = this;
+    const all = [...new Set([...(filmed?.ahead ?? []), ...listed, ...playing, ...plotted])];
     if (all.length <= kMaxAhead) return all;
     const isHere = new Set(here);
     return all.filter((field) => !isHere.has(field)).slice(0, kMaxAhead);

@@ -48,6 +48,8 @@ export class ShownMesh {
   readonly ahead = new FieldsAhead();
   /** Its derived fields: null without any, true until what reads them is loaded. */
   own: OwnFields | true | null = null;
+  /** The label of the part that stands out; null: none does. */
+  selectedPart: number | null = null;
   /** The newest picture. */
   snapshot: Snapshot | null = null;
   /** Some values in the picture are missing. */

@@ -8,8 +8,12 @@ import {
   parseNumbers,
   parseScalar,
   scalarKey,
+  scalarText,
 } from '../../core/layers/field_values';
-import {fieldLayers, kLayers} from '../../core/layers/layers';
+import {kLayerRules} from '../../core/layers/layer_rules';
+import {fieldLayers} from '../../core/layers/layers';
+import {partField, partFields, unknownParts} from '../../core/layers/parts_text';
+import {kMagnitude} from '../../core/picture/field_scale';
 import {parseBeyond} from '../../core/picture/color_map_text';
 import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
 import {parseLimit} from '../../core/protocol/limit';
@@ -77,11 +81,7 @@ const kRules: Partial<Record<Name, Rule>> = {
   extremes: oneOf('on', 'off'),
   ground: [isGround, `${kGrounds.join(', ')}, or a colour, 3c3c3c`, kGrounds],
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
-  ...Object.fromEntries(
-    kLayers
-      .flatMap((layer) => [layer, ...(layer.more ?? [])])
-      .map((its): [string, Rule] => [its.name, [(text) => its.isRight(text), its.expected]]),
-  ),
+  ...kLayerRules,
   points: [
     (text) => parsePoints(text) !== null,
     `up to ${kMaxPoints} places of three coordinates: 1,2,0.5 3,2,0`,
@@ -133,6 +133,30 @@ function wrongComponents(
     : [`${start} It has ${key}[0] to ${key}[${info.components - 1}]. Its magnitude is shown.`];
 }
 
+/** Sentences about attributes of parts that the mesh does not have. */
+function unfittingNames(read: Read, fields: readonly FieldInfo[]): string[] {
+  const names = ['hidden-parts', 'part-opacity', 'part-colors'] as const;
+  const label = read('parts');
+  const field = partField(label, fields);
+  const isUsed = label !== null || names.some((name) => read(name) !== null);
+  if (!isUsed) return [];
+  if (field < 0) return ['The mesh has no parts: none of its fields is a label of cells.'];
+  const keys = partFields(fields).map((its) =>
+    scalarText({field: its, component: kMagnitude}, fields),
+  );
+  if (label !== null && !partFields(fields).includes(fieldOfKey(label, fields)))
+    return [
+      `parts="${label}" is not followed: the mesh has no such label.${hint(label, keys)} ` +
+        `It has ${keys.join(', ')}.`,
+    ];
+  const known = [...(fields[field]?.labels?.values() ?? [])];
+  return names.flatMap((name) =>
+    unknownParts(read(name) ?? '', fields[field]!).map(
+      (word) => `${name}: the mesh has no part "${word}".${hint(word, known)}`,
+    ),
+  );
+}
+
 /** A sentence for each attribute that does not fit this mesh. */
 export function unfittingParts(read: Read, {fields, levels}: Manifest): string[] {
   const sentences: string[] = [];
@@ -164,7 +188,7 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
     );
   for (const layer of fieldLayers()) {
     const text = read(layer.name);
-    if (text === null || !layer.isRight(text)) continue;
+    if (text === null || !kLayerRules[layer.name][0](text)) continue;
     const name = layer.fieldOf(text);
     const what = `${layer.name}="${text}" is not shown`;
     if (!parseScalar(name, fields))
@@ -172,6 +196,7 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
     else if (!layer.read(text, fields)) sentences.push(`${what}: it takes a field of points.`);
     else sentences.push(...wrongComponents([layer.name, text], name, fields));
   }
+  sentences.push(...unfittingNames(read, fields));
   const quality = read('quality');
   if (parseLimit(quality)?.kind === 'error' && !levels.some(({error}) => error))
     sentences.push(
