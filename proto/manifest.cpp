@@ -112,6 +112,9 @@ std::string manifestToJson(const Manifest& manifest) {
       out["fields"][f]["unit"] = unit;
   }
   if (!manifest.labels.empty()) out["labels"] = toJson(manifest.labels);
+  if (manifest.original)
+    out["original"] = {{"tetrahedra", manifest.original->tetrahedra},
+                       {"vertices", manifest.original->vertices}};
   const std::vector<bool> isLabel = labelsAmong(manifest);
   out["levels"] = Json::array();
   for (const ManifestLevel& l : manifest.levels) {

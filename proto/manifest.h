@@ -44,7 +44,7 @@ struct ManifestLevel {
   std::uint32_t vertices = 0;
   std::uint32_t boundaryTriangles = 0;
   std::uint32_t chunk = 0;  ///< the level is complete once this chunk is applied
-  /// Against the last level, where it was measured.
+  /// Against the original, where it was measured.
   std::optional<LevelError> error = std::nullopt;
 };
 
@@ -67,6 +67,13 @@ using Labels = std::map<std::string, LabelNames, std::less<>>;
 /// By a field's name without @TIME; that of times by the empty name. None is empty.
 using Units = std::map<std::string, std::string, std::less<>>;
 
+/// The mesh that the last level was reduced from before the log was made.
+struct OriginalSize {
+  std::uint64_t tetrahedra = 0, vertices = 0;
+
+  [[nodiscard]] bool operator==(const OriginalSize&) const = default;
+};
+
 struct Manifest {
   std::string generator;
   std::string source;  ///< file name of the input, without its folder
@@ -81,7 +88,9 @@ struct Manifest {
   std::vector<Series> series{};
   Units units;
   Labels labels;
-  std::vector<ManifestLevel> levels;  ///< level 0 = base mesh, the last = the input's mesh
+  /// None: the last level is the input's mesh.
+  std::optional<OriginalSize> original = std::nullopt;
+  std::vector<ManifestLevel> levels;  ///< level 0 = base mesh
 };
 
 /// The unique name of field `f`: its name, or "cell:NAME" for a cell field if a point field has the

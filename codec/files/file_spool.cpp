@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -40,16 +42,26 @@ class FileSpool final : public ByteSpool {
   }
   [[nodiscard]] std::uint64_t size() const override { return size_; }
 
-  [[nodiscard]] Status writeTo(const ByteSink& sink) const override {
+  [[nodiscard]] Status read(std::uint64_t at, std::span<std::uint8_t> into) const override {
+    assert(at <= size_ && into.size() <= size_ - at);
     if (!buffer_.flush()) return failed("write", folder_);
-    Bytes piece(kPieceBytes);
-    for (std::uint64_t at = 0; at < size_;) {
-      const ssize_t got = ::pread(file_, piece.data(), piece.size(), static_cast<off_t>(at));
+    while (!into.empty()) {
+      const ssize_t got = ::pread(file_, into.data(), into.size(), static_cast<off_t>(at));
       if (got < 0 && errno == EINTR) continue;
       if (got == 0) errno = EIO;
       if (got <= 0) return failed("read", folder_);
-      if (Status s = sink(ByteView(piece).first(static_cast<std::size_t>(got))); !s) return s;
+      into = into.subspan(static_cast<std::size_t>(got));
       at += static_cast<std::uint64_t>(got);
+    }
+    return {};
+  }
+
+  [[nodiscard]] Status writeTo(const ByteSink& sink) const override {
+    Bytes piece(std::min<std::uint64_t>(kPieceBytes, size_));
+    for (std::uint64_t at = 0; at < size_; at += piece.size()) {
+      const auto own = std::span(piece).first(std::min<std::uint64_t>(piece.size(), size_ - at));
+      if (Status s = read(at, own); !s) return s;
+      if (Status s = sink(own); !s) return s;
     }
     return {};
   }

@@ -102,18 +102,33 @@ ManifestField readField(ByteReader& r, const FieldShape& shape) {
 // ---- what follows the fields
 
 constexpr unsigned kErrorsFollow = 1, kFocusFollows = 2, kOpeningFollows = 4, kUnitsFollow = 8,
-                   kLabelsFollow = 16;
-constexpr unsigned kKnownFlags = 2 * kLabelsFollow - 1;
+                   kLabelsFollow = 16, kOriginalFollows = 32;
+constexpr unsigned kKnownFlags = 2 * kOriginalFollows - 1;
 constexpr std::uint8_t kNoCut = 3;
 
 unsigned flagsOf(const Manifest& manifest) {
   return (manifest.levels.front().error ? kErrorsFollow : 0) |
          (manifest.focus ? kFocusFollows : 0) | (manifest.opening ? kOpeningFollows : 0) |
          (manifest.units.empty() ? 0 : kUnitsFollow) |
-         (manifest.labels.empty() ? 0 : kLabelsFollow);
+         (manifest.labels.empty() ? 0 : kLabelsFollow) | (manifest.original ? kOriginalFollows : 0);
 }
 
-void writeFirstView(ByteWriter& w, const Manifest& manifest) {
+void writeUnits(ByteWriter& w, const Units& units) {
+  w.writeVarint(static_cast<std::uint32_t>(units.size()));
+  for (const auto& [name, unit] : units) writeText(w, name), writeText(w, unit);
+}
+
+void writeLabels(ByteWriter& w, const Labels& labels) {
+  w.writeVarint(static_cast<std::uint32_t>(labels.size()));
+  for (const auto& [field, names] : labels) {
+    writeText(w, field);
+    w.writeVarint(static_cast<std::uint32_t>(names.size()));
+    for (const auto& [value, name] : names)
+      w.write(static_cast<std::uint32_t>(value)), writeText(w, name);
+  }
+}
+
+void writeBehindFields(ByteWriter& w, const Manifest& manifest) {
   w.write(static_cast<std::uint8_t>(flagsOf(manifest)));
   if (manifest.focus)
     for (const std::uint16_t end : *manifest.focus) w.write(end);
@@ -121,18 +136,11 @@ void writeFirstView(ByteWriter& w, const Manifest& manifest) {
     w.write(manifest.opening->field);
     w.write(manifest.opening->cut.value_or(kNoCut));
   }
-  if (!manifest.units.empty()) {
-    w.writeVarint(static_cast<std::uint32_t>(manifest.units.size()));
-    for (const auto& [name, unit] : manifest.units) writeText(w, name), writeText(w, unit);
-  }
-  if (manifest.labels.empty()) return;
-  w.writeVarint(static_cast<std::uint32_t>(manifest.labels.size()));
-  for (const auto& [field, names] : manifest.labels) {
-    writeText(w, field);
-    w.writeVarint(static_cast<std::uint32_t>(names.size()));
-    for (const auto& [value, name] : names)
-      w.write(static_cast<std::uint32_t>(value)), writeText(w, name);
-  }
+  if (!manifest.units.empty()) writeUnits(w, manifest.units);
+  if (!manifest.labels.empty()) writeLabels(w, manifest.labels);
+  if (!manifest.original) return;
+  writeNumber(w, static_cast<double>(manifest.original->tetrahedra));
+  writeNumber(w, static_cast<double>(manifest.original->vertices));
 }
 
 Units readUnits(ByteReader& r) {
@@ -199,7 +207,28 @@ Opening readOpening(ByteReader& r, std::size_t fields) {
   return opening;
 }
 
-KnownErrors readFirstView(ByteReader& r, Manifest& out) {
+/// A whole number of 2^53 at most.
+std::uint64_t readCount(ByteReader& r) {
+  constexpr double kMost = 9007199254740992.0;
+  const double number = readNumber(r);
+  if (number >= 0 && number <= kMost && std::floor(number) == number)
+    return static_cast<std::uint64_t>(number);
+  r.fail(ErrorCode::kBadValue,
+         "a count of the original's cells or vertices is no whole number; build the log again");
+  return 0;
+}
+
+Status checkOriginal(const Manifest& manifest) {
+  if (!manifest.original) return {};
+  const ManifestLevel& last = manifest.levels.back();
+  if (manifest.original->tetrahedra >= last.tetrahedra &&
+      manifest.original->vertices >= last.vertices)
+    return {};
+  return fail(ErrorCode::kBadValue,
+              "the last level has more cells or vertices than its original; build the log again");
+}
+
+KnownErrors readBehindFields(ByteReader& r, Manifest& out) {
   const unsigned flags = r.read<std::uint8_t>();
   if (flags > kKnownFlags)
     r.fail(ErrorCode::kBadValue,
@@ -208,6 +237,10 @@ KnownErrors readFirstView(ByteReader& r, Manifest& out) {
   if ((flags & kOpeningFollows) != 0) out.opening = readOpening(r, out.fields.size());
   if ((flags & kUnitsFollow) != 0) out.units = readUnits(r);
   if ((flags & kLabelsFollow) != 0) out.labels = readLabels(r);
+  if ((flags & kOriginalFollows) != 0) {
+    const std::uint64_t tetrahedra = readCount(r);
+    out.original = {tetrahedra, readCount(r)};
+  }
   return (flags & kErrorsFollow) != 0 ? KnownErrors::kSome : KnownErrors::kNone;
 }
 
@@ -379,7 +412,7 @@ Status readLaterErrors(ByteReader& r, std::uint32_t fields, Manifest& out) {
 }
 
 Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
-  const KnownErrors errors = readFirstView(r, out);
+  const KnownErrors errors = readBehindFields(r, out);
   const ByteView bytes = r.take(r.remaining());
   if (r.failed()) return std::unexpected(r.error());
   const std::vector<std::uint32_t> chunks = completingChunks(index);
@@ -395,7 +428,7 @@ Status readLevels(ByteReader& r, const LogIndex& index, Manifest& out) {
     out.levels.push_back({l, tetrahedra, vertices, triangles, chunks[l], std::nullopt});
     out.levels.back().error = readError(reader, fields, errors);
   }
-  return {};
+  return checkOriginal(out);
 }
 
 }  // namespace
@@ -411,7 +444,7 @@ Result<Bytes> manifestBlock(const Manifest& manifest, std::size_t later) {
   for (const ManifestField& field :
        std::span(manifest.fields).first(manifest.fields.size() - later))
     writeField(w, field);
-  writeFirstView(w, manifest);
+  writeBehindFields(w, manifest);
   const KnownErrors errors =
       manifest.levels.front().error ? KnownErrors::kSome : KnownErrors::kNone;
   w.append(encodeLevelColumns(columnsOf(levelsOfFront(manifest, later), errors),

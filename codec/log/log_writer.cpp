@@ -135,6 +135,7 @@ Manifest manifestFor(const FusionHistory& history, const LogWriterOptions& optio
   m.opening = options.opening;
   m.units = options.units;
   m.labels = options.labels;
+  m.original = options.original;
   for (const FieldInfo& f : history.fields) m.fields.push_back(manifestFieldOf(f));
   m.levels = levelsOf(added, options.errors);
   return m;

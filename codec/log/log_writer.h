@@ -48,6 +48,7 @@ struct LogWriterOptions {
   std::optional<Opening> opening = std::nullopt;  ///< the same
   Units units{};                                  ///< the same
   Labels labels{};                                ///< the same
+  std::optional<OriginalSize> original{};         ///< the same
   /// Gives the closing blocks, once the chunks are written; none without it.
   std::function<Status(const FinestMesh&, const ClosingSink&)> closing{};
   std::function<void(double)> progress{};  ///< fraction of the geometry done, 0..1

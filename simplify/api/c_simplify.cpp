@@ -76,7 +76,6 @@ Status checkChoices(const qtet_simplify_options& options) {
                                {options.lossless, 1, "lossless"},
                                {options.originalIds, 1, "originalIds"},
                                {options.timeStatistics, 1, "timeStatistics"},
-                               {options.errorReserved, 0, "errorReserved"},
                                {options.exactCoarse, 1, "exactCoarse"}})
     if (choice.number > choice.last)
       return fail(ErrorCode::kBadValue, std::string(choice.member) + " is " +
@@ -183,12 +182,14 @@ Result<PipelineOptions> optionsOf(const qtet_simplify_options& from) {
   out.keep = {from.keepOrder != 0, from.lossless != 0, from.originalIds != 0};
   out.timeStatistics = from.timeStatistics != 0;
   out.exactCoarse = from.exactCoarse != 0;
+  if (from.finest != 0) out.finest = from.finest;
   return out;
 }
 
 static_assert(static_cast<int>(qtet::Stage::kClean) == QTET_STAGE_CLEAN &&
               static_cast<int>(qtet::Stage::kMeasure) == QTET_STAGE_MEASURE &&
-              static_cast<int>(qtet::Stage::kKeep) == QTET_STAGE_KEEP);
+              static_cast<int>(qtet::Stage::kKeep) == QTET_STAGE_KEEP &&
+              static_cast<int>(qtet::Stage::kReduce) == QTET_STAGE_REDUCE);
 
 Result<PipelineOutput> make(const qtet_input_mesh& arrays, const qtet_simplify_options& given) {
   const Result<PipelineOptions> options = optionsOf(given);

@@ -71,14 +71,16 @@ enum { QTET_PLACEMENT_AUTO = 0, QTET_PLACEMENT_OPTIMAL = 1, QTET_PLACEMENT_VERTE
 enum { QTET_MEASURE_NONE = 0, QTET_MEASURE_LEVELS = 1, QTET_MEASURE_ALL = 2 };
 enum { QTET_CODEC_LIFTED = 0, QTET_CODEC_DRACO = 1, QTET_CODEC_ADAPTIVE = 2 };
 
-/* In the order of doing; QTET_STAGE_MEASURE and QTET_STAGE_KEEP only where they are asked for. */
+/* In the order of doing, but for QTET_STAGE_REDUCE, which is before QTET_STAGE_SIMPLIFY. It,
+ * QTET_STAGE_MEASURE and QTET_STAGE_KEEP only where they are asked for. */
 enum {
   QTET_STAGE_CLEAN = 0,
   QTET_STAGE_QUANTISE = 1,
   QTET_STAGE_SIMPLIFY = 2,
   QTET_STAGE_MEASURE = 3,
   QTET_STAGE_ENCODE = 4,
-  QTET_STAGE_KEEP = 5
+  QTET_STAGE_KEEP = 5,
+  QTET_STAGE_REDUCE = 6 /* since 0.5 */
 };
 
 /* Called about ten times a second, in the thread that called qtet_simplify. It receives the stage
@@ -147,7 +149,9 @@ typedef struct {
   /* Since 0.4. Fields that take the step and the bits of a bound instead of fieldBits */
   const qtet_error_bound* errors;
   uint32_t errorCount;
-  uint32_t errorReserved; /* 0 */
+  /* Since 0.5, experimental. The last level has so many tetrahedra at most, to which the mesh is
+   * reduced before; 0: it is the input's mesh */
+  uint32_t finest;
 } qtet_simplify_options;
 
 QTET_API qtet_status qtet_simplify_defaults(size_t optionsBytes, qtet_simplify_options* options);

@@ -1,3 +1,4 @@
+#include <limits>
 #include <sstream>
 
 #include "proto/limits.h"
@@ -84,6 +85,9 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   options.units = unitsOf(parsed);
   options.valueCodec = valueCodecOf(parsed.get<std::string>("value-codec"));
   options.exactCoarse = parsed.has("exact-coarse");
+  if (parsed.has("finest"))
+    options.finest =
+        static_cast<std::size_t>(parsed.integer("finest", 1, std::numeric_limits<int>::max()));
   if (parsed.has("parts")) {
     options.parts = PartsOptions{.partition = metisPartitioner()};
     if (!options.parts->partition)
@@ -126,7 +130,7 @@ and so on.)",
             {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
              "placement", "shape-weight", "preserve-regions", "position-bits"}},
            {"output", {"value-codec", "keep-order", "original-ids", "measure"}},
-           {"rare", {"algorithm", "exact-coarse", "parts"}}}};
+           {"rare", {"algorithm", "exact-coarse", "finest", "parts"}}}};
 }
 
 }  // namespace
@@ -155,6 +159,9 @@ int runSimplify(const Words& words, Console& console) {
       "value-codec", po::value<std::string>()->default_value("lifted"),
       "how values are coded: lifted is smallest (positions by Draco), draco is quickest to decode, "
       "adaptive is a coder of our own for positions too")(
+      "finest", po::value<int>(),
+      "experimental: the last level has at most so many tetrahedra, to which the mesh is reduced "
+      "before; the errors of all levels are against the input")(
       "parts",
       "experimental: simplify a mesh of over a million cells in parts, each of which a thread "
       "takes; the log does not depend on the number of threads")(

@@ -53,6 +53,9 @@ OrderedJson infoJson(const OpenedLog& log) {
                      {"labels", toJson(manifest.labels)},
                      {"kept", closingJson(log.file.closingBlocks(), manifest)},
                      {"levels", levelsJson(log.manifest, log.file.index())}};
+  if (manifest.original)
+    out["original"] = {{"tetrahedra", manifest.original->tetrahedra},
+                       {"vertices", manifest.original->vertices}};
   if (timeUnit(manifest).empty()) out.erase("timeUnit");
   if (manifest.labels.empty()) out.erase("labels");
   return out;
@@ -127,6 +130,10 @@ void printHead(const OpenedLog& log, const OrderedJson& info, std::size_t mostFi
                   counted(last.vertices, "vertex", "vertices") + ", " +
                   counted(last.boundaryTriangles, "boundary triangle", "boundary triangles") +
                   ", levels 0 to " + std::to_string(log.manifest.levels.size() - 1));
+  if (const auto& original = log.manifest.original)
+    add("original", counted(original->tetrahedra, "tetrahedron", "tetrahedra") + ", " +
+                        counted(original->vertices, "vertex", "vertices") +
+                        "; the mesh was reduced before the log was made");
   add("bytes", grouped(bytes) + " in " + counted(info["chunks"], "chunk", "chunks") + ", " +
                    brief(8.0 * static_cast<double>(bytes) / std::max(1u, last.tetrahedra)) +
                    " bits a tetrahedron; the first " + grouped(info["headBytes"]) +

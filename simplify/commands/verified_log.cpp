@@ -13,6 +13,7 @@
 #include "simplify/log/kept_input.h"
 #include "simplify/log/opened_list.h"
 #include "simplify/log/opened_log.h"
+#include "simplify/log/whole_log.h"
 #include "simplify/produce/closing_report.h"
 #include "simplify/read/read_mesh.h"
 
@@ -23,6 +24,7 @@ namespace {
 /// decoded; what was found in `out`.
 Status compareWithInput(const OpenedLog& log, const Refiner& refiner, const ComparedInput& input,
                         Progress& progress, OrderedJson& out) {
+  if (Status whole = checkWhole(log.manifest); !whole) return whole;
   progress.stage("reading " + input.path);
   std::vector<std::uint32_t> all(log.manifest.fields.size());
   std::iota(all.begin(), all.end(), 0u);

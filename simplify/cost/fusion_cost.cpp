@@ -26,6 +26,29 @@ bool areNear(std::span<const Tetrahedron> cells, std::size_t run) {
   return 2 * near > asked;
 }
 
+/// The faces of one cell that are no boundary: another block has the cell beyond.
+class SeamFaces {
+ public:
+  SeamFaces(const LatticeMesh& block, std::span<const Triangle> boundary)
+      : areNone_(boundary.size() == block.boundary.size()) {
+    if (areNone_) return;
+    for (const Triangle& t : boundary) boundary_.push_back(sorted(t));
+    std::ranges::sort(boundary_);
+  }
+  [[nodiscard]] bool hold(const Triangle& face) const {
+    return !areNone_ && !std::ranges::binary_search(boundary_, sorted(face));
+  }
+
+ private:
+  static Triangle sorted(Triangle t) {
+    std::ranges::sort(t);
+    return t;
+  }
+
+  bool areNone_;
+  std::vector<Triangle> boundary_;
+};
+
 }  // namespace
 
 FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice,
@@ -34,14 +57,16 @@ FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice,
       frame_(lattice, options),
       components_(frame_.basis.components()),
       stride_(kHead + kPerComponent * components_) {
-  assert(mesh.vertexSlots() == lattice.points.size());
-  slot_.resize(lattice.points.size());
-  std::iota(slot_.begin(), slot_.end(), 0u);
-  quadrics_.reserve(lattice.points.size() * stride_);
-  useLargePages(quadrics_);
-  quadrics_.resize(lattice.points.size() * stride_, 0);
-  takeValues(lattice);
-  components_ == 0 ? addPlanes(lattice) : addSlopes(lattice, workers);
+  addAll(lattice, lattice.boundary, workers);
+}
+
+FusionCost::FusionCost(const FusionMesh& mesh, const LatticeMesh& block, const CostFrame& frame,
+                       std::span<const Triangle> boundary)
+    : mesh_(mesh),
+      frame_(frame),
+      components_(frame_.basis.components()),
+      stride_(kHead + kPerComponent * components_) {
+  addAll(block, boundary, nullptr);
 }
 
 FusionCost::FusionCost(const FusionMesh& mesh, const CostFrame& frame,
@@ -56,10 +81,27 @@ FusionCost::FusionCost(const FusionMesh& mesh, const CostFrame& frame,
   std::iota(slot_.begin(), slot_.end(), 0u);
 }
 
+void FusionCost::addAll(const LatticeMesh& lattice, std::span<const Triangle> boundary,
+                        Workers* workers) {
+  assert(mesh_.vertexSlots() == lattice.points.size());
+  slot_.resize(lattice.points.size());
+  std::iota(slot_.begin(), slot_.end(), 0u);
+  quadrics_.reserve(lattice.points.size() * stride_);
+  useLargePages(quadrics_);
+  quadrics_.resize(lattice.points.size() * stride_, 0);
+  takeValues(lattice);
+  if (components_ == 0) {
+    addPlanes(lattice, boundary);
+  } else {
+    addSlopes(lattice, boundary, workers);
+  }
+}
+
 // Each worker adds to vertices of its own, in the order of the cells, so that every sum is that of
 // one worker. Ids that lie near one another mostly lie near one another in the mesh, too, so few
 // cells are visited by two workers. Where that is not so, one worker alone is quicker.
-void FusionCost::addSlopes(const LatticeMesh& lattice, Workers* workers) {
+void FusionCost::addSlopes(const LatticeMesh& lattice, std::span<const Triangle> boundary,
+                           Workers* workers) {
   const std::size_t vertices = lattice.points.size();
   const std::size_t runs =
       workers && areNear(lattice.tetrahedra, vertices / workers->count()) ? workers->count() : 1;
@@ -73,7 +115,7 @@ void FusionCost::addSlopes(const LatticeMesh& lattice, Workers* workers) {
     forRuns([&](const Vertices& own) { addTriangles(surface, weight / frame_.diagonal, own); });
   };
   forRuns([&](const Vertices& own) { addFields(lattice, own); });
-  addSurface(lattice.boundary, frame_.boundaryWeight);
+  addSurface(boundary, frame_.boundaryWeight);
   for (const LabelCost& label : frame_.labels)
     if (label.weight > 0) addSurface(interfacesOf(lattice, label.field), label.weight);
 }
@@ -159,12 +201,17 @@ void FusionCost::addTriangles(std::span<const Triangle> triangles, double bounda
 }
 
 // Eq. 1-3: weight a_p^2, so n / 2 as it is.
-void FusionCost::addPlanes(const LatticeMesh& lattice) {
-  const auto isSurface = [&](std::span<const FaceSide> sides) {
-    return sides.size() == 1 || std::ranges::any_of(frame_.labels, [&](const LabelCost& label) {
-             const std::vector<std::int32_t>& labels = lattice.values[label.field];
-             return label.weight > 0 && labels[cellOf(sides[0])] != labels[cellOf(sides[1])];
-           });
+void FusionCost::addPlanes(const LatticeMesh& lattice, std::span<const Triangle> boundary) {
+  const SeamFaces seams(lattice, boundary);
+  const double surface = frame_.boundaryFactor * frame_.boundaryFactor;
+  const auto weightOf = [&](std::span<const FaceSide> sides, const Triangle& face) {
+    if (sides.size() == 1)
+      return seams.hold(face) ? 0.5 : surface;  // the block beside adds as much
+    const bool isInterface = std::ranges::any_of(frame_.labels, [&](const LabelCost& label) {
+      const std::vector<std::int32_t>& labels = lattice.values[label.field];
+      return label.weight > 0 && labels[cellOf(sides[0])] != labels[cellOf(sides[1])];
+    });
+    return isInterface ? surface : 1;
   };
   FaceGroups(lattice.tetrahedra).forEach([&](std::span<const FaceSide> sides) {
     const Tetrahedron& cell = lattice.tetrahedra[cellOf(sides[0])];
@@ -172,8 +219,7 @@ void FusionCost::addPlanes(const LatticeMesh& lattice) {
     const Vector3 p = mesh_.position(face[0]);
     const Vector3 n = cross(mesh_.position(face[1]) - p, mesh_.position(face[2]) - p);
     Symmetric3 a;
-    a.addOuter(n, frame_.planeScale *
-                      (isSurface(sides) ? frame_.boundaryFactor * frame_.boundaryFactor : 1));
+    a.addOuter(n, frame_.planeScale * weightOf(sides, face));
     addSlope(face, {}, 0, a, Vertices{});
   });
 }

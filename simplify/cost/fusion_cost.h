@@ -43,6 +43,10 @@ class FusionCost {
   /// was made of `lattice`.
   FusionCost(const FusionMesh& mesh, const LatticeMesh& lattice, const CostOptions& options,
              Workers* workers = nullptr);
+  /// A block of a mesh, in the frame of the whole: what its own cells and `boundary` give. The
+  /// quadric of a vertex of several blocks is the sum of theirs. REQUIRES: as the first.
+  FusionCost(const FusionMesh& mesh, const LatticeMesh& block, const CostFrame& frame,
+             std::span<const Triangle> boundary);
   /// A part of a mesh. `quadrics`: quadric(v) of its vertices in the whole, back to back. REQUIRES:
   /// `mesh` outlives this.
   FusionCost(const FusionMesh& mesh, const CostFrame& frame, std::span<const double> quadrics);
@@ -54,6 +58,11 @@ class FusionCost {
   /// All that v stands for, as the other constructor takes it.
   [[nodiscard]] std::span<const double> quadric(VertexId v) const {
     return std::span(quadrics_).subspan(at(v), stride_);
+  }
+  /// How many of the numbers of a quadric of a frame of so many components are sums over cells and
+  /// triangles. The values of the vertex stand behind them.
+  [[nodiscard]] static std::size_t sumsOf(std::size_t components) {
+    return kHead + (kPerComponent - 1) * components;
   }
 
   /// The prey's quadric as a function of the fusion point relative to prey.vertex[0], at the best
@@ -131,13 +140,14 @@ class FusionCost {
   };
 
   void takeValues(const LatticeMesh& lattice);
-  void addSlopes(const LatticeMesh& lattice, Workers* workers);
+  void addAll(const LatticeMesh& lattice, std::span<const Triangle> boundary, Workers* workers);
+  void addSlopes(const LatticeMesh& lattice, std::span<const Triangle> boundary, Workers* workers);
   void addFields(const LatticeMesh& lattice, const Vertices& own);
   void addTriangles(std::span<const Triangle> triangles, double boundaryFactor,
                     const Vertices& own);
   void addSlope(std::span<const VertexId> corners, std::span<const Vector3> slopes, double weight,
                 Symmetric3 a, const Vertices& own);
-  void addPlanes(const LatticeMesh& lattice);
+  void addPlanes(const LatticeMesh& lattice, std::span<const Triangle> boundary);
   [[nodiscard]] std::size_t at(VertexId v) const { return slot_[v] * stride_; }
   enum Part : std::size_t { kSlope = 0, kOffset = 3, kValue = 4 };
   [[nodiscard]] std::size_t placeOf(std::size_t part, std::size_t f) const {

@@ -73,11 +73,11 @@ Result<std::uint32_t> FusionLoop::run(std::size_t target) {
   return levels_;
 }
 
-PartLevels FusionLoop::runPart(const PartEnd& end, std::span<const std::uint8_t> isSeam) {
+PartLevels FusionLoop::runPart(const PartEnd& end, const PartSurroundings& beside) {
   PartLevels out;
   assert(end.leastShare >= 0);
   target_ = end.cells;
-  fusions_.keepOff(isSeam);
+  fusions_.keepOff(beside);
   open_.findAll();
   for (std::size_t before = live(); levels_ < kMaxLevels && runLevel(end.key); before = live()) {
     if (fusions_.fused().empty()) break;

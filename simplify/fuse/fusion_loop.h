@@ -70,9 +70,8 @@ class FusionLoop {
   /// Until `target` tetrahedra are left, or no fusion is. The levels' number. Errors:
   /// limit-exceeded (too many levels), cancelled.
   [[nodiscard]] Result<std::uint32_t> run(std::size_t target);
-  /// A part of a mesh. No fusion with a vertex of `isSeam` in its link goes outside: the boundary
-  /// of the part beside it is not known here.
-  [[nodiscard]] PartLevels runPart(const PartEnd& end, std::span<const std::uint8_t> isSeam);
+  /// A part of a mesh. `beside` outlives this.
+  [[nodiscard]] PartLevels runPart(const PartEnd& end, const PartSurroundings& beside);
 
  private:
   bool runLevels();

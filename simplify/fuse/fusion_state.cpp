@@ -25,6 +25,13 @@ FusionState::FusionState(const LatticeMesh& lattice, std::size_t regionField,
   integers_.resize(valuesOfAPoint(mesh_.fields()));
 }
 
+FusionState::FusionState(const LatticeMesh& block, std::size_t regionField, const CostFrame& frame,
+                         std::span<const Triangle> boundary)
+    : mesh_(block, regionField), cost_(mesh_, block, frame, boundary) {
+  changes_.resize(mesh_.vertexSlots());
+  integers_.resize(valuesOfAPoint(mesh_.fields()));
+}
+
 FusionState::FusionState(const LatticeMesh& part, std::size_t regionField, const CostFrame& frame,
                          std::span<const double> quadrics)
     : mesh_(part, regionField), cost_(mesh_, frame, quadrics) {

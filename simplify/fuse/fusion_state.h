@@ -20,6 +20,9 @@ class FusionState {
   /// REQUIRES: as FusionMesh and FusionCost.
   FusionState(const LatticeMesh& lattice, std::size_t regionField, const CostOptions& cost,
               Workers& workers);
+  /// A block of a mesh, as FusionCost takes it.
+  FusionState(const LatticeMesh& block, std::size_t regionField, const CostFrame& frame,
+              std::span<const Triangle> boundary);
   /// A part of a mesh, as FusionCost takes it.
   FusionState(const LatticeMesh& part, std::size_t regionField, const CostFrame& frame,
               std::span<const double> quadrics);

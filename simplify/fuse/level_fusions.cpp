@@ -11,6 +11,20 @@ void LevelFusions::begin(std::uint32_t level) {
   fused_.clear(), links_.clear(), linkEnds_.clear();
 }
 
+bool LevelFusions::reachesABox(const Proposal& proposal) const {
+  if (beside_.boxes.empty()) return false;
+  LatticeBox own{proposal.where.point, proposal.where.point};
+  const auto hold = [&](VertexId v) {
+    if (v == kGhost) return;
+    const LatticePoint& p = state_.mesh().point(v);
+    for (std::size_t i = 0; i < 3; ++i)
+      own.low[i] = std::min(own.low[i], p[i]), own.high[i] = std::max(own.high[i], p[i]);
+  };
+  for (const VertexId v : proposal.star.link) hold(v);
+  for (const VertexId v : proposal.prey.vertices()) hold(v);
+  return std::ranges::any_of(beside_.boxes, [&](const LatticeBox& box) { return meet(own, box); });
+}
+
 void LevelFusions::carryOut(const Proposal& proposal) {
   assert(proposal.partner != kGhost && !proposal.isPriceAll);
   assert(!proposal.where.goesOutside || boundary_);

@@ -14,19 +14,37 @@
 
 namespace qtet {
 
+/// A box of lattice points, its corners included.
+struct LatticeBox {
+  LatticePoint low, high;
+};
+
+[[nodiscard]] inline bool meet(const LatticeBox& a, const LatticeBox& b) {
+  bool apart = false;
+  for (std::size_t i = 0; i < 3; ++i) apart |= a.high[i] < b.low[i] || b.high[i] < a.low[i];
+  return !apart;
+}
+
+/// All that lies beside a part and is not known within it. No fusion with a seam vertex in its link
+/// goes outside, nor one whose star, with the fusion point, reaches one of these boxes.
+struct PartSurroundings {
+  std::span<const std::uint8_t> isSeam;  ///< by vertex of the part
+  std::span<const LatticeBox> boxes{};   ///< that hold all other parts
+};
+
 class LevelFusions {
  public:
   /// `boundary`: null where no fusion goes outside. REQUIRES: all outlive this.
   LevelFusions(FusionState& state, LiveBoundary* boundary) : state_(state), boundary_(boundary) {}
 
   void begin(std::uint32_t level);
-  /// No fusion with one of these in its link goes outside from now on. `isSeam`: by vertex of the
-  /// mesh as it is; outlives this.
-  void keepOff(std::span<const std::uint8_t> isSeam) { isSeam_ = isSeam; }
+  /// From now on. `beside` outlives this.
+  void keepOff(const PartSurroundings& beside) { beside_ = beside; }
   /// The fusion would make the boundary meet itself, or could meet that of another part.
   [[nodiscard]] bool isMet(const Proposal& proposal) const {
     assert(!proposal.where.goesOutside || boundary_);
-    return proposal.where.goesOutside && (isAtSeam(proposal) || boundary_->isMetBy(proposal));
+    return proposal.where.goesOutside &&
+           (isAtSeam(proposal) || reachesABox(proposal) || boundary_->isMetBy(proposal));
   }
   /// Does the fusion and touches its star. REQUIRES: no vertex of the prey is locked.
   void carryOut(const Proposal& proposal);
@@ -45,13 +63,15 @@ class LevelFusions {
 
  private:
   [[nodiscard]] bool isAtSeam(const Proposal& proposal) const {
-    return std::ranges::any_of(proposal.star.link,
-                               [this](VertexId v) { return v < isSeam_.size() && isSeam_[v]; });
+    return std::ranges::any_of(proposal.star.link, [this](VertexId v) {
+      return v < beside_.isSeam.size() && beside_.isSeam[v];
+    });
   }
+  [[nodiscard]] bool reachesABox(const Proposal& proposal) const;
 
   FusionState& state_;
   LiveBoundary* boundary_;
-  std::span<const std::uint8_t> isSeam_;
+  PartSurroundings beside_;
   std::uint32_t level_ = 0;
   std::vector<std::uint8_t> wentOutside_;
   std::vector<VertexId> fused_;

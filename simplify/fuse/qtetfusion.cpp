@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "proto/limits.h"
@@ -18,11 +20,18 @@ namespace {
 /// Calls `release` once the mesh is not needed any more.
 template <class Release>
 Result<FusionHistory> simplifyAll(const LatticeMesh& mesh, const FusionOptions& options,
-                                  const FirstFusions& first, const Release& release) {
+                                  const FirstFusions& first, const EarlierFusions* earlier,
+                                  const Release& release) {
   const std::size_t target = baseCellsOf(options, mesh.tetrahedra.size());
   Workers workers(options.threads, options.stop);
-  FusionState state(mesh, options.regionField.value_or(FusionMesh::kNoRegions), options.cost,
-                    workers);
+  const std::size_t regions = options.regionField.value_or(FusionMesh::kNoRegions);
+  std::optional<FusionState> made;
+  if (earlier != nullptr) {
+    made.emplace(mesh, regions, earlier->cost, std::span(earlier->quadrics));
+  } else {
+    made.emplace(mesh, regions, options.cost, workers);
+  }
+  FusionState& state = *made;
   const FusionFrame frame(mesh, state, options);
   state.keep(options.kept);
   release();
@@ -91,13 +100,14 @@ std::size_t baseCellsOf(const FusionOptions& options, std::size_t cells) {
 
 Result<FusionHistory> simplify(const LatticeMesh& mesh, const FusionOptions& options) {
   if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
-  return orCancelled([&] { return simplifyAll(mesh, options, {}, [] {}); });
+  return orCancelled([&] { return simplifyAll(mesh, options, {}, nullptr, [] {}); });
 }
 
 Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options,
-                               const FirstFusions& first) {
+                               const FirstFusions& first, const EarlierFusions* earlier) {
   if (Status checked = check(mesh, options); !checked) return std::unexpected(checked.error());
-  return orCancelled([&] { return simplifyAll(mesh, options, first, [&] { mesh = {}; }); });
+  return orCancelled(
+      [&] { return simplifyAll(mesh, options, first, earlier, [&] { mesh = {}; }); });
 }
 
 }  // namespace qtet

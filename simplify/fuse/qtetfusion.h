@@ -11,6 +11,7 @@
 #include "codec/mesh/mesh.h"
 #include "codec/record/fusion_history.h"
 #include "proto/error.h"
+#include "simplify/cost/cost_frame.h"
 #include "simplify/cost/cost_options.h"
 #include "simplify/fuse/placement_rule.h"
 
@@ -65,9 +66,16 @@ struct FusionOptions {
 /// Does fusions before all others; the number of levels then.
 using FirstFusions = std::function<std::uint32_t(FusionState& state, const FusionFrame& frame)>;
 
+/// The fusions that a mesh has behind it, as its vertices have them (reduce_mesh.h).
+struct EarlierFusions {
+  CostFrame cost;
+  std::vector<double> quadrics;  ///< FusionCost::quadric of each vertex
+};
+
 /// The same for a mesh that is not needed any more: its memory is given back before the first
-/// fusion.
+/// fusion. `earlier`: null where there was none.
 [[nodiscard]] Result<FusionHistory> simplify(LatticeMesh&& mesh, const FusionOptions& options,
-                                             const FirstFusions& first = {});
+                                             const FirstFusions& first = {},
+                                             const EarlierFusions* earlier = nullptr);
 
 }  // namespace qtet

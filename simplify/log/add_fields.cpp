@@ -17,6 +17,7 @@
 #include "simplify/clean/quantise_field.h"
 #include "simplify/clean/verify.h"
 #include "simplify/cost/label_fields.h"
+#include "simplify/log/whole_log.h"
 #include "simplify/mesh/history_levels.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/series/time_differences.h"
@@ -116,6 +117,7 @@ FieldAdder::FieldAdder(const LogFile& log, AddFieldsOptions options, Manifest ma
 Result<FieldAdder> FieldAdder::make(const LogFile& log, const AddFieldsOptions& options) {
   Result<Manifest> manifest = manifestOf(log.index());
   if (!manifest) return std::unexpected(manifest.error());
+  if (Status whole = checkWhole(*manifest); !whole) return std::unexpected(whole.error());
   Result<LogHistory> history = historyOf(log, options.progress);
   if (!history) return std::unexpected(history.error());
   return FieldAdder(log, options, std::move(*manifest),

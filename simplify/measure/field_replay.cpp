@@ -15,17 +15,20 @@ std::vector<FieldError> FieldReplay::errors(const FusionHistory& history, std::s
   const std::size_t components = history.fields[field].components;
   const std::size_t places = levels.front().moved.size();
   assert(uniform <= places);
-  std::vector<double> truth(places * components), squared(places);
+  const bool isKnown = !truth.empty();
+  std::vector<double> wanted =
+      isKnown ? truth[field - unmeasured] : std::vector<double>(places * components);
+  std::vector<double> squared(places);
   std::vector<std::uint8_t> isOriginal(places);
   for (std::size_t level = 0; level < levels.size(); ++level) {
     for (const ReplayedPlace& place : levels[level].moved) {
       assert(place.place < places);
       double sum = 0;
       for (std::size_t c = 0; c < components; ++c) {
-        double& wanted = truth[place.place * components + c];
         const double value = valueIn(place.corners, place.weights, values, components, c);
-        if (level == 0) wanted = value;
-        sum += (value - wanted) * (value - wanted);
+        double& original = wanted[place.place * components + c];
+        if (level == 0 && !isKnown) original = value;
+        sum += (value - original) * (value - original);
       }
       squared[place.place] = sum / (range * range);
       isOriginal[place.place] = place.isOriginal ? 1 : 0;

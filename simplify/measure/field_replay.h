@@ -61,6 +61,8 @@ struct FieldReplay {
     std::vector<ReplayedPlace> moved;  ///< since the level before; all in the first
   };
   std::vector<Level> levels;  ///< those that were measured, the finest first
+  /// Per field, components a place. Empty: the values of the finest level.
+  std::vector<std::vector<double>> truth{};
   std::size_t uniform = 0;
   std::vector<double> ranges;         ///< a field's, in its steps; 0: it is constant
   std::vector<FieldError> roundings;  ///< a field's

@@ -36,9 +36,13 @@ BoundaryMeter::BoundaryMeter(const MeasuredMesh& mesh, const BoundaryOptions& op
   const auto onIt = [](const Vector3& at, std::uint32_t ghost) {
     return Followed{at, {ghost, {0, {}}}};
   };
-  for (const ErrorSample& s : samplesOnSurface(
-           history.points, history.cells, mesh.originalBoundary(), options.samples, options.seed))
-    samples_.push_back(onIt(s.at, s.cell));
+  if (options.before != nullptr) {
+    for (const Vector3& at : options.before->surface) samples_.push_back({at, {}, false});
+  } else {
+    for (const ErrorSample& s : samplesOnSurface(
+             history.points, history.cells, mesh.originalBoundary(), options.samples, options.seed))
+      samples_.push_back(onIt(s.at, s.cell));
+  }
   triangleBounds_.assign(mesh.originalBoundary().size(), 0);
   for (const std::uint32_t ghost : mesh.originalBoundary())
     triangles_.push_back({ghost, 0, std::numeric_limits<double>::infinity(), {}});
@@ -176,7 +180,11 @@ OneSidedDistance BoundaryMeter::toLevel() {
     farthest = std::max(farthest, sample.nearest.point.squared);
   }
   const double mean = samples_.empty() ? 0 : sum / static_cast<double>(samples_.size());
-  return {mean / mesh_.diagonal(), std::sqrt(boundToLevel(farthest)) / mesh_.diagonal()};
+  // some point of the finest level's boundary is as far as a place of the original, less its way
+  const double before = options_.before != nullptr ? options_.before->toMesh.max : 0;
+  const double found = std::max(std::sqrt(farthest) - before, 0.0);
+  return {mean / mesh_.diagonal(),
+          (std::sqrt(boundToLevel(found * found)) + before) / mesh_.diagonal()};
 }
 
 // A triangle's bound need not be sharp while it is not above the maximum.
@@ -225,7 +233,10 @@ OneSidedDistance BoundaryMeter::toOriginal() {
     farthest = std::max(farthest, s);
   }
   const double mean = samples.empty() ? 0 : sum / static_cast<double>(samples.size());
-  return {mean / mesh_.diagonal(), std::sqrt(boundToOriginal(farthest)) / mesh_.diagonal()};
+  const OneSidedDistance before =
+      options_.before != nullptr ? options_.before->toOriginal : OneSidedDistance{};
+  return {(mean + before.mean) / mesh_.diagonal(),
+          (std::sqrt(boundToOriginal(farthest)) + before.max) / mesh_.diagonal()};
 }
 
 }  // namespace qtet

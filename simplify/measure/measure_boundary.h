@@ -23,6 +23,9 @@ struct BoundaryOptions {
   double squaredRounding = 0;
   std::uint64_t seed = 0;
   Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
+  /// Where the mesh was reduced before. Its places on the original's boundary are taken, and its
+  /// distances are added to those from the finest level.
+  const OriginalSamples* before = nullptr;
 };
 
 /// Distances are over the original's diagonal. From the original, the same places are followed from

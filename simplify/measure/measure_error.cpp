@@ -21,26 +21,18 @@
 namespace qtet {
 namespace {
 
-struct Samples {
-  std::uint32_t volume, vertices, surface, levelSurface;
-};
-
 /// Cells that pay for one place in the volume: measured, ALGORITHM.md, "Known error".
 constexpr std::size_t kCellsPerSample = 10;
 constexpr std::size_t kFewest = 3000, kMax = 50000;
 /// Fewest places on a level's boundary, where nothing is kept from level to level and a search
 /// takes the longest.
 constexpr std::uint32_t kFewestOnLevel = 300;
-constexpr Samples kAllSamples{200000, 200000, 200000, 200000};
+constexpr MeasuredPlaces kAllPlaces{200000, 200000, 200000, 200000};
 
-Samples samplesFor(Effort effort, const FusionHistory& history) {
-  if (effort == Effort::kAll) return kAllSamples;
+std::size_t tetrahedraOf(const FusionHistory& history) {
   const auto isTetrahedron = [](const Tetrahedron& cell) { return cell[3] != kGhost; };
-  const auto cells = static_cast<std::size_t>(
-      std::ranges::partition_point(history.cells, isTetrahedron) - history.cells.begin());
-  const auto volume =
-      static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMax));
-  return {volume, volume / 4, volume / 4, std::max(volume / 24, kFewestOnLevel)};
+  return static_cast<std::size_t>(std::ranges::partition_point(history.cells, isTetrahedron) -
+                                  history.cells.begin());
 }
 
 /// Distances over the diagonal below this are what doubles make of none: a lattice step is a
@@ -79,14 +71,15 @@ void addRounding(OneSidedDistance& distance, double diagonal) {
 
 class ErrorMeter {
  public:
-  ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const Samples& samples)
+  ErrorMeter(HistoryLevels& levels, const MeasureOptions& options, const MeasuredPlaces& samples)
       : countsRounding_(options.countsRounding),
         workers_(options.threads, options.stop),
-        mesh_(levels),
+        mesh_(levels, options.before),
         boundary_(mesh_, {samples.surface, samples.levelSurface,
-                          options.countsRounding ? kSquaredRounding : 0, options.seed, &workers_}),
+                          options.countsRounding ? kSquaredRounding : 0, options.seed, &workers_,
+                          options.before}),
         fields_(mesh_, {samples.volume, samples.vertices, options.countsRounding, options.labels,
-                        options.seed ^ kFieldSeed, &workers_}) {}
+                        options.seed ^ kFieldSeed, &workers_, options.before}) {}
 
   void coarsen() {
     mesh_.coarsen();
@@ -296,14 +289,15 @@ Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& optio
   if (!fields) return std::unexpected(fields.error());
   HistoryLevels levels(history);
   for (; levels.level() < levels.finest(); levels.refine()) throwIfStopped(options.stop);
-  ErrorMeter meter(levels, options, samplesFor(options.effort, history));
+  ErrorMeter meter(levels, options, placesFor(options.effort, tetrahedraOf(history)));
   LevelSize size(history), base = size;
-  const LevelBounds bounds(history, size, options, std::move(*fields), meter.rounding());
-  const LabelVolumes labels(history, options.labels);
-  LevelRow row(options, levels.finest());
   LevelErrors out(levels.finest() + std::size_t{1});
   std::uint32_t coarsest = levels.finest();
   out[coarsest] = meter.measure(options.replay);
+  const LevelBounds bounds(history, size, options, std::move(*fields),
+                           options.before != nullptr ? *out[coarsest] : meter.rounding());
+  const LabelVolumes labels(history, options.labels);
+  LevelRow row(options, levels.finest());
   while (levels.level() > 0) {
     meter.coarsen();
     size.coarsenBy(history, levels.fusionsInto(levels.level()));
@@ -326,6 +320,13 @@ Result<LevelErrors> measured(FusionHistory& history, const MeasureOptions& optio
 }
 
 }  // namespace
+
+MeasuredPlaces placesFor(Effort effort, std::size_t cells) {
+  if (effort == Effort::kAll) return kAllPlaces;
+  const auto volume =
+      static_cast<std::uint32_t>(std::clamp(cells / kCellsPerSample, kFewest, kMax));
+  return {volume, volume / 4, volume / 4, std::max(volume / 24, kFewestOnLevel)};
+}
 
 std::size_t baseBytesOf(std::size_t vertices, std::size_t components) {
   constexpr double kBytesAVertex = 8, kBytesAComponent = 1.3;

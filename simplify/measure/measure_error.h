@@ -15,6 +15,7 @@
 #include "proto/error.h"
 #include "proto/level_error.h"
 #include "simplify/measure/field_replay.h"
+#include "simplify/measure/original_samples.h"
 
 namespace qtet {
 
@@ -23,6 +24,13 @@ enum class Effort : std::uint8_t {
   kLevels,  ///< some kRowLevels; places in proportion to the cells, from 3,000 to 50,000
   kAll,     ///< all levels; 200,000 places in the volume and on each boundary, whatever that costs
 };
+
+/// Places in the original's volume, vertices of it, places on its boundary and on a level's.
+struct MeasuredPlaces {
+  std::uint32_t volume = 0, vertices = 0, surface = 0, levelSurface = 0;
+};
+/// For an original of so many tetrahedra.
+[[nodiscard]] MeasuredPlaces placesFor(Effort effort, std::size_t cells);
 
 /// Levels that Effort::kLevels measures at most, where no bound or rule wants more. Their numbers
 /// are evenly spaced, so their sizes are about a geometric row.
@@ -82,7 +90,10 @@ struct MeasureOptions {
   /// input, not the input on the lattice. A bound below what they may move is taken as that.
   bool countsRounding = false;
   FieldReplay* replay = nullptr;  ///< takes where the places lay
-  int threads = 1;                ///< the result does not depend on it
+  /// The history's finest level was reduced from it before, and is not the original. Outlives the
+  /// call.
+  const OriginalSamples* before = nullptr;
+  int threads = 1;  ///< the result does not depend on it
   std::uint64_t seed = 1;
   std::function<void(double fraction)> progress;  ///< 0..1, called once a level
   std::stop_token stop{};                         ///< asked many times a second

@@ -42,60 +42,63 @@ bool weightsIn(const std::array<Vector3, 4>& corners, const Vector3& p, double l
 FieldMeter::FieldMeter(const MeasuredMesh& mesh, const FieldOptions& options)
     : mesh_(mesh), options_(options) {
   assert(mesh.level() == mesh.history().levels && options.workers != nullptr);
-  const FusionHistory& history = mesh.history();
-  for (const ErrorSample& sample :
-       samplesInVolume(history.points, history.cells, options.samples, options.seed))
-    places_.push_back({sample, {}, sample.cell});
-  uniform_ = places_.size();
-  if (history.fields.empty()) return;
-  std::vector<std::uint8_t> isOriginal(history.points.size(), 0);
-  for (std::uint32_t id = 0; id < history.cells.size() && !mesh.isGhost(id); ++id)
-    for (const VertexId v : history.cells[id]) isOriginal[v] = 1;
-  findRanges(isOriginal);
-  addVertices(std::move(isOriginal));
-  keepTruth();
-  assert(truth_.size() == history.fields.size() && ranges_.size() == truth_.size());
-  squaredErrors_.assign(history.fields.size(), std::vector<double>(places_.size(), 0));
-}
-
-// Every so-many-th vertex, in the order in which the cells meet them, each in the first cell that
-// has it.
-void FieldMeter::addVertices(std::vector<std::uint8_t> isOriginal) {
-  const FusionHistory& history = mesh_.history();
-  const auto vertices =
-      static_cast<std::size_t>(std::count(isOriginal.begin(), isOriginal.end(), std::uint8_t{1}));
-  const std::size_t step = vertices / std::max(options_.vertices, 1u) + 1;
-  std::size_t met = 0;
-  for (std::uint32_t id = 0; id < history.cells.size() && !mesh_.isGhost(id); ++id)
-    for (std::size_t i = 0; i < 4; ++i) {
-      const VertexId v = history.cells[id][i];
-      if (std::exchange(isOriginal[v], std::uint8_t{0}) == 0 || met++ % step != 0) continue;
-      places_.push_back({{toVector(history.points[v]), id, {}}, {}, id});
-      places_.back().sample.weights[i] = 1;
-    }
-}
-
-void FieldMeter::findRanges(const std::vector<std::uint8_t>& isOriginal) {
-  const FusionHistory& history = mesh_.history();
-  for (std::size_t f = 0; f < history.fields.size(); ++f) {
-    const std::size_t components = history.fields[f].components;
-    double squared = 0;
-    for (std::size_t c = 0; c < components; ++c) {
-      std::int32_t low = std::numeric_limits<std::int32_t>::max(),
-                   high = std::numeric_limits<std::int32_t>::min();
-      const bool ofCells = isCellField(history.fields[f]);
-      for (std::size_t i = 0;
-           i < (ofCells ? history.values[f].size() / components : isOriginal.size()); ++i) {
-        if (!ofCells && !isOriginal[i]) continue;
-        low = std::min(low, history.values[f][i * components + c]);
-        high = std::max(high, history.values[f][i * components + c]);
-      }
-      assert(low <= high);
-      const double range = static_cast<double>(high) - static_cast<double>(low);
-      squared += range * range;
-    }
-    ranges_.push_back(std::sqrt(squared));
+  if (options.before != nullptr) {
+    takePlaces(*options.before);
+  } else {
+    drawPlaces();
   }
+  assert(truth_.empty() || truth_.size() == mesh.history().fields.size());
+  assert(ranges_.size() == truth_.size());
+  squaredErrors_.assign(truth_.size(), std::vector<double>(places_.size(), 0));
+}
+
+void FieldMeter::drawPlaces() {
+  const FusionHistory& history = mesh_.history();
+  const auto isTetrahedron = [](const Tetrahedron& cell) { return cell[3] != kGhost; };
+  const CellSpan cells(history.cells.begin(),
+                       std::ranges::partition_point(history.cells, isTetrahedron));
+  const SampledPlaces drawn =
+      placesOf(history.points, cells,
+               {options_.samples, history.fields.empty() ? 0 : std::max(options_.vertices, 1u)},
+               options_.seed);
+  for (const ErrorSample& sample : drawn.places) places_.push_back({sample, {}, sample.cell});
+  uniform_ = drawn.uniform;
+  ranges_ = rangesOf(history.fields, history.values, cells, history.points.size());
+  keepTruth();
+}
+
+void FieldMeter::takePlaces(const OriginalSamples& before) {
+  const FusionHistory& history = mesh_.history();
+  truth_ = before.truth;
+  ranges_ = before.ranges;
+  uniform_ = before.uniform;
+  places_.reserve(before.places.size());
+  for (const FollowedPlace& place : before.places) {
+    assert(place.tetrahedron < history.cells.size() && !mesh_.isGhost(place.tetrahedron));
+    Place& own = places_.emplace_back(
+        Place{{place.at, place.tetrahedron, {}}, {}, place.tetrahedron, false});
+    own.wasOriginal = place.isOriginal;
+    if (place.isCovered) {
+      std::array<Vector3, 4> corners;
+      for (std::size_t i = 0; i < 4; ++i)
+        corners[i] = toVector(history.points[history.cells[place.tetrahedron][i]]);
+      // a flat cell holds no place; then one corner stands for it
+      if (!weightsIn(corners, place.at, -std::numeric_limits<double>::infinity(),
+                     own.sample.weights))
+        own.sample.weights = {1, 0, 0, 0};
+    } else {
+      mesh_.boundaryTree().nearest(place.at, own.nearest);
+      own.sample.cell = own.nearest.triangle;
+    }
+  }
+}
+
+FollowedPlace FieldMeter::placeAt(std::size_t i) const {
+  const Place& place = places_[i];
+  assert(place.isMeasured);
+  const bool isCovered = !mesh_.isGhost(place.sample.cell);
+  return {place.sample.at, isCovered ? place.tetrahedron : place.sample.cell, isCovered,
+          place.wasOriginal && mesh_.isOriginal(place.sample.cell)};
 }
 
 void FieldMeter::keepTruth() {
@@ -218,6 +221,7 @@ void FieldMeter::keepIn(FieldReplay& replay) {
     replay.uniform = uniform_;
     replay.ranges = ranges_;
     replay.roundings = roundings();
+    if (options_.before != nullptr) replay.truth = truth_;
   }
   FieldReplay::Level& level = replay.levels.emplace_back();
   level.coarser = history.levels - mesh_.level();
@@ -225,7 +229,8 @@ void FieldMeter::keepIn(FieldReplay& replay) {
     assert(places_[i].isMeasured);
     if (std::exchange(places_[i].isKept, true)) continue;
     const ErrorSample& sample = places_[i].sample;
-    level.moved.push_back({static_cast<std::uint32_t>(i), mesh_.isOriginal(sample.cell),
+    level.moved.push_back({static_cast<std::uint32_t>(i),
+                           places_[i].wasOriginal && mesh_.isOriginal(sample.cell),
                            history.cells[sample.cell], sample.weights});
   }
 }
@@ -233,7 +238,7 @@ void FieldMeter::keepIn(FieldReplay& replay) {
 bool FieldMeter::isOriginal(const Place& place, std::size_t field) const {
   return isCellField(mesh_.history().fields[field])
              ? squaredErrors_[field][static_cast<std::size_t>(&place - places_.data())] == 0
-             : mesh_.isOriginal(place.sample.cell);
+             : place.wasOriginal && mesh_.isOriginal(place.sample.cell);
 }
 
 std::vector<FieldError> FieldMeter::errors() const {

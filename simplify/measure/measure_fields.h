@@ -25,6 +25,9 @@ struct FieldOptions {
   std::vector<std::uint32_t> labels{};  ///< MeasureOptions::labels
   std::uint64_t seed = 0;
   Workers* workers = nullptr;  ///< not null; the result does not depend on how many they are
+  /// Where the mesh was reduced before: its places instead of others. Without truth the fields are
+  /// not measured.
+  const OriginalSamples* before = nullptr;
 };
 
 /// The error of a field at a place is the Euclidean norm of the difference. It is relative to the
@@ -54,6 +57,8 @@ class FieldMeter {
   [[nodiscard]] Uncovered uncovered() const;
   /// The errors of the original from rounding alone.
   [[nodiscard]] std::vector<FieldError> roundings() const;
+  /// Where place `i` is now. REQUIRES: it is measured.
+  [[nodiscard]] FollowedPlace placeAt(std::size_t i) const;
 
  private:
   struct Place {
@@ -62,13 +67,14 @@ class FieldMeter {
     NearestTriangle nearest;  // of a place that is not covered
     CellId tetrahedron = 0;   // the last that covered it
     bool isMeasured = true, isKept = false;
+    bool wasOriginal = true;  // at the finest level
   };
 
   [[nodiscard]] bool isLabel(std::size_t field) const {
     return std::ranges::find(options_.labels, field) != options_.labels.end();
   }
-  void findRanges(const std::vector<std::uint8_t>& isOriginal);
-  void addVertices(std::vector<std::uint8_t> isOriginal);
+  void takePlaces(const OriginalSamples& before);
+  void drawPlaces();
   void keepTruth();
   [[nodiscard]] double valueAt(const Place& place, std::size_t field, std::size_t component) const;
   void follow(Place& place) const;

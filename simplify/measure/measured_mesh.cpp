@@ -28,7 +28,7 @@ double diagonalOf(const std::vector<LatticePoint>& points,
 
 }  // namespace
 
-MeasuredMesh::MeasuredMesh(HistoryLevels& levels) : levels_(levels) {
+MeasuredMesh::MeasuredMesh(HistoryLevels& levels, const OriginalSamples* before) : levels_(levels) {
   levels.moveTo(levels.finest());
   lastFusion_.assign(history().cells.size(), 0);
   for (std::uint32_t i = 0; i < history().cells.size(); ++i)
@@ -39,8 +39,8 @@ MeasuredMesh::MeasuredMesh(HistoryLevels& levels) : levels_(levels) {
   std::iota(all.begin(), all.end(), 0u);
   originalTree_.emplace(history().points, originalTriangles_, std::move(all));
   rebuildTree();
-  originalVolume_ = volume();
-  diagonal_ = diagonalOf(history().points, originalTriangles_);
+  originalVolume_ = before ? before->volume6 : volume();
+  diagonal_ = before ? before->diagonal : diagonalOf(history().points, originalTriangles_);
 }
 
 void MeasuredMesh::coarsen() {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "simplify/measure/original_samples.h"
 #include "simplify/mesh/history_levels.h"
 #include "simplify/mesh/triangle_tree.h"
 
@@ -16,8 +17,8 @@ namespace qtet {
 /// Reading is safe from any thread between two calls of coarsen().
 class MeasuredMesh {
  public:
-  /// Moves `levels` to the finest level, the original.
-  explicit MeasuredMesh(HistoryLevels& levels);
+  /// Moves `levels` to the finest level. That is the original, unless it was reduced from `before`.
+  explicit MeasuredMesh(HistoryLevels& levels, const OriginalSamples* before = nullptr);
 
   [[nodiscard]] const FusionHistory& history() const { return levels_.history(); }
   [[nodiscard]] std::uint32_t level() const { return levels_.level(); }

@@ -71,18 +71,23 @@ void fillMissing(std::span<const Tetrahedron> cells, const FieldInfo& field,
   }
 }
 
+std::vector<std::uint8_t> missingOfFused(const FusionHistory& history, std::size_t n,
+                                         std::vector<std::uint8_t> missing) {
+  missing.resize(history.points.size() * n);
+  for (const Fusion& fusion : history.fusions)
+    for (std::size_t c = 0; c < n; ++c)
+      missing[fusion.fused * n + c] =
+          std::all_of(fusion.prey.begin(), fusion.prey.begin() + fusion.k,
+                      [&](VertexId v) { return missing[v * n + c] != 0; });
+  return missing;
+}
+
 std::vector<std::int32_t> withMissing(const FusionHistory& history, const FieldInfo& field,
                                       std::vector<std::uint8_t> missing,
                                       std::vector<std::int32_t> values) {
-  const std::size_t n = field.components;
-  assert(missing.size() <= values.size() && values.size() % n == 0);
-  missing.resize(values.size());
-  if (!isCellField(field))
-    for (const Fusion& fusion : history.fusions)
-      for (std::size_t c = 0; c < n; ++c)
-        missing[fusion.fused * n + c] =
-            std::all_of(fusion.prey.begin(), fusion.prey.begin() + fusion.k,
-                        [&](VertexId v) { return missing[v * n + c] != 0; });
+  assert(missing.size() <= values.size());
+  if (!isCellField(field)) missing = missingOfFused(history, field.components, std::move(missing));
+  assert(missing.size() == values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     if (missing[i] != 0) values[i] = kMissing;
   return values;

@@ -17,8 +17,13 @@ namespace qtet {
 void fillMissing(std::span<const Tetrahedron> cells, const FieldInfo& field,
                  std::span<const std::uint8_t> missing, std::vector<std::int32_t>& values);
 
+/// Flags of the vertices that ever lived, one a component; `missing` has those of the original's. A
+/// fused vertex is missing if all of its prey are.
+[[nodiscard]] std::vector<std::uint8_t> missingOfFused(const FusionHistory& history, std::size_t n,
+                                                       std::vector<std::uint8_t> missing);
+
 /// A history's values of a field with the missing values put back: `missing` are those of the
-/// original's points or cells. A fused vertex is missing if all of its prey are.
+/// original's points or cells.
 [[nodiscard]] std::vector<std::int32_t> withMissing(const FusionHistory& history,
                                                     const FieldInfo& field,
                                                     std::vector<std::uint8_t> missing,

@@ -3,45 +3,18 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <compare>
 #include <optional>
 #include <utility>
+
+#include "simplify/parts/band_price.h"
 
 namespace qtet {
 namespace {
 
-/// A band ends at the price at which the whole mesh, without seams, would have one in so many of
-/// its cells left. With 3, levels at a half of the cells have 1.3 to 1.7 times the error of one
-/// piece. Dear cells inside of parts go before cheap ones at their seams.
-constexpr double kBandFactor = 1.7;
 /// That price is found in one part of so many, and in so many at least.
 constexpr std::size_t kSampledOneIn = 8, kMinSampled = 10;
-/// All sampled parts together are asked down to a number of cells. Each goes on to this share of
-/// its own, since what is cheap differs from part to part.
-constexpr double kSampledTo = 0.5;
 /// A level of the whole removes this share of its cells, or as many as a part's level that ends it.
 constexpr double kLevelShare = 0.05;
-
-/// Cheap levels come first, those of a part in their order: by the largest key of it so far.
-struct LevelOfPart {
-  float key = 0;
-  std::uint32_t part = 0, level = 0;
-  std::size_t removed = 0;
-  auto operator<=>(const LevelOfPart&) const = default;
-};
-
-std::vector<LevelOfPart> inOrder(std::span<const std::vector<PartLevel>> parts) {
-  std::vector<LevelOfPart> out;
-  for (std::uint32_t p = 0; p < parts.size(); ++p) {
-    float key = 0;
-    for (std::uint32_t l = 0; l < parts[p].size(); ++l) {
-      key = std::max(key, parts[p][l].key);
-      out.push_back({key, p, l, parts[p][l].removed});
-    }
-  }
-  std::ranges::sort(out);
-  return out;
-}
 
 /// The fusions of the parts with these numbers.
 std::vector<PartFusions> fuseParts(const FusionState& whole, const FusionFrame& frame,
@@ -66,20 +39,6 @@ std::vector<std::vector<PartLevel>> levelsOf(std::span<const PartFusions> parts)
   return out;
 }
 
-/// The key at which all of the sampled parts' cells are down to this share of them; their largest
-/// if they never are.
-float keyAt(std::span<const std::vector<PartLevel>> sampled, std::size_t cells, double share) {
-  const double most = share * static_cast<double>(cells);
-  float key = 0;
-  for (const LevelOfPart& level : inOrder(sampled)) {
-    if (static_cast<double>(cells) <= most) break;
-    assert(level.removed <= cells);
-    cells -= level.removed;
-    key = level.key;
-  }
-  return key;
-}
-
 /// This share of a part's cells, and no fewer.
 std::size_t cellsOf(double share, std::size_t own) {
   return static_cast<std::size_t>(std::ceil(share * static_cast<double>(own)));
@@ -92,13 +51,9 @@ struct Sample {
   float key = 0;  ///< where the band ends
 };
 
-/// A part whose seams stay has more cells at the band's price:
-/// 1 - (1 - 1 / factor) (1 - 2 (1 - share of inner vertices)).
 Sample sampleOf(const FusionState& whole, const FusionFrame& frame, const FusionOptions& options,
                 Workers& workers, const CutMesh& cut, double goal) {
-  assert(cut.innerShare >= 0 && cut.innerShare <= 1);
-  const double inner = std::max(0.0, 1 - 2 * (1 - cut.innerShare));
-  const double share = 1 - (1 - 1 / kBandFactor) * inner;
+  const double share = shareLeft(1 / kBandFactor, cut.innerShare);
   const std::size_t step =
       std::clamp<std::size_t>(cut.parts.size() / kMinSampled, 1, kSampledOneIn);
   Sample out;
@@ -224,7 +179,7 @@ std::vector<std::vector<std::uint32_t>> levelsOfTheWhole(
   std::vector<std::vector<std::uint32_t>> out(parts.size());
   std::uint32_t now = 0;
   std::size_t removed = 0;  // in level `now`
-  for (const LevelOfPart& level : inOrder(parts)) {
+  for (const LevelOfPart& level : levelsInOrder(parts)) {
     if (static_cast<double>(removed) >= kLevelShare * static_cast<double>(cells)) {
       ++now;
       assert(removed <= cells);

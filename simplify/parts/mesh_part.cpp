@@ -109,7 +109,7 @@ PartFusions fusePart(const FusionState& whole, const FusionFrame& frame,
   own.progress = {};
   own.kept.clear();
   Workers alone(1, options.stop);
-  out.done = FusionLoop(state, frame, own, alone).runPart(end, isOwnSeam);
+  out.done = FusionLoop(state, frame, own, alone).runPart(end, {.isSeam = isOwnSeam});
   assert(state.mesh().fusions() == out.done.wentOutside.size());
   out.history = state.takeHistory(static_cast<std::uint32_t>(out.done.levels.size()));
   return out;

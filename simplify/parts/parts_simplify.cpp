@@ -72,16 +72,16 @@ class Bands {
 }  // namespace
 
 Result<PartsFusion> simplifyInParts(LatticeMesh&& mesh, const FusionOptions& options,
-                                    const PartsOptions& parts) {
+                                    const PartsOptions& parts, const EarlierFusions* earlier) {
   PartsFusion out;
-  Result<FusionHistory> history =
-      simplify(std::move(mesh), options, [&](FusionState& state, const FusionFrame& frame) {
-        Workers workers(options.threads, options.stop);
-        Bands bands(state, frame, options, parts, workers);
-        const std::uint32_t levels = bands.run();
-        out.bands = bands.bands();
-        return levels;
-      });
+  const auto inBands = [&](FusionState& state, const FusionFrame& frame) {
+    Workers workers(options.threads, options.stop);
+    Bands bands(state, frame, options, parts, workers);
+    const std::uint32_t levels = bands.run();
+    out.bands = bands.bands();
+    return levels;
+  };
+  Result<FusionHistory> history = simplify(std::move(mesh), options, inBands, earlier);
   if (!history) return std::unexpected(history.error());
   out.history = std::move(*history);
   return out;

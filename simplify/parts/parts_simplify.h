@@ -37,6 +37,7 @@ struct PartsFusion {
 /// As simplify. A mesh that is too small to be cut has the same fusions as there. The result
 /// depends on the parts, and on no number of threads.
 [[nodiscard]] Result<PartsFusion> simplifyInParts(LatticeMesh&& mesh, const FusionOptions& options,
-                                                  const PartsOptions& parts);
+                                                  const PartsOptions& parts,
+                                                  const EarlierFusions* earlier = nullptr);
 
 }  // namespace qtet

@@ -10,6 +10,7 @@
 #include "codec/log/log_manifest.h"
 #include "proto/field_key.h"
 #include "proto/version.h"
+#include "simplify/blocks/reduce_mesh.h"
 #include "simplify/cost/cost_parts.h"
 #include "simplify/cost/label_fields.h"
 #include "simplify/log/lift_fields.h"
@@ -82,6 +83,7 @@ struct Run {
   Units units{};
   Labels labels{};  ///< for the manifest
   std::vector<std::uint32_t> labelFields{};
+  std::optional<ReducedMesh> reduced{};  ///< without its mesh, once that is simplified
 
   void note(const std::vector<std::string>& sentences) {
     report.notes.insert(report.notes.end(), sentences.begin(), sentences.end());
@@ -153,10 +155,42 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   return out;
 }
 
+/// Whether the mesh has more cells than the log's last level may have.
+bool isReduced(const LatticeMesh& mesh, const PipelineOptions& options) {
+  return options.finest && mesh.tetrahedra.size() > *options.finest;
+}
+
+/// REQUIRES: isReduced.
+Status reduce(QuantisedMesh& quantised, FusionOptions& options, Run& run) {
+  const std::size_t cells = quantised.mesh.tetrahedra.size();
+  ReduceOptions own;
+  own.cells = *run.options.finest;
+  own.spool = run.options.spool;
+  own.progress = run.stages.progress();
+  if (run.options.measure) {
+    const MeasuredPlaces places = placesFor(run.options.measure->effort, cells);
+    own.samples = {places.volume, places.vertices};
+    own.surfaceSamples = places.surface;
+  }
+  Result<ReducedMesh> out =
+      reduceMesh(std::move(quantised.mesh), std::move(quantised.missing), options, own);
+  if (!out) return std::unexpected(out.error());
+  quantised.mesh = std::move(out->mesh);
+  quantised.missing = std::move(out->missing);
+  options.envelopeTolerance = out->envelopeTolerance;
+  run.note({"the log ends at " + std::to_string(quantised.mesh.tetrahedra.size()) + " of " +
+            std::to_string(out->tetrahedra) + " cells; the mesh was reduced to them in " +
+            std::to_string(out->bands) + " bands of blocks"});
+  run.reduced = std::move(*out);
+  return {};
+}
+
 /// Simplifies by the algorithm asked for; the paper's leaves its figures in the report.
 Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run& run) {
+  const EarlierFusions* const earlier = run.reduced ? &run.reduced->fusions : nullptr;
   if (run.options.parts) {
-    Result<PartsFusion> fused = simplifyInParts(std::move(mesh), options, *run.options.parts);
+    Result<PartsFusion> fused =
+        simplifyInParts(std::move(mesh), options, *run.options.parts, earlier);
     if (!fused) return std::unexpected(fused.error());
     run.note(
         {fused->bands > 0
@@ -164,7 +198,8 @@ Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run
              : "the mesh is too small for parts, and was simplified in one piece"});
     return std::move(fused->history);
   }
-  if (run.options.algorithm != Algorithm::kPaper) return simplify(std::move(mesh), options);
+  if (run.options.algorithm != Algorithm::kPaper)
+    return simplify(std::move(mesh), options, {}, earlier);
   Result<PaperFusion> fused = simplifyAsThePaper(mesh, options);
   if (!fused) return std::unexpected(fused.error());
   run.report.paper = fused->figures;
@@ -174,18 +209,9 @@ Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run
 // Share of simplifying that goes into fusing, where a log has series.
 constexpr double kFusingShare = 0.8;
 
-/// The history, with predictions of instants from others in the order of seriesOrder.
-Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
-  if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
-  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
-  if (!options) return std::unexpected(options.error());
-  const bool hasSeries = !seriesOf(quantised.mesh.fields).empty();
-  options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
-  options->stop = run.options.stop;
-  if (run.options.algorithm != Algorithm::kPaper &&
-      !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
-    run.report.boundaryWeight = options->cost.boundaryWeight;
-  for (const LabelCost& label : options->cost.labels) {
+/// Notes which labels count, for measuring and the manifest.
+void takeLabels(const QuantisedMesh& quantised, const FusionOptions& options, Run& run) {
+  for (const LabelCost& label : options.cost.labels) {
     const FieldName& name = quantised.mesh.fields[label.field].name;
     const std::string series(name.withoutTime());
     run.labelFields.push_back(static_cast<std::uint32_t>(label.field));
@@ -194,8 +220,29 @@ Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
     if (run.report.boundaryWeight && label.weight > 0)
       run.report.labelWeights.emplace_back(name, label.weight);
   }
+}
+
+/// The history, with predictions of instants from others in the order of seriesOrder.
+Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
+  const bool reduces = isReduced(quantised.mesh, run.options);
+  if (Status s = run.stages.begin(reduces ? Stage::kReduce : Stage::kSimplify); !s)
+    return std::unexpected(s.error());
+  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
+  if (!options) return std::unexpected(options.error());
+  options->stop = run.options.stop;
+  if (run.options.algorithm != Algorithm::kPaper &&
+      !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
+    run.report.boundaryWeight = options->cost.boundaryWeight;
+  takeLabels(quantised, *options, run);
+  if (reduces) {
+    if (Status s = reduce(quantised, *options, run); !s) return std::unexpected(s.error());
+    if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
+  }
+  const bool hasSeries = !seriesOf(quantised.mesh.fields).empty();
+  options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
   Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
   if (!history) return history;
+  if (run.reduced) run.reduced->fusions.quadrics = {};
   const Result<std::size_t> predicted =
       predictInTime(*history, run.options.stop, run.stages.progress(kFusingShare, 1));
   if (!predicted) return std::unexpected(predicted.error());
@@ -224,6 +271,7 @@ Result<LevelErrors> measure(FusionHistory& history, Run& run) {
   options.countsRounding = true;
   if (movesCoarse(run.options)) options.replay = &run.replay;
   options.labels = run.labelFields;
+  if (run.reduced) options.before = &run.reduced->samples;
   options.base = baseRuleOf(run.options);
   options.threads = run.options.fusion.threads;
   options.progress = run.stages.progress();
@@ -277,6 +325,7 @@ Result<MadeLog> encode(FusionHistory& history, const QuantisedMesh& quantised, L
   options.opening = run.opening;
   options.units = run.units;
   options.labels = run.labels;
+  if (run.reduced) options.original = {run.reduced->tetrahedra, run.reduced->vertices};
   options.valueCodec = run.options.valueCodec;
   if (run.options.keep.any())
     options.closing = [&](const FinestMesh& finest, const ClosingSink& give) -> Status {
@@ -338,6 +387,10 @@ Status checkOptions(const PipelineOptions& options) {
     return badValue(
         "`algorithm` paper knows no `regions`, `parts`, `envelopeTolerance`, `fieldWeights` or "
         "`labelWeights`; leave them out");
+  if (options.finest && (isPaper || options.keep.any()))
+    return badValue(
+        "`finest` reduces the mesh before, which `algorithm` paper does not, and no input is kept "
+        "of it (`keepOrder`, `lossless`); leave one of them out");
   for (const auto& [weights, option] : {std::pair(&options.fieldWeights, "`fieldWeights`"),
                                         std::pair(&options.labelWeights, "`labelWeights`")})
     for (const auto& [name, weight] : *weights)

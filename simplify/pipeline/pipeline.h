@@ -29,8 +29,9 @@ enum class Algorithm : std::uint8_t {
   kPaper,  ///< the paper's own loop, tetrahedra only
 };
 
-/// In the order of doing. kMeasure and kKeep are left out where nothing is measured or kept.
-enum class Stage : std::uint8_t { kClean, kQuantise, kSimplify, kMeasure, kEncode, kKeep };
+/// In the order of doing, but for kReduce, which is before kSimplify. It, kMeasure and kKeep are
+/// left out where nothing is reduced, measured or kept.
+enum class Stage : std::uint8_t { kClean, kQuantise, kSimplify, kMeasure, kEncode, kKeep, kReduce };
 
 struct PipelineOptions {
   std::string source{};  ///< the input's file name, for the manifest; may be empty
@@ -49,6 +50,9 @@ struct PipelineOptions {
   /// Only its effort, bounds and rule for the base mesh count. Without it nothing is measured, and
   /// no rule chooses the base mesh.
   std::optional<MeasureOptions> measure{std::in_place};
+  /// The mesh is reduced to so many cells before, in blocks (BLOCKS.md). They are the log's last
+  /// level. A mesh of no more cells stays.
+  std::optional<std::size_t> finest{};
   /// A large mesh is simplified in parts, on all cores. Without: in one piece.
   std::optional<PartsOptions> parts{};
   CodecId valueCodec = CodecId::kLifted;

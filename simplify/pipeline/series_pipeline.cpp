@@ -147,6 +147,10 @@ Result<PipelineOutput> simplifySeries(TetMesh&& sample, std::size_t steps,
     return fail(ErrorCode::kBadValue,
                 "`lossless` keeps the values of all instants in memory, which are too many; leave "
                 "it out, or choose fewer with `time`");
+  if (options.finest)
+    return fail(ErrorCode::kBadValue,
+                "`finest` takes all instants at once, which are too many for the memory; choose "
+                "fewer with `time`, or leave it out");
   PipelineOptions ofSample = options;
   if (std::exchange(ofSample.timeStatistics, false))
     if (Status added = addStatistics(steps, read, options.stop, sample.fields); !added)

@@ -91,6 +91,11 @@ std::string fieldTable(const OrderedJson& fields, const OrderedJson& error) {
   return columns(rows) + moreFields(fields.size(), "'qtet info --all' shows them");
 }
 
+/// " of 1,000,000,000", where the mesh was reduced before.
+std::string reducedText(const OrderedJson& tetrahedra) {
+  return tetrahedra.contains("original") ? " of " + grouped(tetrahedra["original"]) : "";
+}
+
 }  // namespace
 
 OrderedJson madeLogReport(const SimplifyRequest& request, const ReadReport& read,
@@ -134,6 +139,7 @@ OrderedJson madeLogReport(const SimplifyRequest& request, const ReadReport& read
   for (const std::string& warning : withOptionNames(from.warnings))
     report["warnings"].push_back(warning);
   if (from.paper) report["paper"] = toJson(*from.paper);
+  if (manifest.original) report["tetrahedra"]["original"] = manifest.original->tetrahedra;
   return report;
 }
 
@@ -142,9 +148,9 @@ void printMadeLog(const OrderedJson& report, std::ostream& out) {
   const std::size_t fields = bits["fields"].size();
   out << std::fixed << std::setprecision(1) << printable(report["output"].get<std::string>())
       << ": " << counted(report["tetrahedra"]["full"], "tetrahedron", "tetrahedra")
-      << ", of which the base mesh keeps " << grouped(report["tetrahedra"]["base"]) << " ("
-      << report["percentRemoved"].get<double>() << " % removed), refined in "
-      << counted(report["levels"], "level", "levels") << "\n"
+      << reducedText(report["tetrahedra"]) << ", of which the base mesh keeps "
+      << grouped(report["tetrahedra"]["base"]) << " (" << report["percentRemoved"].get<double>()
+      << " % removed), refined in " << counted(report["levels"], "level", "levels") << "\n"
       << grouped(report["bytes"]) << " bytes, " << std::setprecision(2)
       << bits["total"].get<double>() << " bits a tetrahedron: connectivity "
       << bits["connectivity"].get<double>() << ", positions " << bits["positions"].get<double>();

@@ -22,10 +22,13 @@ struct StageName {
   const char* name;
   const char* doing;
 };
-const std::map<Stage, StageName> kStages{
-    {Stage::kClean, {"clean", "cleaning"}},          {Stage::kQuantise, {"quantise", "quantising"}},
-    {Stage::kSimplify, {"simplify", "simplifying"}}, {Stage::kMeasure, {"measure", "measuring"}},
-    {Stage::kEncode, {"encode", "encoding"}},        {Stage::kKeep, {"keep", nullptr}}};
+const std::map<Stage, StageName> kStages{{Stage::kClean, {"clean", "cleaning"}},
+                                         {Stage::kQuantise, {"quantise", "quantising"}},
+                                         {Stage::kReduce, {"reduce", "reducing"}},
+                                         {Stage::kSimplify, {"simplify", "simplifying"}},
+                                         {Stage::kMeasure, {"measure", "measuring"}},
+                                         {Stage::kEncode, {"encode", "encoding"}},
+                                         {Stage::kKeep, {"keep", nullptr}}};
 
 /// Wall time of each stage, by name, in the order of doing.
 class Stopwatch {

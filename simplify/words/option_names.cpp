@@ -18,6 +18,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`fields`", "--fields"},
     {"`fieldWeights`", "--field-weight"},
     {"`labelWeights`", "--label-weight"},
+    {"`finest`", "--finest"},
     {"`format`", "--format"},
     {"`keepOrder`", "--keep-order"},
     {"`lossless`", "--lossless"},

@@ -159,6 +159,31 @@ Bytes withUnits(const Bytes& log, const std::string& unit) {
   return parts.together();
 }
 
+/// Reduced from an original of that size.
+Bytes withOriginal(const Bytes& log, const OriginalSize& original) {
+  testing::TakenApart parts = testing::takeApart(log);
+  Manifest m = manifestOf(parts.index).value();
+  m.original = original;
+  parts.index.manifest = manifestBlock(m).value();
+  return parts.together();
+}
+
+constexpr OriginalSize kSomeOriginal{5'000'000'000, 900'000'000};
+
+/// With half a cell more.
+Bytes withHalfACell(const Bytes& log) {
+  testing::TakenApart parts = testing::takeApart(withOriginal(log, kSomeOriginal));
+  const auto bytesOf = [](double number) {
+    std::array<std::uint8_t, sizeof number> out{};
+    std::memcpy(out.data(), &number, sizeof number);
+    return out;
+  };
+  const auto cells = static_cast<double>(kSomeOriginal.tetrahedra);
+  const auto at = std::ranges::search(parts.index.manifest, bytesOf(cells));
+  std::ranges::copy(bytesOf(cells + 0.5), at.begin());
+  return parts.together();
+}
+
 /// With the field as a label that has names of its values.
 Bytes withLabel(const Bytes& log, const std::string& field, const LabelNames& names) {
   testing::TakenApart parts = testing::takeApart(log);
@@ -242,6 +267,12 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
   write(folder / "bad-value.manifest-opening-cut.qtet",
         withFirstView(good, kSomeFocus, Opening{1, 4}));
   write(folder / "bad-value.manifest-empty-unit.qtet", withUnits(good, ""));
+  const ManifestLevel last = manifestOf(testing::takeApart(good).index).value().levels.back();
+  write(folder / "bad-value.manifest-original-of-few-cells.qtet",
+        withOriginal(good, {last.tetrahedra - 1u, last.vertices}));
+  write(folder / "bad-value.manifest-original-of-few-vertices.qtet",
+        withOriginal(good, {last.tetrahedra, last.vertices - 1u}));
+  write(folder / "bad-value.manifest-original-of-half-a-cell.qtet", withHalfACell(good));
   write(folder / "bad-value.manifest-unit-length.qtet", withUnits(good, std::string(65, 'K')));
   // The figures of all levels in the bytes of none.
   const Manifest m = manifestOf(testing::takeApart(good).index).value();
@@ -270,7 +301,7 @@ void writeBadHeads(const std::filesystem::path& folder, const Bytes& good) {
     return parts.together();
   };
   write(folder / "bad-value.manifest-base-without-error.qtet", errors(1, 0));
-  write(folder / "bad-value.manifest-unknown-flag.qtet", errors(33, 1));
+  write(folder / "bad-value.manifest-unknown-flag.qtet", errors(65, 1));
 }
 
 /// Breaks the part of later instants, and what the table says of it.
@@ -447,6 +478,7 @@ int main(int argc, char** argv) {
               qtet::withFirstView(solid, qtet::kSomeFocus, qtet::kSomeOpening));
   qtet::write(folder / "valid" / "some-errors.qtet", qtet::withSomeErrors(solid));
   qtet::write(folder / "valid" / "units.qtet", qtet::withUnits(solid, "kg/m^3"));
+  qtet::write(folder / "valid" / "reduced.qtet", qtet::withOriginal(solid, qtet::kSomeOriginal));
   qtet::write(folder / "valid" / "tunnel.qtet",
               qtet::logOf(gridMesh(3, 2, [](int i, int j, int) { return i != 1 || j != 1; }), 300));
   qtet::write(

@@ -41,7 +41,7 @@ _ALGORITHMS = {"qtet": 0, "paper": 1}
 _PLACEMENTS = {"auto": 0, "optimal": 1, "vertex": 2}
 _MEASURES = {"none": 0, "levels": 1, "all": 2}
 _CODECS = {"lifted": 0, "draco": 1, "adaptive": 2}
-_STAGES = ("clean", "quantise", "simplify", "measure", "encode", "keep")
+_STAGES = ("clean", "quantise", "simplify", "measure", "encode", "keep", "reduce")
 _MAX_COMPONENTS = 16
 _INTEGERS = ("base_cells", "position_bits", "field_bits", "threads")
 # A number, and what it is in.
@@ -123,7 +123,7 @@ class _Options(ctypes.Structure):
         ("labelWeights", _address),
         ("errors", _address),
         ("errorCount", _u32),
-        ("errorReserved", _u32),
+        ("finest", _u32),
     ]
 
 
@@ -408,6 +408,7 @@ def simplify(
     measure: str = "levels",
     value_codec: str = "lifted",
     exact_coarse: bool = False,
+    finest: int | None = None,
     keep_order: bool = False,
     lossless: bool = False,
     original_ids: bool = False,
@@ -445,6 +446,8 @@ def simplify(
     position_bits, field_bits   of the lattice an axis, 16; of a float field's values, 12
     algorithm, placement, measure, value_codec   the words of `qtet simplify --help`
     exact_coarse          coarse levels keep the best values of their fields, for more bytes
+    finest                the last level has so many tetrahedra at most, to which the mesh is
+                          reduced before (experimental)
     keep_order, lossless  keep the input's numbering; its own numbers
     original_ids          keep the cell field OriginalCellId (int32) for the last level alone
     threads               the log does not depend on it
@@ -516,6 +519,7 @@ def simplify(
     options.originalIds = bool(original_ids)
     options.timeStatistics = bool(time_statistics)
     options.baseCells = int(base_cells or 0)
+    options.finest = int(finest or 0)
     options.threads = int(threads)
     places = _Places(c)
     try:

@@ -164,6 +164,30 @@ TEST(LogManifest, itsLabelsComeBackWithTheNamesOfTheirValues) {
   EXPECT_EQ(labelNamesOf(manifestOf(indexOf(m)).value(), 0), nullptr) << "it has components";
 }
 
+TEST(LogManifest, itsOriginalHasAtLeastTheCellsOfTheLastLevel) {
+  Manifest m = sample();
+  EXPECT_EQ(manifestToJson(m).find("original"), std::string::npos);
+  const ManifestLevel last = m.levels.back();
+  for (const OriginalSize& size :
+       {OriginalSize{5'000'000'000, 900'000'000}, OriginalSize{last.tetrahedra, last.vertices},
+        OriginalSize{std::uint64_t{1} << 53, std::uint64_t{1} << 53}}) {
+    m.original = size;
+    const Result<Manifest> read = manifestOf(indexOf(m));
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->original, size);
+  }
+  m.original = {5'000'000'000, 900'000'000};
+  EXPECT_NE(manifestToJson(m).find(R"("original":{"tetrahedra":5000000000,"vertices":900000000})"),
+            std::string::npos)
+      << manifestToJson(m);
+  m.original = {last.tetrahedra - 1u, last.vertices};
+  expectRefused(indexOf(m), ErrorCode::kBadValue, "than its original");
+  m.original = {last.tetrahedra, last.vertices - 1u};
+  expectRefused(indexOf(m), ErrorCode::kBadValue, "than its original");
+  m.original = {(std::uint64_t{1} << 53) + 2, last.vertices};
+  expectRefused(indexOf(m), ErrorCode::kBadValue, "no whole number");
+}
+
 TEST(LogManifest, aFocusIsABox) {
   Manifest m = sample(false);
   m.focus = {0, 1, 2, 1, 0x8000, 0xffff};

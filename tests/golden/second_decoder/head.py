@@ -102,7 +102,7 @@ class Log:
         self.step, *self.origin = reader.unpack("4d")
         self.infos = [self.read_info(reader, shape) for shape in self.shapes]
         flags = self.flags = reader.u8()
-        refuse_unless(flags < 32, "flags of the manifest")
+        refuse_unless(flags < 64, "flags of the manifest")
         six = "6B" if self.misreading == "a focus has six bytes" else "6H"
         self.focus = reader.unpack(six) if flags & 2 else None
         if self.focus:
@@ -123,7 +123,15 @@ class Log:
         if flags & 16:
             self.labels = dict(self.read_label(reader) for _ in range(reader.varint()))
             refuse_unless(list(self.labels) == sorted(self.labels), "labels in another order")
+        self.original = None
+        if flags & 32:
+            two = "2Q" if self.misreading == "counts of the original are integers" else "2d"
+            self.original = reader.unpack(two)
+            refuse_unless(all(n == int(n) and 0 <= n <= 2**53 for n in self.original), "a count")
         self.columns = self.columns_of(reader, flags, len(self.shapes))
+        if self.original:
+            last = [column[-1] for column in self.columns[:2]]
+            refuse_unless(all(n >= m for n, m in zip(self.original, last)), "a small original")
 
     def read_label(self, reader):
         field, count = reader.text(), reader.varint()

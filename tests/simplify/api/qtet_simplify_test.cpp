@@ -450,7 +450,7 @@ TEST(QtetSimplify, noExceptionAndNoCrashWhateverIsGiven) {
   refusedBound(QTET_BAD_VALUE, "above 0", kZero);
   refusedBound(QTET_NOT_FOUND, "'?'", kOfNone);
   refusedBound(QTET_BAD_VALUE, "no unit that is known", kInMetres);
-  refused(QTET_BAD_VALUE, "errorReserved", [](Arrays&, O& o) { o.errorReserved = 1; });
+  refused(QTET_BAD_VALUE, "finest", [](Arrays&, O& o) { o.finest = 1, o.lossless = 1; });
   refused(QTET_NOT_FOUND, "'?'", [](Arrays&, O& o) { o.regions = "?"; });
 }
 

@@ -75,7 +75,7 @@ class PartAndWhole : public ::testing::Test {
     other.state.keep(others);
     const std::size_t before = other.state.mesh().fusions();
     const PartLevels done = FusionLoop(other.state, other.frame, options_, other.workers)
-                                .runPart({.key = 1e6f, .leastShare = 0}, cut.isSeam);
+                                .runPart({.key = 1e6f, .leastShare = 0}, {.isSeam = cut.isSeam});
     ASSERT_GT(alone.history.fusions.size(), 10u);
     EXPECT_EQ(alone.done.levels.size(), done.levels.size());
     const FusionHistory all =

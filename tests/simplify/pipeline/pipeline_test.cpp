@@ -51,6 +51,56 @@ TEST(Pipeline, theReportIsOfTheBytes) {
                                  Stage::kEncode, Stage::kKeep}));
 }
 
+TEST(Pipeline, aReducedMeshHasTheErrorsOfTheSameFusionsInOneGo) {
+  PipelineOptions options = usual();
+  options.exactCoarse = true;
+  options.fusion.baseCells = 1500;
+  const Result<PipelineOutput> whole = simplifyToLog(testing::boxWithFields(), options);
+  options.fusion.baseCells = 600;
+  options.finest = 1500;
+  const Result<PipelineOutput> reduced = simplifyToLog(testing::boxWithFields(), options);
+  ASSERT_TRUE(whole && reduced);
+  const Manifest& manifest = reduced->report.manifest;
+  EXPECT_EQ(manifest.original, (OriginalSize{kBoxCells, 729}));
+  EXPECT_FALSE(whole->report.manifest.original);
+  const ManifestLevel &last = manifest.levels.back(), &base = whole->report.manifest.levels.front();
+  EXPECT_EQ(last.tetrahedra, base.tetrahedra);
+  EXPECT_EQ(last.vertices, base.vertices);
+  ASSERT_TRUE(last.error && base.error);
+  EXPECT_GT(last.error->fields[0].rms, 0);
+  for (std::size_t f = 0; f < last.error->fields.size(); ++f) {
+    EXPECT_NEAR(last.error->fields[f].rms, base.error->fields[f].rms,
+                0.01 * base.error->fields[f].rms)
+        << f;
+    EXPECT_NEAR(last.error->fields[f].max, base.error->fields[f].max,
+                0.01 * base.error->fields[f].max)
+        << f;
+  }
+  EXPECT_NEAR(last.error->toLevel.mean, base.error->toLevel.mean, 0.02 * base.error->toLevel.mean);
+  EXPECT_GE(last.error->boundaryDistance(), base.error->boundaryDistance());
+  EXPECT_NEAR(last.error->volumeLost, base.error->volumeLost, 1e-3);
+  EXPECT_GT(manifest.levels.front().error->fields[0].rms, last.error->fields[0].rms);
+  EXPECT_EQ(reduced->report.seconds[2].first, Stage::kReduce);
+  EXPECT_EQ(reduced->report.seconds[3].first, Stage::kSimplify);
+}
+
+TEST(Pipeline, aMeshOfNoMoreCellsThanTheFinestStaysAsItIs) {
+  PipelineOptions options = usual();
+  const Result<PipelineOutput> whole = simplifyToLog(testing::boxWithFields(), options);
+  options.finest = kBoxCells;
+  const Result<PipelineOutput> same = simplifyToLog(testing::boxWithFields(), options);
+  ASSERT_TRUE(whole && same);
+  EXPECT_EQ(whole->log.bytes().value(), same->log.bytes().value());
+  options.finest = kBoxCells - 1;
+  const Result<PipelineOutput> less = simplifyToLog(testing::boxWithFields(), options);
+  ASSERT_TRUE(less);
+  EXPECT_TRUE(less->report.manifest.original);
+  options.keep.exact = true;
+  const Result<PipelineOutput> none = simplifyToLog(testing::boxWithFields(), options);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kBadValue);
+}
+
 TEST(Pipeline, progressBeginsEachStageWithZeroAndGoesOnToOne) {
   std::vector<std::pair<Stage, double>> told;
   PipelineOptions options = usual();

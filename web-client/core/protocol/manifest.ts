@@ -51,10 +51,17 @@ export interface Manifest {
   units?: ReadonlyMap<string, string>;
   /** The names of a label's values, by a field's name without @TIME. Absent without any label. */
   labels?: ReadonlyMap<string, ReadonlyMap<number, string>>;
+  /** The mesh that the last level was reduced from before the log was made. Absent: it is whole. */
+  original?: OriginalSize;
   fields: FieldInfo[];
   levels: LevelInfo[];
   /** How many fields are to come (addLater). */
   later: number;
+}
+
+export interface OriginalSize {
+  tetrahedra: number;
+  vertices: number;
 }
 
 export interface Opening {
@@ -91,6 +98,7 @@ const kFocusFollows = 2;
 const kOpeningFollows = 4;
 const kUnitsFollow = 8;
 const kLabelsFollow = 16;
+const kOriginalFollows = 32;
 const kMaxUnitBytes = 64;
 const kMaxLabelNames = 4096;
 const kNoCut = 3;
@@ -160,12 +168,15 @@ export function readManifest(
   const opening = flags & kOpeningFollows ? readOpening(reader, fields.length) : undefined;
   const units = flags & kUnitsFollow ? readUnits(reader) : undefined;
   const labels = flags & kLabelsFollow ? readLabels(reader) : undefined;
+  const original = flags & kOriginalFollows ? readOriginal(reader) : undefined;
   const levels = readLevels(reader.rest(), errors, fields.length, levelColumns);
+  checkOriginal(original, levels.at(-1)!);
   const manifest = {
     source,
     lattice,
     ...(units && {units}),
     ...(labels && {labels}),
+    ...(original && {original}),
     ...(focus && {focus}),
     ...(opening && {opening}),
   };
@@ -240,7 +251,7 @@ function readLevels(
 }
 
 function knownErrorsOf(flags: number): KnownErrors {
-  if (flags >= 2 * kLabelsFollow) throw damaged('has flags that this viewer does not know');
+  if (flags >= 2 * kOriginalFollows) throw damaged('has flags that this viewer does not know');
   return flags & kErrorsFollow ? 'some' : 'none';
 }
 
@@ -249,6 +260,18 @@ function readOpening(reader: ManifestReader, fields: number): Opening {
   if (field >= fields || cut > kNoCut)
     throw damaged('opens with a field or an axis that is not there');
   return {field, cut: cut === kNoCut ? null : cut};
+}
+
+function readOriginal(reader: ManifestReader): OriginalSize {
+  const [tetrahedra, vertices] = reader.numbers(2) as [number, number];
+  if (![tetrahedra, vertices].every((count) => Number.isInteger(count) && count >= 0))
+    throw damaged('has a count of the original that is no whole number');
+  return {tetrahedra, vertices};
+}
+
+function checkOriginal(original: OriginalSize | undefined, last: LevelInfo): void {
+  if (original && (original.tetrahedra < last.tetrahedra || original.vertices < last.vertices))
+    throw damaged('has a last level of more cells or vertices than its original');
 }
 
 function readUnits(reader: ManifestReader): Map<string, string> {

@@ -143,7 +143,8 @@ export class ProgressPanel {
       `scaleX(${bytesNeeded > 0 ? bytes / bytesNeeded : 0})`;
     setText(this.part('.percent'), `${percent}\u202f%`);
     showOfTotal(this.part('.bytes'), formatBytes(bytes), formatBytes(bytesNeeded));
-    showOfTotal(this.part('.cells'), formatCount(tetrahedra), formatCount(total.tetrahedra));
+    const all = this.manifest?.original?.tetrahedra ?? total.tetrahedra;
+    showOfTotal(this.part('.cells'), formatCount(tetrahedra), formatCount(all));
     const error = this.errorLeft();
     const isMeasured = this.manifest?.levels[0]?.error !== undefined;
     this.part('.error-row').hidden = !isMeasured;
@@ -162,7 +163,8 @@ export class ProgressPanel {
     const {fields} = this.followed;
     const {levels} = this.manifest!;
     const level = this.statistics!.level;
-    const measured = level < levels.length - 1 ? errorsOfLevel(levels, level) : undefined;
+    const isWhole = level === levels.length - 1 && !this.manifest!.original;
+    const measured = isWhole ? undefined : errorsOfLevel(levels, level);
     const within = (field: number): string[] => {
       const info = all[field];
       // while another mesh comes, the numbers may be those of the mesh before

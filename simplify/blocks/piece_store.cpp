@@ -1,0 +1,29 @@
+#include "simplify/blocks/piece_store.h"
+
+#include <cassert>
+#include <utility>
+
+namespace qtet {
+
+Status PieceStore::put(std::uint32_t to, std::uint32_t from, const MeshPiece& piece) {
+  const Bytes bytes = toBytes(piece);
+  const std::scoped_lock lock(mutex_);
+  assert(!pieces_.contains({to, from}));
+  pieces_[{to, from}] = {spool_->size(), bytes.size()};
+  return spool_->append(bytes);
+}
+
+Result<std::vector<MeshPiece>> PieceStore::get(std::uint32_t to) const {
+  std::vector<MeshPiece> out;
+  const std::scoped_lock lock(mutex_);
+  for (auto at = pieces_.lower_bound({to, 0}); at != pieces_.end() && at->first.first == to; ++at) {
+    Bytes bytes(at->second.size);
+    if (Status s = spool_->read(at->second.at, bytes); !s) return std::unexpected(s.error());
+    Result<MeshPiece> piece = pieceFrom(bytes);
+    if (!piece) return std::unexpected(piece.error());
+    out.push_back(std::move(*piece));
+  }
+  return out;
+}
+
+}  // namespace qtet
