@@ -111,7 +111,9 @@ class BlockRun {
     for (VertexId v = 0; v < own_.isSeam().size(); ++v)
       if (own_.isSeam()[v]) kept.push_back(v);
     state.keep(kept);
-    const FusionFrame fusionFrame(own_.mesh(), state, frame_.options);
+    const auto firstSeam =
+        static_cast<CellId>(own_.mesh().tetrahedra.size() + own_.triangles());
+    const FusionFrame fusionFrame(own_.mesh(), state, frame_.options, firstSeam);
     Workers alone(1, frame_.options.stop);
     if (isSample_) findCounted();
     own_.mesh() = {};
@@ -159,14 +161,11 @@ class BlockRun {
  private:
   [[nodiscard]] bool isCounted(CellId cell) const { return cell < counts_.size() && counts_[cell]; }
 
-  /// Cells count that have no vertex of a seam, nor a neighbour of one.
+  /// Cells count that have no vertex of a seam. More rings would leave out the thin cells of a
+  /// boundary layer, through which planes cut most.
   void findCounted() {
-    std::vector<std::uint8_t> isNear = own_.isSeam();
     for (const Tetrahedron& cell : own_.mesh().tetrahedra)
-      if (std::ranges::any_of(cell, [&](VertexId v) { return own_.isSeam()[v]; }))
-        for (const VertexId v : cell) isNear[v] = 1;
-    for (const Tetrahedron& cell : own_.mesh().tetrahedra)
-      counts_.push_back(std::ranges::none_of(cell, [&](VertexId v) { return isNear[v]; }));
+      counts_.push_back(std::ranges::none_of(cell, [&](VertexId v) { return own_.isSeam()[v]; }));
   }
 
   FusionState made() {

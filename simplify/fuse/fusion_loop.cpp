@@ -31,13 +31,14 @@ constexpr double kTurnCosine = 0.3;
 }  // namespace
 
 FusionFrame::FusionFrame(const LatticeMesh& mesh, const FusionState& whole,
-                         const FusionOptions& options)
+                         const FusionOptions& options, CellId firstSeam)
     : displacements(sampledDisplacements(mesh, options.checkedInstants)) {
   assert(whole.mesh().fusions() == 0 && whole.mesh().firstGhost() == mesh.tetrahedra.size());
   const double tolerance = options.envelopeTolerance.value_or(kEnvelopeTolerance);
   if (tolerance > 0)
     allowed =
-        std::make_unique<AllowedSpace>(whole.mesh(), tolerance * whole.cost().frame().diagonal);
+        std::make_unique<AllowedSpace>(whole.mesh(), tolerance * whole.cost().frame().diagonal,
+                                       firstSeam);
 }
 
 double progressOf(std::size_t cells, std::size_t live, std::size_t target) {

@@ -25,8 +25,10 @@ namespace qtet {
 /// All that is of the whole mesh beside the cost's frame, made once. So a part's fusions are judged
 /// as those of the whole.
 struct FusionFrame {
-  /// REQUIRES: `whole` is that of `mesh` before the first fusion.
-  FusionFrame(const LatticeMesh& mesh, const FusionState& whole, const FusionOptions& options);
+  /// REQUIRES: `whole` is that of `mesh` before the first fusion. Ghosts from `firstSeam` on are
+  /// seams of a block.
+  FusionFrame(const LatticeMesh& mesh, const FusionState& whole, const FusionOptions& options,
+              CellId firstSeam = OriginalSurface::kNoSeam);
 
   /// Where fusions may go outside; null where none may.
   std::unique_ptr<const AllowedSpace> allowed;

@@ -27,8 +27,9 @@ bool areCubesWorthIt(const TriangleTree& tree, std::size_t triangles, double tol
 
 }  // namespace
 
-AllowedSpace::AllowedSpace(const FusionMesh& mesh, double tolerance)
-    : surface_(mesh), tolerances_(localTolerances(surface_.tree(), tolerance)) {
+AllowedSpace::AllowedSpace(const FusionMesh& mesh, double tolerance, CellId firstSeam)
+    : surface_(mesh, firstSeam),
+      tolerances_(localTolerances(surface_.tree(), tolerance, surface_.isSeam())) {
   assert(tolerance > 0 && tolerances_.own.size() == surface_.tree().builtOver());
   assert(tolerances_.least >= 0 && tolerances_.most <= tolerance);
   if (!areCubesWorthIt(surface_.tree(), tolerances_.own.size(), tolerance)) return;

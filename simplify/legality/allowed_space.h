@@ -12,8 +12,10 @@ namespace qtet {
 class AllowedSpace {
  public:
   using Corners = OriginalSurface::Corners;
-  /// The solid of the mesh as it is now, and `tolerance` lattice steps more at most.
-  AllowedSpace(const FusionMesh& mesh, double tolerance);
+  /// The solid of the mesh as it is now, and `tolerance` lattice steps more at most, but none at
+  /// seams (OriginalSurface).
+  AllowedSpace(const FusionMesh& mesh, double tolerance,
+               CellId firstSeam = OriginalSurface::kNoSeam);
 
   /// All of the tetrahedron is allowed. False also where that was not proved within a bounded
   /// number of steps. `known`: of this space alone. REQUIRES: corners in [0, 2^30)^3.

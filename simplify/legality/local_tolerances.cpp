@@ -54,6 +54,7 @@ class Lookout {
     for (const Vector3& c : corners)
       look(triangle, kFromCorner * middle + (1 - kFromCorner) * c, along);
   }
+  void keep(std::uint32_t triangle) { out_[triangle] = 0; }
   [[nodiscard]] std::vector<float> take() { return std::move(out_); }
 
  private:
@@ -79,10 +80,17 @@ class Lookout {
 
 }  // namespace
 
-std::vector<float> localTolerances(const TriangleTree& tree, double most) {
-  assert(most > 0);
+std::vector<float> localTolerances(const TriangleTree& tree, double most,
+                                   std::span<const std::uint8_t> isSeam) {
+  assert(most > 0 && (isSeam.empty() || isSeam.size() == tree.builtOver()));
   Lookout lookout(tree, most);
-  for (std::uint32_t t = 0; t < tree.builtOver(); ++t) lookout.lookFrom(t);
+  for (std::uint32_t t = 0; t < tree.builtOver(); ++t) {
+    if (!isSeam.empty() && isSeam[t]) {
+      lookout.keep(t);
+    } else {
+      lookout.lookFrom(t);
+    }
+  }
   return lookout.take();
 }
 

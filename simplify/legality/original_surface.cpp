@@ -76,9 +76,9 @@ OriginalSurface::Tolerances::Tolerances(std::vector<float> each) : own(std::move
   assert(least >= 0);
 }
 
-OriginalSurface::OriginalSurface(const FusionMesh& mesh) {
+OriginalSurface::OriginalSurface(const FusionMesh& mesh, CellId firstSeam) {
   std::vector<VertexId> vertices;
-  collect(mesh, vertices);
+  collect(mesh, firstSeam, vertices);
   findNeighbours();
   assert(vertices.size() == points_.size() && neighbours_.size() == triangles_.size());
   std::vector<std::uint32_t> ids(triangles_.size());
@@ -90,7 +90,8 @@ OriginalSurface::OriginalSurface(const FusionMesh& mesh) {
 }
 
 // Each triangle is its first vertex's. `vertices`: of the mesh, by point.
-void OriginalSurface::collect(const FusionMesh& mesh, std::vector<VertexId>& vertices) {
+void OriginalSurface::collect(const FusionMesh& mesh, CellId firstSeam,
+                              std::vector<VertexId>& vertices) {
   std::vector<VertexId> own(mesh.vertexSlots(), kGhost);
   const auto numberOf = [&](VertexId v) {
     if (own[v] == kGhost) {
@@ -103,8 +104,9 @@ void OriginalSurface::collect(const FusionMesh& mesh, std::vector<VertexId>& ver
   for (VertexId v = 0; v < mesh.vertexSlots(); ++v)
     for (const CellId c : mesh.boundaryStar(v)) {
       const auto& t = mesh.cell(c);
-      if (v == std::min({t[0], t[1], t[2]}))
-        triangles_.push_back({numberOf(t[0]), numberOf(t[1]), numberOf(t[2]), kGhost});
+      if (v != std::min({t[0], t[1], t[2]})) continue;
+      triangles_.push_back({numberOf(t[0]), numberOf(t[1]), numberOf(t[2]), kGhost});
+      if (firstSeam != kNoSeam) isSeam_.push_back(c >= firstSeam);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "simplify/legality/distance_cells.h"
@@ -27,8 +28,9 @@ class OriginalSurface {
   /// long. A piece that needs more is too large for the tolerance.
   static constexpr int kMaxCuts = 1 << 6;
 
-  /// The surface of the mesh as it is now.
-  explicit OriginalSurface(const FusionMesh& mesh);
+  /// The surface of the mesh as it is now. Ghosts from `firstSeam` on are seams, not a boundary.
+  explicit OriginalSurface(const FusionMesh& mesh, CellId firstSeam = kNoSeam);
+  static constexpr CellId kNoSeam = ~CellId{0};
 
   /// By triangle, how far the solid may grow there, in lattice steps.
   struct Tolerances {
@@ -49,11 +51,13 @@ class OriginalSurface {
   /// where the surface is not a manifold at the nearest point.
   [[nodiscard]] bool isInside(const Vector3& p, const NearestTriangle& nearest) const;
   [[nodiscard]] const TriangleTree& tree() const { return *tree_; }
+  /// By triangle of the tree; empty without seams.
+  [[nodiscard]] std::span<const std::uint8_t> isSeam() const { return isSeam_; }
 
  private:
   static constexpr std::uint32_t kNobody = ~std::uint32_t{0};
 
-  void collect(const FusionMesh& mesh, std::vector<VertexId>& vertices);
+  void collect(const FusionMesh& mesh, CellId firstSeam, std::vector<VertexId>& vertices);
   void findNeighbours();
   void findVertexNormals();
   [[nodiscard]] SignedDistance distanceOf(const LatticeCube& cube) const;
@@ -62,6 +66,7 @@ class OriginalSurface {
 
   std::vector<LatticePoint> points_;
   std::vector<TriangleTree::Cell> triangles_;  // three of points_, and the ghost
+  std::vector<std::uint8_t> isSeam_;           // by triangle, or empty
   // by triangle, across the edge from corner i to the next; kNobody where other than two triangles
   // meet
   std::vector<std::array<std::uint32_t, 3>> neighbours_;
