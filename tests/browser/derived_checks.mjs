@@ -2,6 +2,8 @@
 
 import assert from 'node:assert/strict';
 import {kSmallDesktop} from './browser.mjs';
+import {serveMesh} from './programs.mjs';
+import {linearBox} from './volume_checks.mjs';
 
 /** Longer than changes that are one step lie apart. */
 const kStepMs = 400;
@@ -53,4 +55,53 @@ async function showsOwnFields({server, browser}) {
   return `beside ${names.length} fields: one that is typed, one that is wrong, two of an address`;
 }
 
-export const derivedChecks = {showsOwnFields};
+/** Gradients have the values of hand, at each place, whichever way they are asked for. */
+async function showsGradients(context) {
+  const {server, browser} = context;
+  const U = (x, y, z) => [2 * z - 3 * y, 3 * x - z, y - 2 * x];
+  const Height = (x, y, z) => 4 * z + x * 1.5;
+  await serveMesh(
+    context,
+    'rotation',
+    linearBox(6, {U, Height}, () => true),
+  );
+  const viewer = await browser.openSettled(
+    `${server.url}?mesh=rotation&field=U.Q&points=0.3,0,1.1 0,1,2`,
+    kSmallDesktop,
+  );
+  const {page} = viewer;
+  const values = () =>
+    page.evaluate(() =>
+      [...window.qtetViewer.shadowRoot.querySelectorAll('.pin button:first-child')].map(
+        ({textContent}) => Number(textContent.replace('\u2212', '-')),
+      ),
+    );
+  const areNear = async (name, right) => {
+    await page.evaluate((field) => window.qtetViewer.setAttribute('field', field), name);
+    await viewer.settle();
+    for (const value of await values())
+      assert.ok(Math.abs(value - right) < 0.01 * (1 + Math.abs(right)), `${name}: ${value}`);
+  };
+  assert.equal(await viewer.text('.legend-name'), 'U, Q criterion');
+  await areNear('U.Q', 14);
+  await areNear('U.vorticity', 2 * Math.sqrt(14));
+  await areNear('U.div', 0);
+  const offered = await page.locator('qtet-viewer select[name=field] option').allInnerTexts();
+  for (const title of ['U, divergence', 'U, vorticity', 'U, Q criterion'])
+    assert.ok(offered.includes(title), `${title} is not in ${offered.join()}`);
+  await page.locator('qtet-viewer summary', {hasText: 'Own fields'}).click();
+  const line = page.getByLabel('Definition of an own field').first();
+  await line.fill('steep = mag(grad(Height)) + curl(U).y');
+  await line.press('Enter');
+  await page.waitForFunction(() => window.qtetViewer.getAttribute('field') === 'steep');
+  await areNear('steep', Math.hypot(4, 1.5) + 4);
+  await viewer.screenshot('derived-gradient');
+  assert.match(await page.locator('qtet-viewer').innerText(), /not known/);
+  const second = page.getByLabel('Definition of an own field').nth(1);
+  await second.fill('no = grad(which).x');
+  await second.press('Enter');
+  await page.getByText('"which" is of cells, and constant in each').waitFor();
+  assert.deepEqual(viewer.problems, []);
+}
+
+export const derivedChecks = {showsOwnFields, showsGradients};

@@ -4,7 +4,7 @@
 import {describe, expect, test} from 'vitest';
 import {definitionsIn} from '../core/derived/definitions';
 import {deriveFields, kDerivation, kMaxDefinitions} from '../core/derived/derived';
-import {evaluate} from '../core/derived/evaluate';
+import {evaluate, type Input} from '../core/derived/evaluate';
 import {
   ExpressionError,
   kMaxDepth,
@@ -12,13 +12,14 @@ import {
   kMaxText,
   parseExpression,
 } from '../core/derived/parse';
-import {compile} from '../core/derived/program';
+import {compile, inputsOf, kMaxSlopes} from '../core/derived/program';
 import {kTensorQuantities} from '../core/derived/tensors';
 import {parseScalar, scalarText} from '../core/layers/field_values';
 import {kMissing} from '../core/picture/field_scale';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {LevelInfo, Manifest} from '../core/protocol/manifest';
 import {markSeries} from '../core/protocol/series';
+import {cubes} from './cubes';
 import {randomOf} from './random';
 
 /** Values are the integers themselves, from -128 to 127. */
@@ -63,9 +64,11 @@ const inputs = new Map(
   }),
 );
 
+const noMesh = {points: new Int32Array(6), tetrahedra: new Uint32Array(0), step: 1};
+
 const valuesOf = (text: string): number[] => {
   const {components} = compile(parseExpression(text), fields);
-  return [...evaluate(components[0]!.steps, inputs, 2)];
+  return [...evaluate(components[0]!.steps, inputs, 2, noMesh)];
 };
 const valueOf = (text: string): number => valuesOf(text)[0]!;
 
@@ -133,8 +136,17 @@ test.each([
   ['S.mise', 0, /it has xx, yy.*mises/],
   ['p.x', 0, /a number has no parts/],
   ['min(p)', 0, /min takes 2, not 1/],
-  ['eval(p)', 0, /no function "eval"; there are mag, dot/],
+  ['eval(p)', 0, /no function "eval"; there are grad, div, curl, Q, mag, dot/],
   ['constructor(p)', 0, /no function "constructor"/],
+  ['grad(mat).x', 0, /^"mat" is of cells, and constant in each; grad takes a field of points/],
+  ['grad(mat + 1).x', 0, /^this is of cells/],
+  ['grad(2).x', 0, /takes a field of points, not a number/],
+  ['grad(U).x', 0, /grad takes a number, not a vector/],
+  ['div(p)', 0, /div takes a vector of 3 components, not of 1/],
+  ['curl(S).x', 0, /not of 6/],
+  ['curl(U)', 0, /a vector of 3 components stands here/],
+  ['p.Q', 0, /a number has no parts/],
+  ['U.q', 0, /it has x, y, z, div, vorticity, Q/],
   ['p + mat', 2, /one field is of points, the other of cells/],
 ])('whatIsWrongAndWhere: %s', (text, at, message) => {
   expect(faultOf(text)[0]).toBe(at);
@@ -155,6 +167,135 @@ test('limitsHoldOneBelowAtAndOneAbove', () => {
     expect(faultOf(make(most))[0]).toBe(-1);
     expect(faultOf(make(most + 1))[0]).toBeGreaterThanOrEqual(0);
   }
+});
+
+describe('gradients', () => {
+  /** 64 cubes in a lattice of half a unit; each cube is 3 steps wide. */
+  const [size, step] = [3, 0.5];
+  const mesh = {...cubes(4, size), step};
+  const count = mesh.points.length / 3;
+  const places = Array.from({length: count}, (_, i) =>
+    [...mesh.points.subarray(3 * i, 3 * i + 3)].map((x) => x * step),
+  );
+  /** Values are multiples of an eighth. */
+  type Made = Map<string, Input>;
+  const given = (make: Record<string, (x: number, y: number, z: number) => number[]>): Made =>
+    new Map(
+      Object.entries(make).map(([name, of]) => {
+        const minimum = of(0, 0, 0).map(() => 0);
+        const info = field(name, minimum.length, {step: 1 / 8, minimum});
+        const values = places.flatMap(([x, y, z]) => of(x!, y!, z!).map((its) => its * 8));
+        return [name, {info, values: Int32Array.from(values)}];
+      }),
+    );
+  const evaluated = (text: string, its: Made, at = mesh): number[] => {
+    const {components} = compile(
+      parseExpression(text),
+      [...its.values()].map(({info}) => info),
+    );
+    return [...evaluate(components[0]!.steps, its, count, at)];
+  };
+  const isInside = (i: number): boolean => places[i]!.every((x) => x > 0 && x < 4 * size * step);
+  const everywhere = (text: string, value: number, its: Made): void => {
+    for (const found of evaluated(text, its)) expect(found, text).toBeCloseTo(value, 9);
+  };
+
+  test('ofALinearFieldAreExactAtEveryVertex', () => {
+    const its = given({p: (x, y, z) => [2 * x - 3 * y + 0.5 * z + 7]});
+    for (const [part, value] of [2, -3, 0.5].entries()) everywhere(`grad(p)[${part}]`, value, its);
+    everywhere('mag(grad(p))', Math.sqrt(13.25), its);
+    everywhere('grad(2 * p - 1).x + grad(p).x', 6, its);
+  });
+
+  test('ofAQuadraticFieldAreExactInsideARegularMesh', () => {
+    const its = given({p: (x, y) => [x * x + 2 * x * y]});
+    const [alongX, alongY] = ['x', 'y'].map((axis) => evaluated(`grad(p).${axis}`, its));
+    for (const [i, [x, y]] of places.entries()) {
+      if (!isInside(i)) continue;
+      expect(alongX![i]).toBeCloseTo(2 * x! + 2 * y!, 9);
+      expect(alongY![i]).toBeCloseTo(2 * x!, 9);
+    }
+  });
+
+  test('ofARigidRotationAreTwiceItsSpeed', () => {
+    const its = given({U: (x, y, z) => [2 * z - 3 * y, 3 * x - z, y - 2 * x]}); // (1, 2, 3)
+    for (const [part, speed] of [1, 2, 3].entries()) everywhere(`curl(U)[${part}]`, 2 * speed, its);
+    everywhere('div(U)', 0, its);
+    everywhere('Q(U)', 14, its);
+    everywhere('U.vorticity', 2 * Math.sqrt(14), its);
+    everywhere('U.Q + U.div', 14, its);
+  });
+
+  test('ofStrainAndShearHaveTheValuesOfHand', () => {
+    const strain = given({U: (x, y, z) => [2 * x, -3 * y, 4 * z]});
+    everywhere('div(U)', 3, strain);
+    everywhere('mag(curl(U))', 0, strain);
+    everywhere('Q(U)', -(4 + 9 + 16) / 2, strain);
+    const shear = given({U: (_x, y) => [5 * y, 0, 0]});
+    everywhere('Q(U)', 0, shear);
+    everywhere('curl(U).z', -5, shear);
+  });
+
+  test('ofGradientsAreGradientsToo', () => {
+    const its = given({p: (x) => [x * x]});
+    const bent = evaluated('div(grad(p))', its);
+    const middle = places.findIndex((place) => place.every((x) => x === 2 * size * step));
+    expect(bent[middle]).toBeCloseTo(2, 9);
+  });
+
+  test('doNotDependOnTheOrderOfCornersAndLeaveOutFlatCells', () => {
+    const its = given({p: (x, y) => [x * y]});
+    const right = evaluated('grad(p).x', its);
+    const turned = mesh.tetrahedra.map((_, i, all) => all[i ^ 2]!);
+    expect(evaluated('grad(p).x', its, {...mesh, tetrahedra: turned})).toEqual(
+      right.map((x) => expect.closeTo(x, 9) as number),
+    );
+    const flat = Uint32Array.from([...mesh.tetrahedra, 0, 1, 2, 3, 7, 7, 8, 9]);
+    expect(evaluated('grad(p).x', its, {...mesh, tetrahedra: flat})).toEqual(right);
+  });
+
+  test('weighCellsByTheirVolumes', () => {
+    const points = Int32Array.of(0, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0, 1, -1, 0, 0);
+    const two = {points, tetrahedra: Uint32Array.of(0, 1, 2, 3, 0, 4, 2, 3), step: 1};
+    const its = new Map([['p', {info: field('p'), values: Int32Array.of(0, 6, 0, 0, -6)}]]);
+    const values = (text: string): Float64Array =>
+      evaluate(compile(parseExpression(text), [field('p')]).components[0]!.steps, its, 5, two);
+    // 2 in a cell of volume 3, 6 in one of volume 1
+    expect([...values('grad(p).x')].map((x) => x - 0)).toEqual([3, 2, 3, 3, 6]);
+  });
+
+  test('areMissingWhereNoCellHasAllValues', () => {
+    const its = given({p: (x) => [x]});
+    its.get('p')!.values[0] = kMissing;
+    const values = evaluated('grad(p).x', its);
+    expect(values[0]).toBeNaN();
+    expect(values.at(-1)).toBeCloseTo(1, 9);
+    expect(valuesOf('grad(p).x')).toEqual([NaN, NaN]);
+  });
+
+  test('haveNoRangeAndNoKnownError', () => {
+    for (const text of ['grad(p).x', 'mag(grad(p))', 'div(U)', 'mag(curl(U))', 'Q(U)', 'U.Q']) {
+      const {components, errors, association} = compile(parseExpression(text), fields);
+      expect(errors, text).toBe(null);
+      expect(association).toBe('point');
+      expect(components[0]!.range[1]).toBe(Infinity);
+    }
+    expect(inputsOf(compile(parseExpression('div(p * U) + grad(grad(T).x).y'), fields))).toEqual([
+      'p',
+      'U',
+      'T',
+    ]);
+  });
+
+  test('areNoMoreThanTheLimit', () => {
+    const many = (length: number): string =>
+      Array.from({length}, (_, i) => `grad(p + ${i}).x`).join(' + ');
+    expect(faultOf(many(kMaxSlopes - 1))[1]).toBe('');
+    expect(faultOf(many(kMaxSlopes))[1]).toBe('');
+    expect(faultOf(many(kMaxSlopes + 1))[1]).toMatch(/more than 12 gradients/);
+    // equal ones are one
+    expect(faultOf('grad(p).x + grad(p).y + '.repeat(20) + '0')[1]).toBe('');
+  });
 });
 
 describe('tensors', () => {
@@ -288,6 +429,30 @@ describe('definitions', () => {
     expect(parseScalar('Cp', all)).toEqual({field: fields.length, component: -1});
   });
 
+  test('offerTheQuantitiesOfVectors', () => {
+    const {fields: made} = deriveFields('', manifest);
+    const ofU = made.filter(({info}) => info.of === 'U');
+    expect(ofU.map(({info}) => [info.name, info.title])).toEqual([
+      ['U.div', 'U, divergence'],
+      ['U.vorticity', 'U, vorticity'],
+      ['U.Q', 'U, Q criterion'],
+    ]);
+    expect(ofU[0]!.errors).toEqual([null, null]);
+  });
+
+  test('ofOldTextsEnd', () => {
+    const {id, info} = deriveFields('a = p', manifest).fields[0]!;
+    const values = {info: fields[0]!, values: Int32Array.of(5), state: '1,1'};
+    const isKnown = (): boolean =>
+      kDerivation.scale!({id, info, inputs: [0]}, () => values, noMesh) !== null;
+    for (let i = 1; i < 8; ++i) {
+      deriveFields(`a = p + ${i}`, manifest);
+      expect(isKnown()).toBe(true);
+    }
+    deriveFields('a = T', manifest);
+    expect(isKnown()).toBe(false);
+  });
+
   test('areSeparatedOutsideOfQuotes', () =>
     expect(definitionsIn(' a = `x;y`; b=2 ;')).toEqual(['a = `x;y`', 'b=2']));
 
@@ -314,21 +479,42 @@ describe('definitions', () => {
     ];
     expect(keys).toEqual(['T', 'T@1']);
     const values = [1, 5, 25];
-    const scale = kDerivation.scale!({id, info, inputs: [2, 0]}, (at) => ({
-      info: series[at]!,
-      values: Int32Array.of(values[at]! + 128),
-      state: '1,1',
-    }))!;
+    const scale = kDerivation.scale!(
+      {id, info, inputs: [2, 0]},
+      (at) => ({
+        info: series[at]!,
+        values: Int32Array.of(values[at]! + 128),
+        state: '1,1',
+      }),
+      noMesh,
+    )!;
     const [low, high] = info.range;
     expect(low + scale.at(0) * (high - low)).toBeCloseTo(24, 10);
-    expect(kDerivation.scale!({id, info, inputs: [2, 0]}, () => null)).toBe(null);
+    expect(kDerivation.scale!({id, info, inputs: [2, 0]}, () => null, noMesh)).toBe(null);
   });
 });
 
 describe('hostileTexts', () => {
   const kPieces = [
     ...Array.from('+-*/^<>=?:(),.[]`"\'@;#\u2212\u00e9\u{1f600} \n'),
-    ...['p', 'T@2', 'U.x', 'U', 'S.mises', 'mag(', 'dot(', 'min(', '1e308', '.5', '==', '<=', '1.'],
+    ...[
+      'p',
+      'T@2',
+      'U.x',
+      'U',
+      'S.mises',
+      'mag(',
+      'dot(',
+      'min(',
+      'grad(',
+      'curl(',
+      'Q(',
+      '1e308',
+      '.5',
+      '==',
+      '<=',
+      '1.',
+    ],
     ...[
       '__proto__',
       'constructor',

@@ -1,6 +1,7 @@
 // A viewer while it is in a document: connects the stream, the graphics and the panels.
 
 import {isEqual} from '../core/protocol/equal';
+import type {FieldInfo} from '../core/protocol/fields';
 import type {Client} from '../core/session/client';
 import type {FromWorker, LogFigures, StreamState} from '../core/session/worker_messages';
 import type {Direction} from '../webgl/directions';
@@ -102,13 +103,21 @@ export class Viewing implements LaterHost, PictureHost {
     const {derived, manifest, own} = mesh;
     const text = this.page.read('derived') ?? '';
     if (manifest && derived) return derived.read(text, mesh, this.client, () => this.apply());
-    const isTensor = ({components}: {components: number}): boolean => components === 6;
-    if (own || (text === '' && !manifest?.fields.some(isTensor))) return;
+    if (own || (text === '' && !manifest?.fields.some((its) => this.hasQuantities(its)))) return;
     mesh.own = true;
     void import('./page/own_fields').then(({OwnFields}) => {
       mesh.own = new OwnFields();
       this.apply();
     });
+  }
+
+  /** Those of vectors wait for the first picture, unless an attribute names one. */
+  private hasQuantities({components, association}: FieldInfo): boolean {
+    const isNamed = (['field', 'iso', 'threshold'] as const).some((name) =>
+      /\.(div|vorticity|Q)\b/.test(this.page.read(name) ?? ''),
+    );
+    const isTime = this.later !== null || isNamed;
+    return components === 6 || (components === 3 && association === 'point' && isTime);
   }
 
   get isPlaying(): boolean {

@@ -1,5 +1,5 @@
 // Fields that are computed from others: those that a text defines, "Cp = (p - 101325) / 540; ...",
-// and the quantities of the tensors that a mesh has.
+// and the quantities of the tensors and the vectors that a mesh has.
 
 import type {DerivedField, DerivedFields} from '../picture/derived_field';
 import {fieldKeys, widthOfValues, type FieldInfo} from '../protocol/fields';
@@ -8,8 +8,9 @@ import {fieldOfKey} from '../layers/field_values';
 import {instantsOf} from '../protocol/series';
 import {definitionsIn} from './definitions';
 import {ExpressionError, parseExpression, type Tree} from './parse';
-import {keep} from './derived_values';
-import {compile, inputsOf, type Value} from './program';
+import {beginText, keep} from './derived_values';
+import {flowQuantitiesOf} from './flow';
+import {compile, inputsOf, type Slope, type Value} from './program';
 import {kTensorQuantities} from './tensors';
 
 /** More make menus long and addresses unreadable. */
@@ -24,6 +25,8 @@ export function deriveFields(text: string, manifest: Manifest): DerivedFields {
   const all: DerivedField[] = [];
   const errors: string[] = [];
   const earlier = new Map<string, Value>();
+  const slopes: Slope[] = [];
+  beginText();
   for (const [i, definition] of definitionsIn(text).entries()) {
     try {
       if (i >= kMaxDefinitions)
@@ -32,7 +35,9 @@ export function deriveFields(text: string, manifest: Manifest): DerivedFields {
           `there are more than ${kMaxDefinitions} fields; leave some out`,
         );
       const {name, at} = nameIn(definition, fields, earlier);
-      const value = compiled(definition, at, fields, earlier);
+      const value = compiled(definition.slice(at), at, (tree) =>
+        compile(tree, fields, earlier, slopes),
+      );
       earlier.set(name, value);
       // a constant is for later definitions alone
       if (value.association !== null) all.push(derivedField(name, value, manifest));
@@ -42,7 +47,7 @@ export function deriveFields(text: string, manifest: Manifest): DerivedFields {
       if (i >= kMaxDefinitions) break; // an address may hold thousands
     }
   }
-  return {fields: [...all, ...tensorFields(manifest)], errors};
+  return {fields: [...all, ...offeredFields(manifest)], errors};
 }
 
 /** The name of a definition, and where its expression begins. */
@@ -65,14 +70,9 @@ function nameIn(
 }
 
 /** Places in errors are those in the definition. */
-function compiled(
-  definition: string,
-  at: number,
-  fields: readonly FieldInfo[],
-  earlier: ReadonlyMap<string, Value>,
-): Value {
+function compiled(expression: string, at: number, make: (tree: Tree) => Value): Value {
   try {
-    return compile(parseExpression(definition.slice(at)), fields, earlier);
+    return make(parseExpression(expression));
   } catch (thrown) {
     if (!(thrown instanceof ExpressionError)) throw thrown;
     throw new ExpressionError(thrown.at + at, thrown.message);
@@ -128,17 +128,18 @@ function sameSeries(fields: readonly FieldInfo[], key: string): readonly number[
   return instants.length > 0 ? instants : [fieldOfKey(key, fields)];
 }
 
-function tensorFields(manifest: Manifest): DerivedField[] {
+function offeredFields(manifest: Manifest): DerivedField[] {
   const {fields} = manifest;
   const keys = fieldKeys(fields);
   return fields.flatMap((info, field) => {
-    if (info.components !== 6 || info.instant?.isShown === false) return [];
+    if (info.instant?.isShown === false) return [];
     const key = info.instant?.series ?? keys[field]!;
-    return kTensorQuantities.map(({name, title}) => {
-      const tensor: Tree = {kind: 'name', at: 0, name: key};
-      const value = compile({kind: 'part', at: 0, of: tensor, part: name}, fields);
+    const ofTensor = info.components === 6 ? kTensorQuantities : [];
+    return [...ofTensor, ...flowQuantitiesOf(info)].map(({name, title}) => {
+      const whole: Tree = {kind: 'name', at: 0, name: key};
+      const value = compile({kind: 'part', at: 0, of: whole, part: name}, fields);
       const its = derivedField(`${key}.${name}`, value, manifest);
-      const {unit} = info;
+      const unit = ofTensor.length > 0 ? info.unit : undefined;
       return {
         ...its,
         info: {...its.info, title: `${key}, ${title}`, of: key, ...(unit !== undefined && {unit})},

@@ -1,7 +1,7 @@
 // The values of derived fields, for the mesh as it is now.
 
 import type {derivation, DerivedColor, Drawn} from '../picture/derivation';
-import {derivedIn, type ShownDerived, type ValuesOf} from '../picture/derived_field';
+import {derivedIn, type RestMesh, type ShownDerived, type ValuesOf} from '../picture/derived_field';
 import type {Display, MeshArrays} from '../picture/display';
 import {FieldScale} from '../picture/field_scale';
 import type {FieldInfo} from '../protocol/fields';
@@ -9,12 +9,26 @@ import type {Manifest} from '../protocol/manifest';
 import {evaluate} from './evaluate';
 import {inputsOf, type Value} from './program';
 
-/** By id: what was derived since the worker began. */
-const known: Value[] = [];
+/** A display of an older text is drawn until the page has the answer about a newer one. */
+const kKeptTexts = 8;
+/** By id: what the last texts derived. */
+const known = new Map<number, Value>();
+let nextId = 0;
+/** The first ids of these texts. */
+const firstIds: number[] = [];
+
+/** Another text is derived: the oldest one ends. */
+export function beginText(): void {
+  firstIds.push(nextId);
+  if (firstIds.length > kKeptTexts) firstIds.shift();
+  for (const ended of [known, extents, kept])
+    for (const id of ended.keys()) if (id < firstIds[0]!) ended.delete(id);
+}
 
 /** Returns its id. */
 export function keep(value: Value): number {
-  return known.push(value) - 1;
+  known.set(nextId, value);
+  return nextId++;
 }
 
 class DerivedScale extends FieldScale {
@@ -36,14 +50,18 @@ class DerivedScale extends FieldScale {
 
 type Shown = ShownDerived['fields'][number];
 
-/** Colours, isosurfaces and a threshold may each have another derived field. */
-const kKept = 4;
+/** Colours, isosurfaces, a threshold and the lines of a card have each another derived field. */
+const kKept = 8;
 /** The last values by id, and what they were made of. */
 const kept = new Map<number, {of: unknown[]; scale: FieldScale}>();
 
 /** A derived field's values for the mesh as it is now; null while a field of it has none. */
-function derivedScale({id, info, inputs}: Shown, valuesOf: ValuesOf): FieldScale | null {
-  const value = known[id];
+function derivedScale(
+  {id, info, inputs}: Shown,
+  valuesOf: ValuesOf,
+  mesh: RestMesh,
+): FieldScale | null {
+  const value = known.get(id);
   const all = inputs.map(valuesOf).filter((its) => its !== null);
   if (!value || all.length === 0 || all.length < inputs.length) return null;
   const of = all.flatMap((its) => [its.info, its.state]);
@@ -51,7 +69,7 @@ function derivedScale({id, info, inputs}: Shown, valuesOf: ValuesOf): FieldScale
   if (last?.of.length === of.length && of.every((its, i) => its === last.of[i])) return last.scale;
   const named = new Map(inputsOf(value).map((key, i) => [key, all[i]!]));
   const count = Math.min(...all.map((its) => its.values.length / its.info.components));
-  const scale = new DerivedScale(evaluate(value.components[0]!.steps, named, count), info);
+  const scale = new DerivedScale(evaluate(value.components[0]!.steps, named, count, mesh), info);
   kept.delete(id);
   kept.set(id, {of, scale});
   for (const oldest of [...kept.keys()].slice(0, -kKept)) kept.delete(oldest);

@@ -1,10 +1,12 @@
 // Computes a program's values, block by block, so that all that a block needs stays in the
 // processor's cache.
 
+import type {RestMesh} from '../picture/derived_field';
 import {kMissing} from '../picture/field_scale';
 import type {FieldInfo} from '../protocol/fields';
 import type {Block} from './operations';
-import type {Leaf, Step} from './program';
+import type {Leaf, Slope, Step} from './program';
+import {kSlopeWidth, slopesOf} from './slopes';
 
 /** With a few blocks of 8 kB each a program stays in the first cache of 32 kB. */
 const kBlock = 1024;
@@ -17,12 +19,40 @@ export interface Input {
 
 /**
  * A value for each of `count` vertices or cells; NaN where one is missing or is not finite.
- * REQUIRES: the steps leave one value, and `inputs` has all of their fields.
+ * REQUIRES: the steps leave one value, and `inputs` has all of their fields. Gradients are those in
+ * `mesh`.
  */
 export function evaluate(
   steps: readonly Step[],
   inputs: ReadonlyMap<string, Input>,
   count: number,
+  mesh: RestMesh,
+): Float64Array {
+  return run(steps, inputs, count, slopesFor(steps, inputs, count, mesh, new Map()));
+}
+
+/** All that the steps need, added to `known`. Those of one depth take one pass of the mesh. */
+function slopesFor(
+  steps: readonly Step[],
+  inputs: ReadonlyMap<string, Input>,
+  count: number,
+  mesh: RestMesh,
+  known: Map<Slope, Float64Array>,
+): Map<Slope, Float64Array> {
+  const wanted = steps.flatMap((step) => ('slope' in step ? [step.slope] : []));
+  const missing = (): Slope[] => [...new Set(wanted)].filter((its) => !known.has(its));
+  for (const slope of missing()) slopesFor(slope.steps, inputs, count, mesh, known);
+  const all = missing();
+  const fields = all.map((slope) => run(slope.steps, inputs, count, known));
+  slopesOf(mesh, fields).forEach((its, i) => known.set(all[i]!, its));
+  return known;
+}
+
+function run(
+  steps: readonly Step[],
+  inputs: ReadonlyMap<string, Input>,
+  count: number,
+  slopes: ReadonlyMap<Slope, Float64Array>,
 ): Float64Array {
   const values = new Float64Array(count);
   /** By name: what is loaded once for a block, however often it is used. */
@@ -34,7 +64,16 @@ export function evaluate(
     return its.into;
   };
   const given = steps.map((step) =>
-    'load' in step ? blockOf(step.load) : 'value' in step ? newBlock().fill(step.value) : null,
+    'load' in step
+      ? blockOf(step.load)
+      : 'value' in step
+        ? newBlock().fill(step.value)
+        : 'slope' in step
+          ? newBlock()
+          : null,
+  );
+  const rises = steps.flatMap((step, i) =>
+    'slope' in step ? [{all: slopes.get(step.slope)!, axis: step.axis, into: given[i]!}] : [],
   );
   const results: Block[] = [];
   const stack: Block[] = [];
@@ -42,6 +81,9 @@ export function evaluate(
     const length = Math.min(kBlock, count - from);
     for (const {leaf, into} of loads.values())
       load(leaf, inputs.get(leaf.key)!, from, length, into);
+    for (const {all, axis, into} of rises)
+      for (let i = 0, at = kSlopeWidth * from + axis; i < length; ++i, at += kSlopeWidth)
+        into[i] = all[at]!;
     let top = 0;
     for (let i = 0; i < steps.length; ++i) {
       const step = steps[i]!;

@@ -14,7 +14,8 @@ export interface Operation {
   isSteady?: true;
 }
 
-const kAll: Interval = [-Infinity, Infinity];
+/** No bound is known. */
+export const kAll: Interval = [-Infinity, Infinity];
 const kSigns: Interval = [-1, 1];
 
 export const kOperations: Record<string, Operation> = {

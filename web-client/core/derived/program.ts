@@ -2,10 +2,11 @@
 // of its result, and how the known errors of the fields bound the result's.
 
 import {componentNames, fieldOfKey} from '../layers/field_values';
+import {flowQuantitiesOf, type FlowQuantity} from './flow';
 import {kMagnitude} from '../picture/field_scale';
 import type {FieldInfo} from '../protocol/fields';
 import type {Spread} from '../protocol/manifest';
-import {kOperations, type Block, type Interval, type Operation} from './operations';
+import {kAll, kOperations, type Block, type Interval, type Operation} from './operations';
 import {ExpressionError, type Tree} from './parse';
 import {kTensorQuantities, type Quantity} from './tensors';
 
@@ -17,7 +18,12 @@ export interface Leaf {
   quantity?: Quantity;
 }
 
-export type Step = {load: Leaf} | {value: number} | {run: Operation};
+/** The gradient of what the steps leave. */
+export interface Slope {
+  steps: readonly Step[];
+}
+
+export type Step = {load: Leaf} | {value: number} | {run: Operation} | {slope: Slope; axis: number};
 
 /** The known error of a result by those of the fields, none as a share of a range. */
 export type ErrorRule = (of: (key: string) => Spread) => Spread;
@@ -39,6 +45,8 @@ export interface Value {
 
 /** Vectors copy the steps that they take: so that these cannot double again and again. */
 const kMaxSteps = 1000;
+/** Each takes some 50 ms for a million cells, and 32 bytes a vertex while a field is computed. */
+export const kMaxSlopes = 12;
 /** A message lists so many fields. */
 const kListed = 9;
 
@@ -47,34 +55,48 @@ const kExact: Spread = {mean: 0, max: 0};
 const kOne: Block = new Float64Array(1);
 
 /**
- * `earlier`: the definitions before this one. The result has one component. Throws
- * ExpressionError.
+ * `earlier`: the definitions before this one. `slopes`: those of all of them, so that equal ones
+ * are one. The result has one component. Throws ExpressionError.
  */
 export function compile(
   tree: Tree,
   fields: readonly FieldInfo[],
   earlier: ReadonlyMap<string, Value> = new Map(),
+  slopes: Slope[] = [],
 ): Value {
-  return new Compiler(fields, earlier).number(tree);
+  return new Compiler(fields, earlier, slopes).number(tree);
 }
 
 /** The names of the fields that the value is made of. */
 export function inputsOf({components}: Value): string[] {
-  const keys = components.flatMap(({steps}) =>
-    steps.flatMap((step) => ('load' in step ? [step.load.key] : [])),
-  );
+  const all = components.flatMap(({steps}) => steps);
+  const ofSlopes = [...slopesIn(all)].flatMap((its) => its.steps);
+  const keys = [...all, ...ofSlopes].flatMap((step) => ('load' in step ? [step.load.key] : []));
   return [...new Set(keys)];
+}
+
+/** Also those that the fields of others are made of. */
+function slopesIn(steps: readonly Step[], found = new Set<Slope>()): Set<Slope> {
+  for (const step of steps) {
+    if (!('slope' in step) || found.has(step.slope)) continue;
+    found.add(step.slope);
+    slopesIn(step.slope.steps, found);
+  }
+  return found;
 }
 
 class Compiler {
   constructor(
     private readonly fields: readonly FieldInfo[],
     private readonly earlier: ReadonlyMap<string, Value>,
+    private readonly slopes: Slope[],
   ) {}
 
   number(tree: Tree): Value {
     const value = this.value(tree);
     const {length} = value.components;
+    if (slopesIn(value.components.flatMap(({steps}) => steps)).size > kMaxSlopes)
+      throw fault(tree, `this takes more than ${kMaxSlopes} gradients; leave some of them out`);
     if (length === 1) return value;
     throw fault(tree, `a vector of ${length} components stands here; take mag(...) or .x of it`);
   }
@@ -86,7 +108,7 @@ class Compiler {
       case 'name':
         return this.named(tree, tree.name);
       case 'part':
-        return partOf(tree, this.value(tree.of), tree.part);
+        return this.part(tree, this.value(tree.of), tree.part);
       case 'call':
         return this.call(tree);
     }
@@ -100,10 +122,27 @@ class Compiler {
     const at = name.lastIndexOf('.');
     const whole = name.slice(0, at);
     if (at > 0 && (fieldOfKey(whole, this.fields) >= 0 || this.earlier.has(whole)))
-      return partOf(tree, this.named(tree, whole), name.slice(at + 1));
+      return this.part(tree, this.named(tree, whole), name.slice(at + 1));
     const names = new Set(this.fields.map((its) => its.instant?.series ?? its.name));
     const listed = [...names].slice(0, kListed).join(', ');
     throw fault(tree, `there is no field "${name}"; there are ${listed || 'none'}`);
+  }
+
+  private part(tree: Tree, value: Value, part: string): Value {
+    const flow = flowQuantities(value).find(({name}) => name === part);
+    if (!flow) return partOf(tree, value, part);
+    return flow.functions.reduce((its, name) => this.ofVectors(tree, name, [its]), value);
+  }
+
+  private ofVectors(tree: Tree, name: string, values: Value[]): Value {
+    return kOfVectors[name]!.make(tree, values, (its) => this.slopeOf(its));
+  }
+
+  private slopeOf({steps}: Component): Slope {
+    const known = this.slopes.find((its) => areSame(its.steps, steps));
+    if (known) return known;
+    this.slopes.push({steps});
+    return this.slopes.at(-1)!;
   }
 
   private call(tree: Extract<Tree, {kind: 'call'}>): Value {
@@ -115,13 +154,60 @@ class Compiler {
       throw fault(tree, `there is no function "${name}"; there are ${kFunctions.join(', ')}`);
     if (args.length !== arity) throw fault(tree, `${name} takes ${arity}, not ${args.length}`);
     const values = args.map((its) => this.value(its));
-    return special ? special.make(tree, values) : applied(tree, operation!, values);
+    return special ? this.ofVectors(tree, name, values) : applied(tree, operation!, values);
   }
 }
 
-/** Functions of vectors. Another one is a line here. */
-const kOfVectors: Record<string, {arity: number; make(tree: Tree, values: Value[]): Value}> = {
+type SlopeOf = (field: Component) => Slope;
+
+/** Functions of vectors, and those of gradients. Another one is a line here. */
+const kOfVectors: Record<
+  string,
+  {arity: number; make(tree: Tree, values: Value[], slopeOf: SlopeOf): Value}
+> = {
   __proto__: null as never,
+  grad: {
+    arity: 1,
+    make(tree, [field], slopeOf) {
+      const [row] = gradients(tree, 'grad', field!, 1, slopeOf);
+      return ofGradients(row!);
+    },
+  },
+  div: {
+    arity: 1,
+    make(tree, [vector], slopeOf) {
+      const rows = gradients(tree, 'div', vector!, 3, slopeOf);
+      return ofGradients([
+        sumOf(
+          tree,
+          [0, 1, 2].map((i) => rows[i]![i]!),
+        ),
+      ]);
+    },
+  },
+  curl: {
+    arity: 1,
+    make(tree, [vector], slopeOf) {
+      const rows = gradients(tree, 'curl', vector!, 3, slopeOf);
+      return ofGradients(
+        kTurns.map(([j, k]) => operate(tree, kOperations['-']!, [rows[k]![j]!, rows[j]![k]!])),
+      );
+    },
+  },
+  /** Half of |rotation|^2 - |strain rate|^2, which is -tr(J J) / 2 (Hunt et al., 1988). */
+  Q: {
+    arity: 1,
+    make(tree, [vector], slopeOf) {
+      const rows = gradients(tree, 'Q', vector!, 3, slopeOf);
+      const times = (a: Component, b: Component): Component =>
+        operate(tree, kOperations['*']!, [a, b]);
+      const half = constant(0.5).components[0]!;
+      const squares = [0, 1, 2].map((i) => times(half, times(rows[i]![i]!, rows[i]![i]!)));
+      const products = kTurns.map(([j, k]) => times(rows[j]![k]!, rows[k]![j]!));
+      const sum = sumOf(tree, [...squares, ...products]);
+      return ofGradients([operate(tree, kOperations['minus']!, [sum])]);
+    },
+  },
   mag: {
     arity: 1,
     make(tree, [vector]) {
@@ -145,9 +231,68 @@ const kOfVectors: Record<string, {arity: number; make(tree: Tree, values: Value[
   },
 };
 
+/** The two axes behind each axis. */
+const kTurns = [
+  [1, 2],
+  [2, 0],
+  [0, 1],
+] as const;
+
+/** One a component: its slopes along x, y and z. */
+function gradients(
+  tree: Tree,
+  name: string,
+  {components, association, field}: Value,
+  length: 1 | 3,
+  slopeOf: SlopeOf,
+): Component[][] {
+  if (association === 'cell') {
+    const its = field ? `"${field.key}"` : 'this';
+    throw fault(tree, `${its} is of cells, and constant in each; ${name} takes a field of points`);
+  }
+  if (association === null) throw fault(tree, `${name} takes a field of points, not a number`);
+  if (components.length !== length)
+    throw fault(
+      tree,
+      length === 1
+        ? `${name} takes a number, not a vector; take mag(...) or .x of it`
+        : `${name} takes a vector of 3 components, not of ${components.length}`,
+    );
+  return components.map((its) => {
+    const slope = slopeOf(its);
+    return [0, 1, 2].map((axis) => ({steps: [{slope, axis}], range: kAll}));
+  });
+}
+
+/** Small errors of a field may have steep slopes: no rule bounds the error. */
+const ofGradients = (components: Component[]): Value => ({
+  components,
+  association: 'point',
+  errors: null,
+});
+
+function areSame(a: readonly Step[], b: readonly Step[]): boolean {
+  const partsOf = (step: Step): unknown[] =>
+    'load' in step
+      ? [step.load.key, step.load.component, step.load.quantity]
+      : 'slope' in step
+        ? [step.slope, step.axis]
+        : 'run' in step
+          ? [step.run]
+          : [step.value];
+  const isSame = (parts: unknown[], others: unknown[]): boolean =>
+    parts.length === others.length && parts.every((its, i) => its === others[i]);
+  return (
+    a === b || (a.length === b.length && a.every((its, i) => isSame(partsOf(its), partsOf(b[i]!))))
+  );
+}
+
+/** Those that a field of vectors at points has. */
+const flowQuantities = ({field}: Value): readonly FlowQuantity[] =>
+  field ? flowQuantitiesOf(field.info) : [];
+
 const kFunctions = [
-  'mag',
-  'dot',
+  ...Object.keys(kOfVectors),
   ...Object.keys(kOperations).filter((name) => /^\w/.test(name)),
 ].filter((name) => !['minus', 'square'].includes(name));
 
@@ -306,7 +451,7 @@ function partOf(tree: Tree, value: Value, part: string): Value {
     const made = leafOf(value, kMagnitude, range, quantity.factor, quantity);
     return quantity.isLinear ? made : bent(made);
   }
-  const all = [...names, ...quantities.map(({name}) => name)];
+  const all = [...names, ...[...quantities, ...flowQuantities(value)].map(({name}) => name)];
   const has =
     components.length === 1
       ? 'a number has no parts'

@@ -1,7 +1,7 @@
 // The part of core/derived for pictures, once it is loaded.
 
 import type {Manifest} from '../protocol/manifest';
-import type {ShownDerived, ValuesOf} from './derived_field';
+import type {RestMesh, ShownDerived, ValuesOf} from './derived_field';
 import type {Display, MeshArrays} from './display';
 import type {FieldScale, Scalar} from './field_scale';
 
@@ -22,7 +22,11 @@ export interface Drawn {
 
 /** It computes, and is loaded with the first derived field. */
 export const derivation: {
-  scale?: (field: ShownDerived['fields'][number], valuesOf: ValuesOf) => FieldScale | null;
+  scale?: (
+    field: ShownDerived['fields'][number],
+    valuesOf: ValuesOf,
+    mesh: RestMesh,
+  ) => FieldScale | null;
   /** Undefined: the colour is no derived one. */
   color?: (
     mesh: MeshArrays,

@@ -49,6 +49,14 @@ export const inputsIn = (display: MayDerive, field: number): readonly number[] =
 export const infoIn = (display: MayDerive, {fields}: Manifest, field: number): FieldInfo =>
   derivedIn(display, field)?.info ?? fields[field]!;
 
+/** The mesh without a warp, as it is now: gradients are taken there. */
+export interface RestMesh {
+  points: Int32Array;
+  tetrahedra: Uint32Array;
+  /** The lattice's, of every axis, in the mesh's unit. */
+  step: number;
+}
+
 /**
  * A field's integers, and how far they are decoded: equal states of an info have equal integers.
  * Null while there are none.

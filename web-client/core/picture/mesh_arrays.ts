@@ -3,7 +3,7 @@
 import type {Assembler} from '../decode/assembler';
 import type {Manifest} from '../protocol/manifest';
 import {derivation} from './derivation';
-import {derivedIn, type MayDerive, type ValuesOf} from './derived_field';
+import {derivedIn, type MayDerive, type RestMesh, type ValuesOf} from './derived_field';
 import type {MeshArrays} from './display';
 import {FieldScale} from './field_scale';
 import {LabelScale} from './labels';
@@ -36,13 +36,18 @@ export function meshArrays(
     const state = [codec.chunksApplied, codec.fieldChunksApplied(field)].join();
     return values ? {info, values, state} : null;
   };
+  const restMesh = (): RestMesh => ({
+    points: codec.points(),
+    tetrahedra: codec.tetrahedra(),
+    step: manifest.lattice.step,
+  });
   return {
     points: (warp && movedPoints(assembler, manifest, warp)) ?? codec.points(),
     tetrahedra: codec.tetrahedra(),
     boundary: codec.boundary(),
     scale: ({field, component}, labelColors) => {
       const derived = derivedIn(display, field);
-      if (derived) return derivation.scale?.(derived, valuesOf) ?? null;
+      if (derived) return derivation.scale?.(derived, valuesOf, restMesh()) ?? null;
       const its = valuesOf(field);
       if (!its) return null;
       const {info, values} = its;

@@ -75,7 +75,7 @@ export class OwnFields {
       snapshot.color = i < 0 ? null : {field: this.first + i, component: kMagnitude};
   }
 
-  /** For a display: quantities of tensors only if they are shown. */
+  /** For a display: quantities of tensors and vectors only if they are shown. */
   shown(used: readonly (number | undefined)[]): MayDerive {
     const {fields, first} = this;
     if (fields.length === 0) return {};

@@ -7,9 +7,9 @@ import {fillSelect, type SelectOption} from '../page/select';
 import {scalarTitle} from './panel';
 
 /**
- * Offers every field, of a series the instant that is shown. The quantities of a tensor stand
- * before its magnitude and its components. Fields of points, of cells, and own ones are in groups
- * if there are several kinds.
+ * Offers every field, of a series the instant that is shown. The quantities of a tensor or a
+ * vector stand before its magnitude and its components. Fields of points, of cells, and own ones
+ * are in groups if there are several kinds.
  */
 export function fillScalars(
   select: HTMLSelectElement,

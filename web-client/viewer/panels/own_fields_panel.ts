@@ -8,7 +8,7 @@ import type {Panel, PanelKind, PanelsHost} from './panel';
 const kMarkup = `
 <div class="field own-fields"></div>
 <p class="hint">+ - * / ^ &lt; &gt; == c ? a : b, mag, dot, min, max, abs, sqrt, exp, log, sin,
-  cos. U.x is a component, T@2 an instant; other names stand in \`...\`.</p>`;
+  cos, grad, div, curl, Q. U.x is a component, T@2 an instant; other names stand in \`...\`.</p>`;
 const kExample = 'Cp = (Pressure - 1) / 4.5';
 
 class OwnFieldsPanel implements Panel {
