@@ -7,7 +7,7 @@ namespace qtet {
 
 Status PieceStore::put(std::uint32_t to, std::uint32_t from, const MeshPiece& piece) {
   const Bytes bytes = toBytes(piece);
-  const std::scoped_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   assert(!pieces_.contains({to, from}));
   pieces_[{to, from}] = {spool_->size(), bytes.size()};
   return spool_->append(bytes);
@@ -15,7 +15,7 @@ Status PieceStore::put(std::uint32_t to, std::uint32_t from, const MeshPiece& pi
 
 Result<std::vector<MeshPiece>> PieceStore::get(std::uint32_t to) const {
   std::vector<MeshPiece> out;
-  const std::scoped_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   for (auto at = pieces_.lower_bound({to, 0}); at != pieces_.end() && at->first.first == to; ++at) {
     Bytes bytes(at->second.size);
     if (Status s = spool_->read(at->second.at, bytes); !s) return std::unexpected(s.error());

@@ -202,7 +202,7 @@ class Reduction {
   }
 
   void growBox(std::uint32_t block, const MeshPiece& piece) {
-    const std::scoped_lock lock(mutex_);
+    const std::lock_guard lock(mutex_);
     LatticeBox& box = band_.boxes[block];
     for (const LatticePoint& p : piece.points)
       for (std::size_t i = 0; i < 3; ++i)

@@ -9,7 +9,7 @@ void SharedVertices::add(std::uint32_t block, std::span<const WholeVertex> verti
                          std::span<const WholeVertex> mayBe) {
   std::vector<WholeVertex> both;
   std::ranges::set_intersection(vertices, mayBe, std::back_inserter(both));
-  const std::scoped_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   for (const WholeVertex v : both) blockOf_.emplace_back(v, block);
 }
 
