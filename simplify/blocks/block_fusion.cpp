@@ -111,8 +111,7 @@ class BlockRun {
     for (VertexId v = 0; v < own_.isSeam().size(); ++v)
       if (own_.isSeam()[v]) kept.push_back(v);
     state.keep(kept);
-    const auto firstSeam =
-        static_cast<CellId>(own_.mesh().tetrahedra.size() + own_.triangles());
+    const auto firstSeam = static_cast<CellId>(own_.mesh().tetrahedra.size() + own_.triangles());
     const FusionFrame fusionFrame(own_.mesh(), state, frame_.options, firstSeam);
     Workers alone(1, frame_.options.stop);
     if (isSample_) findCounted();

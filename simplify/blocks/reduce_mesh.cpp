@@ -1,6 +1,7 @@
 #include "simplify/blocks/reduce_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -22,8 +23,8 @@ namespace {
 /// Cells whose middles choose the planes of a band, about.
 constexpr std::size_t kSampledMiddles = 200'000;
 /// A band ends at the price at which one in so many cells is left. Blocks have fewer seams than
-/// parts (kBandFactor). With 2.5 the last level of fin has 1.18 times the error of one piece, with 2
-/// it has 1.07 times that.
+/// parts (kBandFactor). With 2.5 the last level of fin has 1.18 times the error of one piece, with
+/// 2 it has 1.07 times that.
 constexpr double kBlockFactor = 2;
 /// The price of a band is found in one part of so many, of so many cells each. It takes many: what
 /// is cheap differs from place to place.
@@ -35,6 +36,8 @@ constexpr double kAim = 0.97;
 /// twice as many cells and goes on at any price, up to blocks of so many.
 constexpr double kWorthABand = 0.02;
 constexpr std::size_t kMostBlockCells = 4 * kBlockCells;
+/// More bands have no numbers for their vertices (newVertex). A mesh of 2^53 cells takes 50.
+constexpr std::uint32_t kMostBands = 120;
 /// The share of what is left of the envelope's tolerance that a band may take. It takes no more
 /// than its boundary moves at most, which mostly is far less.
 constexpr double kToleranceShare = 0.8;
@@ -145,10 +148,10 @@ class Reduction {
   /// Bands until few enough cells are left.
   void run() {
     while (band_.cells > options_.cells) {
+      if (bands_ == kMostBands) refuse(band_.cells);
       runBand();
       ++bands_;
-      if (options_.progress)
-        options_.progress(progressOf(all_, band_.cells, std::max<std::size_t>(options_.cells, 1)));
+      report(band_.cells);
     }
   }
 
@@ -239,10 +242,12 @@ class Reduction {
     std::vector<std::vector<WholeVertex>> ownShared(band_.blocks);
     std::vector<BoundaryMove> moved(band_.blocks);
     std::vector<std::size_t> left(band_.blocks, 0);
+    std::atomic<std::size_t> gone{0};
     const std::size_t step = band_.cells / kSampledMiddles + 1;
-    workers_.forEach(band_.blocks, 1, [&](std::size_t, std::size_t i) {
+    workers_.forEach(band_.blocks, 1, [&](std::size_t worker, std::size_t i) {
       const auto b = static_cast<std::uint32_t>(i);
       Block block = blockOf(b);
+      const std::size_t before = block.piece.tetrahedra.size();
       const std::vector<LatticeBox> others = othersOf(b);
       block.others = others;
       const PartEnd end{
@@ -254,6 +259,8 @@ class Reduction {
       moved[b] = out.moved;
       left[b] = out.piece.tetrahedra.size();
       throwIfFailed(fused->put(b, 0, out.piece));
+      gone += before - left[b];
+      if (worker == 0) report(band_.cells - gone);
     });
     addMoves(moved);
     const std::size_t cells = std::accumulate(left.begin(), left.end(), std::size_t{0});
@@ -267,11 +274,22 @@ class Reduction {
     isStuck_ = removed < kWorthABand * static_cast<double>(band_.cells);
     if (!isStuck_) return;
     if (left > options_.cells && (band_.blocks == 1 || blockCells_ >= kMostBlockCells))
-      throw BlockFailed{{ErrorCode::kLimitExceeded,
-                         "the mesh cannot be reduced to " + std::to_string(options_.cells) +
-                             " cells: no fusion is left at " + std::to_string(left) +
-                             "; ask for more with `finest`"}};
+      refuse(left);
     blockCells_ *= 2;
+  }
+
+  [[noreturn]] void refuse(std::size_t left) const {
+    throw BlockFailed{{ErrorCode::kLimitExceeded,
+                       "the mesh cannot be reduced to " + std::to_string(options_.cells) +
+                           " cells: no fusion is left at " + std::to_string(left) +
+                           "; ask for more with `finest`"}};
+  }
+
+  /// So many cells are left, about. Called by the caller's thread.
+  void report(std::size_t left) const {
+    if (options_.progress)
+      options_.progress(
+          progressOf(all_, std::min(left, all_), std::max<std::size_t>(options_.cells, 1)));
   }
 
   void dealAnew(const PieceStore& fused, std::vector<std::vector<CellMiddle>> middles,

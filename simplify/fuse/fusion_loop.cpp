@@ -36,9 +36,8 @@ FusionFrame::FusionFrame(const LatticeMesh& mesh, const FusionState& whole,
   assert(whole.mesh().fusions() == 0 && whole.mesh().firstGhost() == mesh.tetrahedra.size());
   const double tolerance = options.envelopeTolerance.value_or(kEnvelopeTolerance);
   if (tolerance > 0)
-    allowed =
-        std::make_unique<AllowedSpace>(whole.mesh(), tolerance * whole.cost().frame().diagonal,
-                                       firstSeam);
+    allowed = std::make_unique<AllowedSpace>(whole.mesh(),
+                                             tolerance * whole.cost().frame().diagonal, firstSeam);
 }
 
 double progressOf(std::size_t cells, std::size_t live, std::size_t target) {
