@@ -26,6 +26,12 @@ SAMPLES = (
             ),
             ("Density seen through", {"field": "Density", "volume": "auto"}),
             ("Only where the flow is slow", {"field": "Velocity", "threshold": "Velocity=0,1"}),
+            (
+                "An own field: the pressure coefficient",
+                {"derived": "Cp = (Pressure - 1) / 2", "field": "Cp", "clip": "y:0.5"},
+            ),
+            ("Where density changes: its gradient", {"derived": "steep = mag(grad(Density))",
+                                                     "field": "steep", "clip": "y:0.5"}),
             ("The first 30 kB of 434", {"field": "Density", "quality": "bytes:30000"}),
         ),
     ),
@@ -39,6 +45,8 @@ SAMPLES = (
                 {"field": "Velocity[1]", "colormap": "cool-warm", "range": "symmetric",
                  "clip": "z:0.5"},
             ),
+            ("Vorticity in a slice", {"field": "Velocity.vorticity", "clip": "z:0.5",
+                                      "clip-mode": "slice"}),
             ("Pressure on the wall", {"field": "Pressure", "clip": "none"}),
         ),
     ),
@@ -47,6 +55,8 @@ SAMPLES = (
         "A planet's core, mantle and crust",
         (
             ("Layers: a field of cells", {"field": "Layer", "colormap": "labels", "clip": "y:0.5"}),
+            ("Parts: the crust seen through", {"parts": "Layer", "part-opacity": "crust=0.3",
+                                               "hidden-parts": "core", "clip": "y:0.5"}),
             (
                 "Hot plumes",
                 {"field": "Temperature", "iso": "Temperature=1500,2100", "surface": "off"},
@@ -62,6 +72,7 @@ SAMPLES = (
         "A loaded cantilever",
         (
             ("Von Mises stress", {"field": "VonMises", "colormap": "turbo"}),
+            ("Its least and largest value", {"field": "VonMises", "extremes": "on"}),
             ("Cut lengthwise, logarithmic", {"field": "VonMises", "clip": "y:0.5", "scale": "log"}),
             ("Parallel, without edges", {"field": "Displacement", "edges": "off",
                                               "projection": "parallel"}),

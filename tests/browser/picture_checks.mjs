@@ -10,7 +10,7 @@ const opened = ({server, browser}, query, device) =>
   browser.openComplete(`${server.url}?${query}`, device);
 
 /** Opens the dialog, fills it, and returns the file of the picture. */
-async function picture(viewer, name, {width, height, ground = 'White', title, unit}) {
+export async function picture(viewer, name, {width, height, ground = 'White', title, unit}) {
   const {page} = viewer;
   await page.getByRole('button', {name: 'Save picture'}).click();
   const dialog = page.getByRole('dialog', {name: 'Save picture'});
