@@ -1,5 +1,5 @@
-// Makes a page of a report with the viewer, of the samples fin, beam and elbow. It has pictures with
-// legends, and the numbers that the viewer saves as CSV.
+// Makes a page of a report with the viewer, of the samples fin, beam and elbow. It has pictures
+// with legends, and the numbers that the viewer saves as CSV.
 //   node report.mjs --bin DIR --viewer DIR --out DIR
 // Writes OUT/REPORT.md and its pictures. They belong in web-client/docs.
 
