@@ -121,7 +121,7 @@ class BlockRun {
     FusionLoop loop(state, fusionFrame, options, alone);
     std::uint32_t levels = 0;
     PartLevels done;
-    if (block_.others.empty() && block_.shared.empty()) {  // the whole mesh
+    if (block_.isWhole) {
       Result<std::uint32_t> all = loop.run(end.cells);
       if (!all) throw BlockFailed{all.error()};
       levels = *all;
@@ -388,7 +388,7 @@ SampledParts sampleParts(const Block& block, const BlockFrame& frame, std::size_
     piece.places.clear();
     const double left = share * static_cast<double>(piece.tetrahedra.size());
     const PartEnd end{.cells = static_cast<std::size_t>(left), .leastShare = 0};
-    Block part{block.band, block.number, std::move(piece), *shared, block.others};
+    Block part{block.band, block.number, false, std::move(piece), *shared, block.others};
     BlockRun run(std::move(part), frame, true);
     const PartLevels done = run.fuse(end);
     auto [levels, counted] = run.countedLevels(done.levels);

@@ -28,9 +28,10 @@ struct BlockFrame {
 /// A block and what lies beside it.
 struct Block {
   std::uint32_t band = 0, number = 0;
+  bool isWhole = false;  ///< there is no other block
   MeshPiece piece{};
   std::span<const WholeVertex> shared{};  ///< ascending: vertices that other blocks have too
-  std::span<const LatticeBox> others{};   ///< the boxes of the other blocks
+  std::span<const LatticeBox> others{};   ///< the boxes of the other blocks that are near
 };
 
 /// How far the boundary of a block has moved in its band, in lattice steps.

@@ -13,13 +13,22 @@ Status PieceStore::put(std::uint32_t to, std::uint32_t from, const MeshPiece& pi
   return spool_->append(bytes);
 }
 
-Result<std::vector<MeshPiece>> PieceStore::get(std::uint32_t to) const {
-  std::vector<MeshPiece> out;
+Result<std::vector<Bytes>> PieceStore::bytesOf(std::uint32_t to) const {
+  std::vector<Bytes> out;
   const std::lock_guard lock(mutex_);
   for (auto at = pieces_.lower_bound({to, 0}); at != pieces_.end() && at->first.first == to; ++at) {
-    Bytes bytes(at->second.size);
-    if (Status s = spool_->read(at->second.at, bytes); !s) return std::unexpected(s.error());
-    Result<MeshPiece> piece = pieceFrom(bytes);
+    out.emplace_back(at->second.size);
+    if (Status s = spool_->read(at->second.at, out.back()); !s) return std::unexpected(s.error());
+  }
+  return out;
+}
+
+Result<std::vector<MeshPiece>> PieceStore::get(std::uint32_t to) const {
+  Result<std::vector<Bytes>> all = bytesOf(to);
+  if (!all) return std::unexpected(all.error());
+  std::vector<MeshPiece> out;
+  for (Bytes& bytes : *all) {
+    Result<MeshPiece> piece = pieceFrom(std::exchange(bytes, {}));
     if (!piece) return std::unexpected(piece.error());
     out.push_back(std::move(*piece));
   }

@@ -33,6 +33,8 @@ class PieceStore {
     std::uint64_t at = 0, size = 0;
   };
 
+  [[nodiscard]] Result<std::vector<Bytes>> bytesOf(std::uint32_t to) const;
+
   mutable std::mutex mutex_;
   std::unique_ptr<ByteSpool> spool_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Extent> pieces_;  // by to and from

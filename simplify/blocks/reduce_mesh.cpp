@@ -217,14 +217,22 @@ class Reduction {
   [[nodiscard]] Block blockOf(std::uint32_t b) const {
     Block out;
     out.band = band_.number, out.number = b;
+    out.isWhole = band_.blocks == 1;
     const std::vector<MeshPiece> pieces = orThrow(band_.store->get(b));
     out.piece = joined(pieces, frame_.shape);
     out.shared = band_.shared[b];
     return out;
   }
+  /// The boxes of other blocks that a fusion of block `b` may reach.
   [[nodiscard]] std::vector<LatticeBox> othersOf(std::uint32_t b) const {
-    std::vector<LatticeBox> out = band_.boxes;
-    out.erase(out.begin() + b);
+    LatticeBox own = band_.boxes[b];
+    const double tolerance = frame_.options.envelopeTolerance.value_or(0);
+    const auto reach =
+        static_cast<std::int32_t>(std::ceil(tolerance * frame_.samples->diagonal)) + 1;
+    for (std::size_t i = 0; i < 3; ++i) own.low[i] -= reach, own.high[i] += reach;
+    std::vector<LatticeBox> out;
+    for (std::uint32_t other = 0; other < band_.blocks; ++other)
+      if (other != b && meet(own, band_.boxes[other])) out.push_back(band_.boxes[other]);
     return out;
   }
 
@@ -239,7 +247,6 @@ class Reduction {
     // fused pieces wait in a store of their own until the planes of the next band are known
     const std::unique_ptr<PieceStore> fused = newStore();
     std::vector<std::vector<CellMiddle>> middles(band_.blocks);
-    std::vector<std::vector<WholeVertex>> ownShared(band_.blocks);
     std::vector<BoundaryMove> moved(band_.blocks);
     std::vector<std::size_t> left(band_.blocks, 0);
     std::atomic<std::size_t> gone{0};
