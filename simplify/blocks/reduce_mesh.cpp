@@ -5,14 +5,17 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <utility>
 
+#include "codec/mesh/boundary.h"
 #include "codec/mesh/predicates.h"
 #include "simplify/blocks/block_fusion.h"
 #include "simplify/blocks/shared_vertices.h"
 #include "simplify/cost/boundary_weight.h"
+#include "simplify/measure/field_replay.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/workers.h"
 #include "simplify/parts/band_price.h"
