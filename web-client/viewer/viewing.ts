@@ -111,12 +111,10 @@ export class Viewing implements LaterHost, PictureHost {
     });
   }
 
-  /** Those of vectors wait for the first picture, unless an attribute names one. */
+  /** Those of vectors wait for the first picture, unless one colours it. */
   private hasQuantities({components, association}: FieldInfo): boolean {
-    const isNamed = (['field', 'iso', 'threshold'] as const).some((name) =>
-      /\.(div|vorticity|Q)\b/.test(this.page.read(name) ?? ''),
-    );
-    const isTime = this.later !== null || isNamed;
+    const colours = /\.(div|vorticity|Q)\b/.test(this.page.read('field') ?? '');
+    const isTime = this.later !== null || colours;
     return components === 6 || (components === 3 && association === 'point' && isTime);
   }
 
