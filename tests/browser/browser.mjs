@@ -177,7 +177,7 @@ export class ViewerPage {
     page.on('pageerror', (error) => this.problems.push(String(error.stack ?? error)));
     page.on('console', (message) => {
       if (message.type() === 'error' && !/ERR_|WebSocket/.test(message.text()))
-        this.problems.push(message.text());
+        this.problems.push(message.text() || `an error without words at ${message.location().url}`);
     });
   }
 

@@ -133,6 +133,7 @@ async function switchesFieldsAndMaps({server, browser, logs}) {
   await viewer.waitForPicture();
   let before = await viewer.screenshot('field-first');
   const fields = viewer.page.locator('qtet-viewer select[name=field]');
+  await fields.locator('option').nth(8).waitFor({state: 'attached'});
   const names = await fields
     .locator('option')
     .evaluateAll((options) => options.map(({value}) => value));
@@ -143,6 +144,9 @@ async function switchesFieldsAndMaps({server, browser, logs}) {
     'Velocity.x',
     'Velocity.y',
     'Velocity.z',
+    'Velocity.div',
+    'Velocity.vorticity',
+    'Velocity.Q',
   ]);
   const expectChange = async (name, what) => {
     await viewer.settle();
@@ -541,7 +545,7 @@ async function isAccessible({server, browser}) {
     await viewer.waitForState('complete');
     await viewer.waitForPicture();
     notes.push(await viewer.page.locator('qtet-viewer .live').innerText());
-    for (const summary of await viewer.page.locator('qtet-viewer summary').all())
+    for (const summary of await viewer.page.locator('qtet-viewer summary:visible').all())
       if (!(await summary.evaluate(({parentElement}) => parentElement.open))) await summary.click();
     const expectNone = async (what) =>
       assert.deepEqual(await viewer.accessibilityViolations(), [], `${colorScheme}, ${what}`);

@@ -6,10 +6,12 @@ import type {FieldInfo} from '../../core/protocol/fields';
 import {fillSelect, type SelectOption} from '../page/select';
 import {scalarTitle} from './panel';
 
+const kTensorComponents = 6;
+
 /**
- * Offers every field, of a series the instant that is shown. The quantities of a tensor or a
- * vector stand before its magnitude and its components. Fields of points, of cells, and own ones
- * are in groups if there are several kinds.
+ * Offers every field, of a series the instant that is shown. The quantities of a tensor stand
+ * before its magnitude and its components, those of a vector behind them. Fields of points, of
+ * cells, and own ones are in groups if there are several kinds.
  */
 export function fillScalars(
   select: HTMLSelectElement,
@@ -37,14 +39,15 @@ export function fillScalars(
   const options = usable.flatMap(({info, field}) => {
     if (info.of !== undefined) return [];
     const key = scalarText({field, component: kMagnitude}, fields);
-    return [
-      ...usable
-        .filter((its) => its.info.of === key)
-        .map((its) => optionOf({field: its.field, component: kMagnitude}, its.info)),
-      ...[kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) =>
-        optionOf({field, component}, info),
-      ),
-    ];
+    const quantities = usable
+      .filter((its) => its.info.of === key)
+      .map((its) => optionOf({field: its.field, component: kMagnitude}, its.info));
+    const own = [kMagnitude, ...(info.components > 1 ? info.minimum.keys() : [])].map((component) =>
+      optionOf({field, component}, info),
+    );
+    return info.components === kTensorComponents
+      ? [...quantities, ...own]
+      : [...own, ...quantities];
   });
   const grouped = new Set(options.map(({group}) => group)).size > 1;
   fillSelect(
