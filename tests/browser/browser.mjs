@@ -174,7 +174,7 @@ export class ViewerPage {
   constructor(page, out) {
     this.page = page;
     this.out = out;
-    page.on('pageerror', (error) => this.problems.push(String(error.stack ?? error)));
+    page.on('pageerror', (error) => this.problems.push(error.stack || String(error)));
     page.on('console', (message) => {
       if (message.type() === 'error' && !/ERR_|WebSocket/.test(message.text()))
         this.problems.push(message.text() || `an error without words at ${message.location().url}`);

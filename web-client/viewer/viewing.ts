@@ -105,10 +105,13 @@ export class Viewing implements LaterHost, PictureHost {
     if (manifest && derived) return derived.read(text, mesh, this.client, () => this.apply());
     if (own || (text === '' && !manifest?.fields.some((its) => this.hasQuantities(its)))) return;
     mesh.own = true;
-    void import('./page/own_fields').then(({OwnFields}) => {
-      mesh.own = new OwnFields();
-      this.apply();
-    });
+    import('./page/own_fields').then(
+      ({OwnFields}) => {
+        mesh.own = new OwnFields();
+        this.apply();
+      },
+      () => (mesh.own = null), // the next change tries again
+    );
   }
 
   /** Those of vectors wait for the first picture, unless one colours it. */
