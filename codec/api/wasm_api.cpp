@@ -204,6 +204,10 @@ const std::uint32_t* qtet_tetrahedra() {
 const std::uint32_t* qtet_boundary() {
   return refiner && !refiner->boundary().empty() ? refiner->boundary().data()->data() : nullptr;
 }
+std::uint32_t qtet_across(std::uint32_t tetrahedron, std::uint32_t corner) {
+  if (!refiner || tetrahedron >= refiner->tetrahedra().size() || corner > 3) return qtet::kGhost;
+  return refiner->across(tetrahedron, corner).value_or(qtet::kGhost);
+}
 const std::int32_t* qtet_field(std::uint32_t field) {
   return qtet_field_chunks_applied(field) > 0 ? refiner->fieldValues(field).data() : nullptr;
 }

@@ -74,6 +74,9 @@ std::uint32_t qtet_boundary_count();
 const std::int32_t* qtet_points();       ///< 3 a vertex, lattice coordinates
 const std::uint32_t* qtet_tetrahedra();  ///< 4 a tetrahedron
 const std::uint32_t* qtet_boundary();    ///< 3 a triangle, counter-clockwise seen from outside
+/// The tetrahedron across the face opposite to a corner below 4; 0xFFFFFFFF at the boundary, and
+/// where there is no such tetrahedron.
+std::uint32_t qtet_across(std::uint32_t tetrahedron, std::uint32_t corner);
 /// Components a vertex or, of a cell field, a tetrahedron; 0 when it has no chunk yet.
 const std::int32_t* qtet_field(std::uint32_t field);
 /// Writes the 32 bytes of the mesh digest.

@@ -31,6 +31,23 @@ void GrowingMesh::start(int positionBits, std::span<const VertexId> frozen) {
   for (std::uint32_t i = 0; i < boundary.size(); ++i) addCell(i | kBoundaryBit);
 }
 
+std::optional<CellRef> GrowingMesh::across(CellRef tetrahedron, std::size_t corner) const {
+  assert(tetrahedron < tetrahedra.size() && corner < 4);
+  const Tetrahedron& t = tetrahedra[tetrahedron];
+  const std::array<VertexId, 4> last = withLast(t, corner);
+  const std::span<const VertexId> face = std::span(last).first(3);
+  const VertexId least =
+      *std::ranges::min_element(face, {}, [&](VertexId v) { return states_[v].size; });
+  for (const CellRef ref : star(least)) {
+    if (ref & kBoundaryBit) break;  // they come last
+    if (ref == tetrahedron) continue;
+    const Tetrahedron& other = tetrahedra[ref];
+    const auto has = [&](VertexId v) { return std::ranges::find(other, v) != other.end(); };
+    if (std::ranges::all_of(face, has)) return ref;
+  }
+  return std::nullopt;
+}
+
 Slots GrowingMesh::slotsAfter(const Split& split, const Link& link) const {
   Slots after = next();
   after.vertices += static_cast<std::uint32_t>(split.k) - 1;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -97,6 +98,9 @@ class GrowingMesh {
     assert(v < states_.size());
     return {pool_.at(states_[v].first), states_[v].size};
   }
+  /// The other tetrahedron with the face opposite to this corner; nullopt at the boundary.
+  /// REQUIRES: a tetrahedron of the mesh, a corner below 4.
+  [[nodiscard]] std::optional<CellRef> across(CellRef tetrahedron, std::size_t corner) const;
   /// The star holds a boundary triangle.
   [[nodiscard]] bool onBoundary(VertexId v) const { return states_[v].onBoundary; }
   /// Level at which a vertex got its present position; 0 in the base mesh.

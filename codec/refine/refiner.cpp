@@ -176,6 +176,9 @@ std::span<const LevelCounts> Refiner::levelCounts() const { return state_->mesh.
 std::span<const LatticePoint> Refiner::points() const { return state_->mesh.mesh().points; }
 std::span<const Tetrahedron> Refiner::tetrahedra() const { return state_->mesh.mesh().tetrahedra; }
 std::span<const Triangle> Refiner::boundary() const { return state_->mesh.mesh().boundary; }
+std::optional<CellId> Refiner::across(CellId tetrahedron, std::size_t corner) const {
+  return state_->mesh.mesh().across(tetrahedron, corner);
+}
 std::span<const std::int32_t> Refiner::fieldValues(std::uint32_t field) const {
   return state_->fields.values(field);
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -87,6 +88,8 @@ class Refiner {
   [[nodiscard]] std::span<const LatticePoint> points() const;
   [[nodiscard]] std::span<const Tetrahedron> tetrahedra() const;
   [[nodiscard]] std::span<const Triangle> boundary() const;
+  /// GrowingMesh::across.
+  [[nodiscard]] std::optional<CellId> across(CellId tetrahedron, std::size_t corner) const;
   /// components * points integers, or components * tetrahedra for a cell field. Until the field's
   /// block of a chunk arrives, the chunk's vertices carry their fused vertex's value and its
   /// tetrahedra their prediction.

@@ -160,6 +160,7 @@ export function fieldFrame(stream: number, chunk: number, field: number): ArrayB
 /** Counts what is applied, in order. Chunk n makes a mesh of n + 1 tetrahedra. */
 export class FakeCodec implements Codec {
   isWhole = true;
+  across = (): number => 0xffffffff;
   chunksApplied = 0;
   corrupt = -1;
   corruptField = Infinity;

@@ -64,7 +64,8 @@ test('hasAnAttributeThatIsCheckedAndControls', () => {
     .slice(first, kViewAttributes.indexOf('toy' as never) + 1)
     .join(' ');
   expect(layers).toBe(
-    'clip clip-mode iso threshold parts hidden-parts part-opacity part-colors volume toy',
+    'clip clip-mode iso threshold parts hidden-parts part-opacity part-colors ' +
+      'streamlines seeds streamline-look streamline-limits volume toy',
   );
   expect(wrongParts(read({toy: 'p=1'}))).toEqual([]);
   expect(wrongParts(read({toy: 'p=1,2'}))).toEqual([

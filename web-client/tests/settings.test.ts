@@ -102,6 +102,7 @@ describe('settings', () => {
       creases: true,
       surface: true,
       opacity: 1,
+      lines: '',
       planes: [],
       hasFirstCut: false,
       mode: 'cut',

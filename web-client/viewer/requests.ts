@@ -6,7 +6,7 @@ import {kPlainDisplay, type Display} from '../core/picture/display';
 import type {Plane} from '../core/protocol/geometry';
 import {isEqual} from '../core/protocol/equal';
 import type {Client} from '../core/session/client';
-import {parting} from './page/parting';
+import {lateRequests} from './page/late_requests';
 import type {ShownMesh} from './page/shown_mesh';
 import {planeOf} from './settings/clip_plane';
 import {warpOf} from './settings/warp';
@@ -53,7 +53,11 @@ export function displayOf(
     restEdges: settings.restEdges,
     volume: settings.volume !== null,
     flux: parseScalar(read('flux'), fields),
-    parts: parting.read?.(read, fields, mesh.selectedPart) ?? null,
+    parts: lateRequests.parts?.(read, fields, mesh.selectedPart) ?? null,
+    streamlines:
+      lateRequests.streamlines?.(read, mesh.manifest!, (plane) =>
+        planeOf(plane, mesh.base.bounds),
+      ) ?? null,
     ...(ahead.length > 0 && {ahead}),
   };
   const used = [color?.field];

@@ -10,7 +10,7 @@ import {find} from './page/find';
 import {isOnDark} from './page/ground';
 import type {Notices} from './page/notices';
 import type {Kept, Page} from './page/page';
-import {awaitsParts} from './page/parting';
+import {awaitsRequests} from './page/late_requests';
 import {settingsFor} from './page/shown_mesh';
 import type {Succession} from './page/succession';
 import {displayOf, Requests} from './requests';
@@ -166,7 +166,7 @@ export class ShownPicture {
     // A picture without its planes would show what the address hides.
     if (!mesh.manifest || mesh.base.bounds.length === 0 || mesh.isDeriving) return;
     const read = this.page.read.bind(this.page);
-    if (awaitsParts(read, () => this.showDisplay())) return;
+    if (awaitsRequests(read, () => this.showDisplay())) return;
     const settings = next ? settingsFor(next, read) : shown;
     const display = displayOf(settings, mesh, read);
     if (!this.requests.show(display, mesh)) return;

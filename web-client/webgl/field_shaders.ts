@@ -9,6 +9,35 @@ import {kColorMapEntries} from '../core/picture/color_maps';
 import {kOpacitySteps, kPlainCode} from '../core/picture/paint';
 import {kBendShader} from '../core/picture/log_scale';
 
+/** The colour of a value: the map over the range. Its uniforms are shared by all that has one. */
+export const kColorShader = /* glsl */ `
+  uniform sampler2D colorMap;
+  // the ends of the map, in units of the value; of the field's value itself if logarithmic
+  uniform vec2 range;
+  uniform vec2 scaleRange; // the field's values that 0 and 1 stand for
+  uniform bool logarithmic;
+  uniform float linear; // linearPart of the range
+  uniform vec4 below; // the colours beyond the range; those of its ends if transparent
+  uniform vec4 above;
+  uniform vec3 plainColor;
+
+${kBendShader}
+
+  vec3 colorOf(float its) {
+    float t = (its - range.x) / max(range.y - range.x, 1e-12);
+    if (logarithmic) {
+      float value = mix(scaleRange.x, scaleRange.y, its);
+      float low = bend(range.x, linear, range.x);
+      t = (bend(value, linear, range.x) - low) / (bend(range.y, linear, range.x) - low);
+    }
+    if (t < 0.0 && below.a > 0.0) return below.rgb;
+    if (t > 1.0 && above.a > 0.0) return above.rgb;
+    t = clamp(t, 0.0, 1.0);
+    // Sample the centres of entries, so that both ends of the range show the table's own ends.
+    float at = (t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0;
+    return texture(colorMap, vec2(at, 0.5)).rgb;
+  }`;
+
 export const kFieldVertexShader = /* glsl */ `
   uniform int firstHalf;
   in float value;
@@ -51,16 +80,7 @@ export const kFieldFragmentShader = /* glsl */ `
   in vec3 vCorner;
   flat in vec3 vCreases;
   flat in vec4 vPaint;
-  uniform sampler2D colorMap;
-  // the ends of the map, in units of vValue; of the value itself if logarithmic
-  uniform vec2 range;
-  uniform vec2 scaleRange; // the values that vValue 0 and 1 stand for
-  uniform bool logarithmic;
-  uniform float linear; // linearPart of the range
-  uniform vec4 below; // the colours beyond the range; those of its ends if transparent
-  uniform vec4 above;
   uniform bool colored;
-  uniform vec3 plainColor;
   uniform bool lit;
   uniform bool twoSided;
   uniform vec4 clipPlanes[3];
@@ -72,24 +92,12 @@ export const kFieldFragmentShader = /* glsl */ `
   uniform bool onDark; // creases are lighter than their surface
   uniform float pixelRatio;
 
-${kBendShader}
+${kColorShader}
 
   vec3 surfaceColor(int code) {
     if (code > 127) return vPaint.rgb;
     // a missing value makes its triangle plain
-    if (!colored || isnan(vValue)) return plainColor;
-    float t = (vValue - range.x) / max(range.y - range.x, 1e-12);
-    if (logarithmic) {
-      float value = mix(scaleRange.x, scaleRange.y, vValue);
-      float low = bend(range.x, linear, range.x);
-      t = (bend(value, linear, range.x) - low) / (bend(range.y, linear, range.x) - low);
-    }
-    if (t < 0.0 && below.a > 0.0) return below.rgb;
-    if (t > 1.0 && above.a > 0.0) return above.rgb;
-    t = clamp(t, 0.0, 1.0);
-    // Sample the centres of entries, so that both ends of the range show the table's own ends.
-    float at = (t * ${kColorMapEntries - 1}.0 + 0.5) / ${kColorMapEntries}.0;
-    return texture(colorMap, vec2(at, 0.5)).rgb;
+    return !colored || isnan(vValue) ? plainColor : colorOf(vValue);
   }
 
   // How strong lines are at a place: edges, creases. All edges have one strength (edge_fade.ts), so

@@ -82,8 +82,9 @@ export class LineParts {
     );
   }
 
-  show(lines: Float32Array): void {
-    this.lines = lines;
+  /** Null: none. */
+  show(lines: Float32Array | null): void {
+    this.lines = lines ?? new Float32Array(0);
     this.made.dispose();
   }
 

@@ -11,7 +11,8 @@ import {kFieldFragmentShader, kFieldVertexShader} from './field_shaders';
 import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
 import {isOutside, type Eye} from './lens';
-import {LineParts} from './line_parts';
+import type {FlowLines} from './flow_lines';
+import type {LineParts} from './line_parts';
 import type {Matrix} from './matrix';
 import type {Size} from './pose';
 import {kSoupAttributes, Soup} from './soup';
@@ -39,7 +40,6 @@ export class MeshParts {
   /** By name. */
   private readonly layers = new Map<string, Soup>();
   private readonly cuts: readonly Soup[];
-  private readonly restEdges: LineParts;
   private readonly program: Program;
   private readonly colors: ColorTable;
   /** The darkness of edges and creases, and the share of it that creases have now. */
@@ -52,13 +52,16 @@ export class MeshParts {
   private isClosed = true;
   /** It is loaded with the first soup that needs it. */
   order: ((...its: Parameters<typeof backToFront>) => Uint32Array | null) | null = null;
+  /** They are loaded with the first lines. */
+  flow: FlowLines | null = null;
+  restEdges: LineParts | null = null;
+  private flowLook = '';
   /** The uniforms of all. */
   private readonly look: Record<string, Uniform>;
 
   constructor(private readonly graphics: Graphics) {
     this.surface = new Soup(graphics, true);
     this.cuts = Array.from({length: kMaxPlanes}, () => new Soup(graphics, false));
-    this.restEdges = new LineParts(graphics);
     this.program = new Program(
       graphics,
       `${kVertexHead}${kFieldVertexShader}`,
@@ -89,7 +92,8 @@ export class MeshParts {
     for (const [name, soup] of Object.entries(changed)) this.layer(name).show(soup);
     for (const soup of this.layers.values()) soup.setClip(snapshot.planes);
     this.surface.setClip(snapshot.planes);
-    this.restEdges.show(snapshot.warp?.restEdges ?? new Float32Array(0));
+    if (snapshot.streamlines !== undefined) this.flow?.show(snapshot.streamlines);
+    this.restEdges?.show(snapshot.warp?.restEdges ?? null);
     this.bounds = snapshot.bounds;
     this.isClosed = snapshot.planes.length === 0;
     this.cuts.forEach((soup, i) => {
@@ -109,10 +113,21 @@ export class MeshParts {
 
   clear(): void {
     for (const soup of this.all) soup.show(null);
-    this.restEdges.show(new Float32Array(0));
+    this.flow?.show(null);
+    this.restEdges?.show(null);
   }
 
-  setLook({map, reversed, edges, creases, opacity, beyond, onDark = false}: Look): void {
+  setLook({
+    map,
+    reversed,
+    edges,
+    creases,
+    opacity,
+    beyond,
+    onDark = false,
+    lines = '',
+  }: Look): void {
+    this.flowLook = lines;
     this.colors.show(map, reversed);
     this.lines.edges = edges ? kEdgeStrength : 0;
     this.lines.creases = creases ? kCreaseStrength : 0;
@@ -184,7 +199,10 @@ export class MeshParts {
     };
     for (const soup of visible) if (!isClear(soup)) drawSoup(soup, false);
     const onDark = Boolean(ground.onDark);
-    this.restEdges.draw({toEye, toCube}, {onDark, opacity: lines.creaseFade, pixelRatio});
+    this.restEdges?.draw({toEye, toCube}, {onDark, opacity: lines.creaseFade, pixelRatio});
+    const [x0, y0, z0, x1, y1, z1] = this.bounds;
+    const diagonal = Math.hypot(x1! - x0!, y1! - y0!, z1! - z0!);
+    this.flow?.draw({toEye, toCube}, this.look, {kind: this.flowLook, diagonal, pixelRatio});
     // Soups that can be seen through come last, and hide nothing.
     for (const soup of visible) if (isClear(soup) || soup.hasClear) drawSoup(soup, true);
   }
@@ -201,7 +219,8 @@ export class MeshParts {
 
   dispose(): void {
     for (const soup of this.all) soup.dispose();
-    this.restEdges.dispose();
+    this.restEdges?.dispose();
+    this.flow?.dispose();
     this.program.dispose();
     this.colors.texture.dispose();
   }

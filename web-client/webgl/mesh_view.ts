@@ -75,14 +75,8 @@ export class MeshView implements View {
     const {frames, scene} = this;
     // A picture in tiles shows one mesh.
     if (this.inTiles) return void this.inTiles.finally(() => this.show(snapshot, drawn, change));
-    if (snapshot.volume && !scene.volume)
-      return void scene
-        .loadVolume()
-        .then((loaded) =>
-          this.show(loaded ? snapshot : {...snapshot, volume: null}, drawn, change),
-        );
-    if (!scene.parts.order && [snapshot.surface, ...snapshot.cuts].some((soup) => soup?.hasClear))
-      return void scene.loadOrder().then(() => this.show(snapshot, drawn, change));
+    const coming = scene.awaits(snapshot);
+    if (coming) return void coming.then((its) => this.show(its, drawn, change));
     if (change) scene.changeLattice(change);
     frames.waiting.push(drawn);
     // While a series plays, each instant has its turn: the next one would interrupt it.

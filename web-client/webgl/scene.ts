@@ -36,19 +36,36 @@ export class Scene {
     return this.hasVolume && this.camera.hasMesh;
   }
 
-  /** Returns false and reports the error if the network fails. */
-  async loadVolume(): Promise<boolean> {
-    const loaded = await import('./volume_view').catch(reportError);
-    if (!loaded) return false;
-    this.volume ??= this.newVolume(loaded.VolumeView);
-    this.volume.setLook(this.volumeLook);
-    return true;
-  }
-
-  /** Where the network fails, triangles that are seen through have no order. */
-  async loadOrder(): Promise<void> {
-    const loaded = await import('./clear_order').catch(reportError);
-    this.parts.order = loaded ? loaded.backToFront : () => null;
+  /**
+   * Loads what draws this picture and is not here. Gives the picture without what the network did
+   * not bring, or null if all is here.
+   */
+  awaits(snapshot: Snapshot): Promise<Snapshot> | null {
+    const {parts} = this;
+    const {surface, cuts, streamlines, volume, warp} = snapshot;
+    if (volume && !this.volume)
+      return loaded(import('./volume_view'), snapshot, {volume: null}, ({VolumeView}) => {
+        this.volume ??= this.newVolume(VolumeView);
+        this.volume.setLook(this.volumeLook);
+      });
+    if (streamlines && !parts.flow)
+      return loaded(import('./flow_lines'), snapshot, {streamlines: null}, ({FlowLines}) => {
+        parts.flow ??= new FlowLines(this.graphics);
+      });
+    if (warp?.restEdges && !parts.restEdges) {
+      const plain = {...warp};
+      delete plain.restEdges;
+      return loaded(import('./line_parts'), snapshot, {warp: plain}, ({LineParts}) => {
+        parts.restEdges ??= new LineParts(this.graphics);
+      });
+    }
+    // Without an order triangles that are seen through are drawn as they come.
+    if (!parts.order && [surface, ...cuts].some((soup) => soup?.hasClear))
+      return import('./clear_order').catch(reportError).then((order) => {
+        parts.order = order ? order.backToFront : () => null;
+        return snapshot;
+      });
+    return null;
   }
 
   /** The next mesh lies on another lattice, in the same place. */
@@ -82,8 +99,10 @@ export class Scene {
 
   /** Returns false if it is the same as before: a picture costs more than a comparison. */
   setLook(next: Look): boolean {
-    const {map, reversed, edges, creases, opacity, beyond, volume, onDark} = next;
-    const look = JSON.stringify([map, reversed, edges, creases, opacity, beyond, volume, onDark]);
+    const {map, reversed, edges, creases, opacity, beyond, volume, onDark, lines} = next;
+    const look = JSON.stringify([
+      ...[map, reversed, edges, creases, opacity, beyond, volume, onDark, lines],
+    ]);
     if (look === this.last.look) return false;
     this.last.look = look;
     this.parts.setLook(next);
@@ -165,4 +184,16 @@ export class Scene {
     this.parts.dispose();
     this.volume?.dispose();
   }
+}
+
+async function loaded<Module>(
+  coming: Promise<Module>,
+  snapshot: Snapshot,
+  without: Partial<Snapshot>,
+  use: (its: Module) => void,
+): Promise<Snapshot> {
+  const its = await coming.catch(reportError);
+  if (!its) return {...snapshot, ...without};
+  use(its);
+  return snapshot;
 }

@@ -66,6 +66,8 @@ export interface Look {
   beyond?: readonly [readonly number[] | null, readonly number[] | null];
   /** Opacities of the volume at even shares of the range; null hides it. */
   volume?: number[] | null;
+  /** One of kLooks; another text means the first. */
+  lines?: string;
   /** The canvas lies on a dark ground: creases are light, and the volume's colours stand off. */
   onDark?: boolean;
 }

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "codec/log/log_index.h"
 #include "codec/log/log_writer.h"
@@ -143,6 +145,32 @@ TEST(GrowingMesh, starsAndSpreadsAreThoseOfAMeshBuiltAnewAfterEverySplit) {
   EXPECT_TRUE(std::ranges::equal(replay.growing.points, replay.refiner->points()));
   EXPECT_TRUE(std::ranges::equal(replay.growing.tetrahedra, replay.refiner->tetrahedra()));
   EXPECT_TRUE(std::ranges::equal(replay.growing.boundary, replay.refiner->boundary()));
+}
+
+TEST(GrowingMesh, acrossAFaceLiesTheOtherCellThatHasIt) {
+  Replay replay(testing::gridMesh(4, 1), 0);
+  const GrowingMesh& mesh = replay.growing;
+  replay.run([](VertexId) {}, [](VertexId) {});
+  std::map<Triangle, std::vector<CellRef>> cellsOf;  // by the face's corners, ascending
+  const auto faceOf = [&](CellRef cell, std::size_t corner) {
+    const auto last = withLast(mesh.tetrahedra[cell], corner);
+    Triangle face{last[0], last[1], last[2]};
+    std::ranges::sort(face);
+    return face;
+  };
+  for (CellRef cell = 0; cell < mesh.tetrahedra.size(); ++cell)
+    for (std::size_t corner = 0; corner < 4; ++corner)
+      cellsOf[faceOf(cell, corner)].push_back(cell);
+  std::size_t open = 0;
+  for (CellRef cell = 0; cell < mesh.tetrahedra.size(); ++cell)
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const std::vector<CellRef>& its = cellsOf[faceOf(cell, corner)];
+      const auto other = mesh.across(cell, corner);
+      open += !other;
+      ASSERT_EQ(other.has_value(), its.size() == 2) << "cell " << cell << ", corner " << corner;
+      if (other) ASSERT_EQ(*other, its[0] == cell ? its[1] : its[0]);
+    }
+  EXPECT_EQ(open, mesh.boundary.size());
 }
 
 TEST(GrowingMesh, spreadsOfAFineLatticeAreMeasuredInCoarserSteps) {

@@ -51,6 +51,8 @@ export interface Codec {
   points(): Int32Array;
   tetrahedra(): Uint32Array;
   boundary(): Uint32Array;
+  /** The cell across the face opposite to a corner; kOutside at the boundary. REQUIRES: isWhole. */
+  across(cell: number, corner: number): number;
   /** One tuple a vertex, or a tetrahedron for a cell field; null while the field has no chunk. */
   field(field: number, components: number): Int32Array | null;
   /** SHA-256 of the mesh, lower-case hexadecimal. */
@@ -124,6 +126,7 @@ interface Exports {
   qtet_points(): number;
   qtet_tetrahedra(): number;
   qtet_boundary(): number;
+  qtet_across(cell: number, corner: number): number;
   qtet_field(field: number): number;
   qtet_digest(out: number): void;
 }
@@ -270,6 +273,9 @@ export class WasmCodec implements Codec {
       this.wasm.qtet_boundary() >>> 0,
       3 * this.boundaryCount,
     );
+  }
+  across(cell: number, corner: number): number {
+    return this.wasm.qtet_across(cell, corner) >>> 0;
   }
   field(field: number, components: number): Int32Array | null {
     const address = this.wasm.qtet_field(field) >>> 0;

@@ -5,6 +5,15 @@ import {kClipModes, kMaxPlanes} from '../picture/display';
 import {kNoClip, parseClip} from './clip';
 import {parseNumbers} from './field_values';
 import type {LayerAttribute} from './layers';
+import {
+  isLook,
+  kFirstSeeds,
+  kLooks,
+  kMostAlongPlane,
+  kMostLines,
+  parseLimits,
+  parseSeeds,
+} from './streamlines_text';
 import {kAutoVolume, isVolume, kMaxOpacities} from './volume';
 
 /** Whether the text means something, whatever the mesh is, and the texts that it takes. */
@@ -47,5 +56,16 @@ export const kLayerRules: Readonly<Record<LayerAttribute, LayerRule>> = {
     'parts with an opacity above 0, at most 1: "Steel=0.3,3=0.5"',
   ],
   'part-colors': [arePairs('[\\da-f]{6}'), 'parts with a colour: "Steel=ff8800,3=00ff00"'],
+  streamlines: [(text) => text !== '', 'a field of vectors at points'],
+  seeds: [
+    (text) => parseSeeds(text) !== null,
+    `${kFirstSeeds}, line 0,0,0 1,0,0 20, plane x:0.5 8, or sphere 0,0,0 0.1 50, with ";" ` +
+      `between several; at most ${kMostLines} of a kind, and ${kMostAlongPlane} along a plane`,
+  ],
+  'streamline-look': [isLook, kLooks.join(', ')],
+  'streamline-limits': [
+    (text) => parseLimits(text) !== null,
+    'steps, length over the diagonal, and time, each or none: steps=500 length=2 time=0.1',
+  ],
   volume: [isVolume, `2 to ${kMaxOpacities} opacities from 0 to 1, or ${kAutoVolume}`],
 };

@@ -5,10 +5,11 @@ import {clip} from './clip';
 import {isosurfaces} from './isosurfaces';
 import type {FieldLayer, Layer} from './layer';
 import {parts} from './parts';
+import {streamlines} from './streamlines';
 import {threshold} from './threshold';
 import {volume} from './volume';
 
-const kAll = [clip, isosurfaces, threshold, parts, volume] as const;
+const kAll = [clip, isosurfaces, threshold, parts, streamlines, volume] as const;
 
 type Listed = (typeof kAll)[number];
 type Further = Extract<Listed, {more: unknown}>['more'][number]['name'];

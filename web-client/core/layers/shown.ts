@@ -24,6 +24,7 @@ export function fieldsOf(display: Display): number[] {
     display.warp,
     display.flux,
     display.parts?.scalar,
+    display.streamlines,
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];
   const named = scalars.filter((scalar) => scalar != null).map(({field}) => field);

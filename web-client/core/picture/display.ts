@@ -8,6 +8,7 @@ import type {FieldScale, Scalar} from './field_scale';
 import type {CellPaint, Cells} from './section';
 import {slice} from './slice';
 import {boundarySoup, type CreasesOf, type TriangleSoup} from './triangle_soup';
+import type {StreamlinesRequest} from './streamlines';
 import type {Warp} from './warp';
 
 /**
@@ -42,6 +43,7 @@ export interface Display extends MayDerive {
   /** Fields that may be shown soon: they are fetched and decoded behind all else. */
   ahead?: number[];
   parts?: PartsRequest | null;
+  streamlines?: StreamlinesRequest | null;
   /** Layers without a member of their own, by name; the values are in [0, 1], too. */
   layers?: Record<string, {scalar: Scalar; values: number[]}>;
 }

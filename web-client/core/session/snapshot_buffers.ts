@@ -6,7 +6,7 @@ import {buffersOfVolume} from '../picture/volume';
 import type {Snapshot} from './worker_messages';
 
 export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
-  const {surface, cuts, volume, warp} = snapshot;
+  const {surface, cuts, volume, warp, streamlines} = snapshot;
   const soups = [surface, ...cuts, ...kLayers.map((layer) => soupOf(snapshot, layer))].filter(
     (soup) => soup !== undefined,
   );
@@ -18,6 +18,7 @@ export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
   return [
     ...arrays.map(({buffer}) => buffer as ArrayBuffer),
     ...(warp?.restEdges ? [warp.restEdges.buffer as ArrayBuffer] : []),
+    ...(streamlines ? [streamlines.points.buffer as ArrayBuffer] : []),
     ...(volume ? buffersOfVolume(volume) : []),
   ];
 }

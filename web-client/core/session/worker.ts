@@ -9,6 +9,7 @@ import {partCells} from '../layers/parts';
 import {derivation} from '../picture/derivation';
 import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
+import {lineMaking} from '../picture/line_making';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
@@ -121,15 +122,17 @@ function obey(
     case 'start':
       run = message.run;
       return session.start(message.source);
-    case 'display':
+    case 'display': {
       ({display: last} = message);
-      if (last.parts && !partCells.paint)
-        return void retry(() => import('../layers/part_cells')).then((cells) => {
-          Object.assign(partCells, cells);
-          obey({session, publisher, coarse, ...its}, {type: 'display', display: last!});
-        }, fail);
+      const coming = missingFor(last);
+      if (coming)
+        return void coming.then(
+          () => obey({session, publisher, coarse, ...its}, {type: 'display', display: last!}),
+          fail,
+        );
       publisher.show(last);
       return session.want(fieldsOf(last), last.ahead);
+    }
     case 'limit':
       return session.setLimit(message.limit);
     case 'pause':
@@ -162,6 +165,19 @@ function obey(
     case 'numbers':
       return reply(message, its.answer(message));
   }
+}
+
+/** Loads the code that the display needs and that is not here; null: all is. */
+function missingFor({parts: its, streamlines}: Display): Promise<unknown> | null {
+  if (its && !partCells.paint)
+    return retry(() => import('../layers/part_cells')).then((cells) =>
+      Object.assign(partCells, cells),
+    );
+  if (streamlines && !lineMaking.make)
+    return retry(() => import('../lines/shown_lines')).then((lines) =>
+      Object.assign(lineMaking, lines),
+    );
+  return null;
 }
 
 function reply({id}: {id: number}, coming: Promise<Answer>): void {

@@ -12,6 +12,7 @@ import type {Scalar} from '../picture/field_scale';
 import type {Axis, Histogram} from '../picture/histogram';
 import type {PartCount} from '../picture/part_counts';
 import type {ShownLabels} from '../picture/labels';
+import type {LineSoup} from '../picture/streamlines';
 import type {TriangleSoup} from '../picture/triangle_soup';
 import type {CoarseCells, VolumeCells} from '../picture/volume';
 import type {Warp} from '../picture/warp';
@@ -101,6 +102,8 @@ export interface Snapshot extends LayerSoups {
   surface?: TriangleSoup;
   /** Null if none is wanted or there are no values yet. */
   volume?: VolumeCells | null;
+  /** Null: there are none. */
+  streamlines?: LineSoup | null;
   /** One a plane. The parts above the other planes must be hidden, as for the surface. */
   cuts: TriangleSoup[];
   planes: Plane[];

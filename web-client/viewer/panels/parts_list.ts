@@ -19,7 +19,7 @@ import type {PartCount} from '../../core/picture/part_counts';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {find, onClick, setAttribute, setText} from '../page/find';
 import {formatCount} from '../page/format';
-import {parting} from '../page/parting';
+import {lateRequests} from '../page/late_requests';
 import {adopt, setMarkup} from '../page/trusted';
 import {fillSelect} from '../page/select';
 import {shownScalar, type Settings} from '../settings/settings';
@@ -105,7 +105,7 @@ export class PartsList {
     private readonly place: HTMLElement,
   ) {
     const {page, signal} = tools;
-    parting.read = readParts;
+    lateRequests.parts = readParts;
     adopt(page.root, styles);
     setMarkup(place, kMarkup);
     this.rows = find(place, '.part-rows');

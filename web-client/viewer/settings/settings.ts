@@ -77,6 +77,8 @@ export interface Settings {
   creases: boolean;
   surface: boolean;
   opacity: number;
+  /** The look of streamlines. */
+  lines: string;
   /** Opacities at even shares of the shown range; null: the volume is not shown. */
   volume: number[] | null;
   /** The volume's opacities are for the mesh to choose. */
@@ -123,6 +125,7 @@ export function readSettings(get: (name: ViewAttribute) => string | null): Setti
     creases: get('creases') !== 'off',
     surface: get('surface') !== 'off',
     opacity: opacity > 0 && opacity <= 1 ? opacity : 1,
+    lines: get('streamline-look') ?? '',
     ...readVolume(get('volume')),
     planes: parseClip(get('clip')),
     hasFirstCut: false,

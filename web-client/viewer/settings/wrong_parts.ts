@@ -178,14 +178,20 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
         ? `warp="${warp}" moves nothing: it takes a field of points with three components.`
         : `warp="${warp}" moves nothing: the mesh has no such field.${hint(warp, keys)} ${has}`,
     );
-  const flux = read('flux');
-  const vector = parseScalar(flux, fields);
-  if (flux !== null && fields[vector?.field ?? -1]?.components !== 3)
+  for (const [name, of] of [
+    ['flux', ''],
+    ['streamlines', ' of points'],
+  ] as const) {
+    const text = read(name);
+    const info = fields[parseScalar(text, fields)?.field ?? -1];
+    if (text === null || (info?.components === 3 && (!of || info.association === 'point')))
+      continue;
     sentences.push(
-      vector
-        ? `flux="${flux}" is not shown: it takes a field with three components.`
-        : `flux="${flux}" is not shown: the mesh has no such field.${hint(flux, keys)} ${has}`,
+      info
+        ? `${name}="${text}" is not shown: it takes a field${of} with three components.`
+        : `${name}="${text}" is not shown: the mesh has no such field.${hint(text, keys)} ${has}`,
     );
+  }
   for (const layer of fieldLayers()) {
     const text = read(layer.name);
     if (text === null || !kLayerRules[layer.name][0](text)) continue;

@@ -1,0 +1,106 @@
+// The places from which lines begin. They are fixed in space, so that a line stays where it is
+// while the mesh refines, and while time plays.
+
+import type {Seeds} from '../picture/streamlines';
+import type {Vector} from '../protocol/geometry';
+
+/** [x0, y0, z0, x1, y1, z1], on the lattice. */
+export type Box = readonly number[];
+
+/** Places to choose from, for each line that is wanted. */
+const kChoice = 12;
+/** A box that is rounded to this share of its largest side hardly changes while a mesh refines. */
+const kBoxShare = 1 / 64;
+/** Powers of 1 / this number spread evenly in three dimensions (Roberts 2018). */
+const kPlastic = 1.2207440846057596;
+const kSpread = [1 / kPlastic, 1 / kPlastic ** 2, 1 / kPlastic ** 3];
+const kGolden = Math.PI * (3 - Math.sqrt(5));
+
+/** Candidates for `even`; all for the others. Some may lie outside the mesh. */
+export function placesOf(seeds: Seeds, box: Box): Vector[] {
+  switch (seeds.kind) {
+    case 'even':
+      return spread(rounded(box), kChoice * seeds.count);
+    case 'line':
+      return onLine(seeds);
+    case 'plane':
+      return onPlane(seeds, rounded(box));
+    case 'sphere':
+      return inSphere(seeds);
+  }
+}
+
+function rounded(box: Box): number[] {
+  const unit = Math.max(1, kBoxShare * Math.max(...[0, 1, 2].map((i) => box[i + 3]! - box[i]!)));
+  return box.map((x, i) => unit * (i < 3 ? Math.floor(x / unit) : Math.ceil(x / unit)));
+}
+
+function spread([x0, y0, z0, x1, y1, z1]: readonly number[], count: number): Vector[] {
+  const shareOf = (i: number, axis: number): number => (0.5 + (i + 1) * kSpread[axis]!) % 1;
+  return Array.from({length: count}, (_, i) => [
+    x0! + shareOf(i, 0) * (x1! - x0!),
+    y0! + shareOf(i, 1) * (y1! - y0!),
+    z0! + shareOf(i, 2) * (z1! - z0!),
+  ]);
+}
+
+const onLine = ({from, to, count}: Extract<Seeds, {kind: 'line'}>): Vector[] =>
+  Array.from({length: count}, (_, i) => {
+    const share = count > 1 ? i / (count - 1) : 0.5;
+    return from.map((x, axis) => x + share * (to[axis]! - x)) as Vector;
+  });
+
+function onPlane({normal, offset, count}: Extract<Seeds, {kind: 'plane'}>, box: Box): Vector[] {
+  const [u, v] = acrossOf(normal);
+  const corners = Array.from(
+    {length: 8},
+    (_, i) => [0, 1, 2].map((axis) => box[axis + ((i >> axis) & 1) * 3]!) as Vector,
+  );
+  const [fromU, toU] = extentOf(corners, u);
+  const [fromV, toV] = extentOf(corners, v);
+  const side = Math.max(toU - fromU, toV - fromV) / count;
+  const along = (from: number, to: number): number[] => {
+    const steps = Math.max(1, Math.round((to - from) / side));
+    return Array.from({length: steps}, (_, i) => from + ((i + 0.5) / steps) * (to - from));
+  };
+  return along(fromV, toV).flatMap((b) =>
+    along(fromU, toU).map(
+      (a) => [0, 1, 2].map((i) => offset * normal[i]! + a * u[i]! + b * v[i]!) as Vector,
+    ),
+  );
+}
+
+/** Two directions across a unit vector, and across each other. */
+function acrossOf(normal: Vector): [Vector, Vector] {
+  const least = [0, 1, 2].reduce((best, axis) =>
+    Math.abs(normal[axis]!) < Math.abs(normal[best]!) ? axis : best,
+  );
+  const share = normal[least]!;
+  const raw = normal.map((x, axis) => Number(axis === least) - share * x) as Vector;
+  const u = raw.map((x) => x / Math.hypot(...raw)) as Vector;
+  const v = [1, 2, 0].map((i) => {
+    const k = (i + 1) % 3;
+    return normal[i]! * u[k]! - normal[k]! * u[i]!;
+  }) as Vector;
+  return [u, v];
+}
+
+function extentOf(corners: readonly Vector[], direction: Vector): [number, number] {
+  const at = corners.map((corner) => corner.reduce((sum, x, i) => sum + x * direction[i]!, 0));
+  return [Math.min(...at), Math.max(...at)];
+}
+
+/** Even in its volume. */
+const inSphere = ({centre, radius, count}: Extract<Seeds, {kind: 'sphere'}>): Vector[] =>
+  Array.from({length: count}, (_, i) => {
+    const share = (i + 0.5) / count;
+    const z = 1 - 2 * share;
+    const r = radius * Math.cbrt((0.5 + (i + 1) * kSpread[0]!) % 1);
+    const across = r * Math.sqrt(1 - z * z);
+    const turn = kGolden * i;
+    return [
+      centre[0] + across * Math.cos(turn),
+      centre[1] + across * Math.sin(turn),
+      centre[2] + r * z,
+    ];
+  });

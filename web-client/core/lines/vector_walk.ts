@@ -1,0 +1,186 @@
+// Walks through the cells of a mesh, from one to the next across their faces, and reads a field of
+// vectors there. In a cell the field is linear, so that it takes a few products at each place.
+
+import {kMissing} from '../picture/field_scale';
+import type {FieldInfo} from '../protocol/fields';
+import type {Vector} from '../protocol/geometry';
+
+/** The codec's mesh as a walk needs it. */
+export interface WalkMesh {
+  points: Int32Array;
+  tetrahedra: Uint32Array;
+  /** The cell across the face opposite to a corner; kOutside at the boundary. */
+  across(cell: number, corner: number): number;
+}
+
+/** The integers of a field of points with three components. */
+export interface Vectors {
+  values: Int32Array;
+  info: FieldInfo;
+}
+
+export const kOutside = 0xffffffff;
+/** A share of a corner below this lies outside: places on a face belong to both cells. */
+const kLeastShare = -1e-9;
+/** A walk through more cells than this is lost: between flat ones it may turn in circles. */
+const kMostTurns = 4096;
+
+/** Cells that are remembered: a step takes places in a few, and goes to and fro between them. */
+const kKept = 16;
+/** The first corner; the rows that give the shares of the other three; the vectors of all four. */
+const kCellWidth = 24;
+
+export class VectorWalk {
+  /** The cell in hand; -1: none. */
+  cell = -1;
+  /** The vector of the last place that find() found. */
+  vx = 0;
+  vy = 0;
+  vz = 0;
+  /** The shares of the cell's corners at that place. */
+  readonly shares = new Float64Array(4);
+
+  /** By `cell % kKept` what is known of it. */
+  private readonly cells = new Int32Array(kKept).fill(-1);
+  private readonly known = new Float64Array(kKept * kCellWidth);
+  private readonly sizes = new Float64Array(kKept);
+  private slot = 0;
+  private readonly scale: number;
+  private readonly least: readonly number[];
+
+  /** Vectors come in lattice steps a unit of time; `step` is the lattice's. */
+  constructor(
+    readonly mesh: WalkMesh,
+    private readonly vectors: Vectors,
+    step: number,
+  ) {
+    const {info} = vectors;
+    this.scale = info.step / step;
+    this.least = info.minimum.map((low) => low / step);
+  }
+
+  /** The cube root of six times the cell's volume: near the length of its edges. */
+  get size(): number {
+    return this.sizes[this.slot]!;
+  }
+
+  enter(cell: number): void {
+    this.cell = cell;
+    this.slot = cell % kKept;
+    if (this.cells[this.slot] !== cell) this.learn(cell, this.slot);
+  }
+
+  /** Whether the cell has the place. It is in hand then. */
+  holds(cell: number, [x, y, z]: Vector): boolean {
+    this.enter(cell);
+    const {known} = this;
+    const at = kCellWidth * this.slot;
+    const dx = x - known[at]!;
+    const dy = y - known[at + 1]!;
+    const dz = z - known[at + 2]!;
+    const b = known[at + 3]! * dx + known[at + 4]! * dy + known[at + 5]! * dz;
+    const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
+    const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
+    return b >= kLeastShare && c >= kLeastShare && d >= kLeastShare && b + c + d <= 1 - kLeastShare;
+  }
+
+  private learn(cell: number, slot: number): void {
+    this.cells[slot] = cell;
+    const {known, least, scale} = this;
+    const {points, tetrahedra} = this.mesh;
+    const {values} = this.vectors;
+    const at = kCellWidth * slot;
+    for (let corner = 0; corner < 4; ++corner) {
+      const from = 3 * tetrahedra[4 * cell + corner]!;
+      const to = at + 12 + 3 * corner;
+      for (let axis = 0; axis < 3; ++axis) {
+        const integer = values[from + axis]!;
+        known[to + axis] = integer === kMissing ? NaN : least[axis]! + scale * integer;
+      }
+    }
+    const a = 3 * tetrahedra[4 * cell]!;
+    const b = 3 * tetrahedra[4 * cell + 1]!;
+    const c = 3 * tetrahedra[4 * cell + 2]!;
+    const d = 3 * tetrahedra[4 * cell + 3]!;
+    const x = points[a]!;
+    const y = points[a + 1]!;
+    const z = points[a + 2]!;
+    const bx = points[b]! - x;
+    const by = points[b + 1]! - y;
+    const bz = points[b + 2]! - z;
+    const cx = points[c]! - x;
+    const cy = points[c + 1]! - y;
+    const cz = points[c + 2]! - z;
+    const dx = points[d]! - x;
+    const dy = points[d + 1]! - y;
+    const dz = points[d + 2]! - z;
+    const px = cy * dz - cz * dy;
+    const py = cz * dx - cx * dz;
+    const pz = cx * dy - cy * dx;
+    const volume = bx * px + by * py + bz * pz;
+    const inverse = 1 / volume; // of a flat cell it is infinite: no place is in it
+    known[at] = x;
+    known[at + 1] = y;
+    known[at + 2] = z;
+    known[at + 3] = px * inverse;
+    known[at + 4] = py * inverse;
+    known[at + 5] = pz * inverse;
+    known[at + 6] = (dy * bz - dz * by) * inverse;
+    known[at + 7] = (dz * bx - dx * bz) * inverse;
+    known[at + 8] = (dx * by - dy * bx) * inverse;
+    known[at + 9] = (by * cz - bz * cy) * inverse;
+    known[at + 10] = (bz * cx - bx * cz) * inverse;
+    known[at + 11] = (bx * cy - by * cx) * inverse;
+    this.sizes[slot] = Math.cbrt(Math.abs(volume));
+  }
+
+  /**
+   * Goes to the cell of a place, by faces, and reads the vector there. False: the way leaves the
+   * mesh; the last cell is in hand then. REQUIRES: a cell in hand.
+   */
+  find(x: number, y: number, z: number): boolean {
+    const {known, shares} = this;
+    for (let turn = 0; turn < kMostTurns; ++turn) {
+      const at = kCellWidth * this.slot;
+      const dx = x - known[at]!;
+      const dy = y - known[at + 1]!;
+      const dz = z - known[at + 2]!;
+      const b = known[at + 3]! * dx + known[at + 4]! * dy + known[at + 5]! * dz;
+      const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
+      const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
+      const a = 1 - b - c - d;
+      if (a >= kLeastShare && b >= kLeastShare && c >= kLeastShare && d >= kLeastShare) {
+        shares[0] = a;
+        shares[1] = b;
+        shares[2] = c;
+        shares[3] = d;
+        const v = at + 12;
+        this.vx = a * known[v]! + b * known[v + 3]! + c * known[v + 6]! + d * known[v + 9]!;
+        this.vy = a * known[v + 1]! + b * known[v + 4]! + c * known[v + 7]! + d * known[v + 10]!;
+        this.vz = a * known[v + 2]! + b * known[v + 5]! + c * known[v + 8]! + d * known[v + 11]!;
+        return true;
+      }
+      const next = this.next(a, b, c, d);
+      if (next === kOutside) return false;
+      this.enter(next);
+    }
+    return false;
+  }
+
+  /** Across the face that the place is farthest behind, or another that it is behind. */
+  private next(a: number, b: number, c: number, d: number): number {
+    const {cell, mesh} = this;
+    const worst = a <= b && a <= c && a <= d ? 0 : b <= c && b <= d ? 1 : c <= d ? 2 : 3;
+    const first = mesh.across(cell, worst);
+    if (first !== kOutside) return first;
+    // flat cells know no sides: any way on is as good
+    const isFlat = !Number.isFinite(a);
+    const all = [a, b, c, d];
+    for (let corner = 0; corner < 4; ++corner) {
+      if (corner === worst || !(isFlat || all[corner]! < kLeastShare)) continue;
+      const next = mesh.across(cell, corner);
+      if (next !== kOutside) return next;
+    }
+    return kOutside;
+  }
+}
