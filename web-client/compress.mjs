@@ -13,8 +13,8 @@ import {gzipSync} from 'node:zlib';
 /**
  * Page, scripts and WebAssembly, including what is loaded on demand: one second at 2.7 Mbit/s. Own
  * fields, numbers about what is drawn, parts and streamlines took it from 300 to 340 kB. They are
- * loaded on use. The notices and the simplifier do not count: a visit fetches the one never and the other
- * with the first mesh that is dropped.
+ * loaded on use. The notices and the simplifier do not count: a visit fetches the one never and
+ * the other with the first mesh that is dropped.
  */
 const kMaxBytes = 340000;
 

@@ -3,7 +3,7 @@
 import {describe, expect, test} from 'vitest';
 import {cellsAt} from '../core/lines/cells_at';
 import {placesOf} from '../core/lines/seeds';
-import {streamlinesOf, type LinesMesh} from '../core/lines/streamlines';
+import {Streamlines, type LinesMesh} from '../core/lines/streamlines';
 import {kOutside, VectorWalk, type Vectors} from '../core/lines/vector_walk';
 import {neighboursOf} from '../core/picture/neighbours';
 import {kMissing} from '../core/picture/field_scale';
@@ -65,12 +65,12 @@ function linesIn({points, lines}: LineSoup): number[][][] {
 describe('streamlines', () => {
   test('aUniformFieldGivesStraightLinesFromFaceToFace', () => {
     const its = mesh();
-    const soup = streamlinesOf(
+    const soup = new Streamlines(
       its,
       vectors(its, () => [3, 0, 0]),
-      {field: 0, seeds: oneAt([100, 200, 300]), limits: kFar},
+      kFar,
       null,
-    );
+    ).all(oneAt([100, 200, 300]));
     const [line] = linesIn(soup);
     expect(soup).toMatchObject({lines: 1, isCut: false});
     expect(line![0]![0]).toBeCloseTo(0, 1);
@@ -87,11 +87,8 @@ describe('streamlines', () => {
     // linear, so that the cells hold it exactly
     const field = vectors(its, ([x, y]) => [kMiddle[1] - y, x - kMiddle[0], 0]);
     const limits = {...kFar, time: 2 * Math.PI};
-    const soup = streamlinesOf(
-      its,
-      field,
-      {field: 0, seeds: oneAt([kMiddle[0] + 150, kMiddle[1], 77]), limits},
-      null,
+    const soup = new Streamlines(its, field, limits, null).all(
+      oneAt([kMiddle[0] + 150, kMiddle[1], 77]),
     );
     const [line] = linesIn(soup);
     for (const [x, y, z] of line!) {
@@ -112,11 +109,8 @@ describe('streamlines', () => {
       limits: Partial<typeof kFar>,
     ): number[][] | undefined =>
       linesIn(
-        streamlinesOf(
-          its,
-          vectors(its, at),
-          {field: 0, seeds: oneAt([200, 200, 200]), limits: {...kFar, ...limits}},
-          null,
+        new Streamlines(its, vectors(its, at), {...kFar, ...limits}, null).all(
+          oneAt([200, 200, 200]),
         ),
       )[0];
     const missing = run(([x]) => (x > 300 ? null : [1, 0, 0]), {})!;
@@ -134,12 +128,12 @@ describe('streamlines', () => {
 
   test('evenLinesAreAsManyAndCoverTheMesh', () => {
     const its = mesh();
-    const soup = streamlinesOf(
+    const soup = new Streamlines(
       its,
       vectors(its, () => [1, 0, 0]),
-      {field: 0, seeds: [{kind: 'even', count: 64}], limits: kFar},
+      kFar,
       null,
-    );
+    ).all([{kind: 'even', count: 64}]);
     expect(soup.lines).toBe(64);
     const boxes = new Set<number>();
     for (const [point] of linesIn(soup)) {
@@ -151,12 +145,12 @@ describe('streamlines', () => {
 
   test('evenLinesStayWhereTheyAreInAFinerMesh', () => {
     const [coarse, fine] = [mesh(4), mesh(8)].map((its) => {
-      const soup = streamlinesOf(
+      const soup = new Streamlines(
         its,
         vectors(its, () => [0, 1, 0]),
-        {field: 0, seeds: [{kind: 'even', count: 20}], limits: kFar},
+        kFar,
         null,
-      );
+      ).all([{kind: 'even', count: 20}]);
       return linesIn(soup).map(([point]) => [point![0], point![2]]);
     });
     expect(fine).toEqual(coarse);
@@ -170,7 +164,7 @@ describe('seeds', () => {
     [{kind: 'plane', normal: [1, 0, 0], offset: 50, count: 6}, 24],
     [{kind: 'sphere', centre: [50, 50, 50], radius: 10, count: 40}, 40],
   ])('%o', (seeds, count) => {
-    const places = placesOf(seeds, kBox);
+    const places = placesOf(seeds, kBox, (places) => places.map(() => true));
     expect(places).toHaveLength(count);
     if (seeds.kind === 'line') expect(places[5]).toEqual([5, 0, 0]);
     if (seeds.kind === 'plane') for (const [x] of places) expect(x).toBe(50);
@@ -181,7 +175,11 @@ describe('seeds', () => {
 
   test('cellsOfManyPlacesAreThoseThatHoldThem', () => {
     const its = mesh();
-    const places = placesOf({kind: 'even', count: 50}, [-99, 0, 0, kEnd, kEnd, kEnd + 99]);
+    const places = placesOf(
+      {kind: 'even', count: 50},
+      [-99, 0, 0, kEnd, kEnd, kEnd + 99],
+      () => [],
+    );
     const walk = new VectorWalk(
       its,
       vectors(its, () => [0, 0, 0]),

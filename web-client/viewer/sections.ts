@@ -13,6 +13,7 @@ import type {PanelKind} from './panels/panel';
 import {ownFieldsPanel} from './panels/own_fields_panel';
 import {partsPanel} from './panels/parts_panel';
 import {pinsPanel} from './panels/pins';
+import {streamlinesPanel} from './panels/streamlines_panel';
 import {statisticsPanel} from './panels/statistics_panel';
 import {surfacePanel} from './panels/surface_panel';
 import {valuePanels} from './panels/value_panel';
@@ -39,6 +40,7 @@ const kSections: readonly Section[] = [
     title: 'Inside',
     panels: [clipPanel, ...valuePanels(true), volumePanel, ...valuePanels(false)],
   },
+  {name: 'streamlines', title: 'Streamlines', isFolded: true, panels: [streamlinesPanel]},
   {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}, pinsPanel]},
   {name: 'numbers', title: 'Numbers', isFolded: true, panels: [numbersPanel]},
   {name: 'level', title: 'Level of detail', isFolded: true, panels: [levelPanel]},

@@ -70,7 +70,8 @@ export class ShownPicture {
   apply(): void {
     const {page, view} = this;
     const {settings} = this.host;
-    view?.setLook({...settings, onDark: isOnDark(find(page.root, '.scene'))});
+    const moves = !matchMedia('(prefers-reduced-motion: reduce)').matches;
+    view?.setLook({...settings, moves, onDark: isOnDark(find(page.root, '.scene'))});
     view?.setParallel(settings.parallel);
     view?.setPlaying(this.playsEveryMs);
     this.showDisplay();

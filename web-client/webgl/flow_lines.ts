@@ -13,7 +13,7 @@ const kTubeShare = 0.0022;
 const kWidth = 2.2;
 const kLeastTube = 1.5;
 /** A dash and its gap, as a share of the time in which the fastest place crosses the diagonal. */
-const kPeriodShare = 0.07;
+const kPeriodShare = 0.1;
 /** Periods a second: slow enough to follow. */
 const kPerSecond = 0.7;
 
@@ -115,6 +115,10 @@ export class FlowLines {
         gl.deleteBuffer(buffer);
       },
     );
+  }
+
+  get hasLines(): boolean {
+    return (this.soup?.lines ?? 0) > 0;
   }
 
   show(soup: LineSoup | null): void {

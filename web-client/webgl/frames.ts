@@ -4,6 +4,9 @@ import {FrameBudget, whenDrawn} from './frame_budget';
 import type {Scene} from './scene';
 import {usePixels, type ViewCanvas} from './worker_canvas';
 
+/** Slower graphics show parts that move at rest: they would be busy for ever. */
+const kMostMovingMs = 50;
+
 export class Frames {
   /** The time of the last one on this thread. */
   ms = 0;
@@ -57,6 +60,7 @@ export class Frames {
     const tell = (ms: number): void => {
       if (!scene.hasVolume) this.budget.learn(share, ms);
       done.forEach((drawn) => drawn(ms));
+      if (scene.parts.moves && ms < kMostMovingMs) this.invalidate(false);
     };
     try {
       const {lens} = camera.orbit;
@@ -68,7 +72,7 @@ export class Frames {
       this.ms = performance.now() - start;
       this.drawn();
     } finally {
-      if (done.length > 0) void whenDrawn(graphics.gl, start).then(tell);
+      if (done.length > 0 || scene.parts.moves) void whenDrawn(graphics.gl, start).then(tell);
     }
   }
 

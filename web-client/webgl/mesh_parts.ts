@@ -23,6 +23,9 @@ const kEdgeStrength = 0.52;
 /** The darkness of creases: they stand off from edges of cells, and need to be seen alone. */
 const kCreaseStrength = 0.72;
 
+/** The LinesLook of dashes. */
+const kMovingLook = 'dashes';
+
 const kPrecisions = `precision highp float;
   precision highp int;
   precision highp sampler2D;`;
@@ -56,6 +59,7 @@ export class MeshParts {
   flow: FlowLines | null = null;
   restEdges: LineParts | null = null;
   private flowLook = '';
+  private flowMoves = false;
   /** The uniforms of all. */
   private readonly look: Record<string, Uniform>;
 
@@ -117,17 +121,9 @@ export class MeshParts {
     this.restEdges?.show(null);
   }
 
-  setLook({
-    map,
-    reversed,
-    edges,
-    creases,
-    opacity,
-    beyond,
-    onDark = false,
-    lines = '',
-  }: Look): void {
-    this.flowLook = lines;
+  setLook({map, reversed, edges, creases, opacity, beyond, onDark = false, ...its}: Look): void {
+    this.flowLook = its.lines ?? '';
+    this.flowMoves = its.moves ?? false;
     this.colors.show(map, reversed);
     this.lines.edges = edges ? kEdgeStrength : 0;
     this.lines.creases = creases ? kCreaseStrength : 0;
@@ -205,6 +201,11 @@ export class MeshParts {
     this.flow?.draw({toEye, toCube}, this.look, {kind: this.flowLook, diagonal, pixelRatio});
     // Soups that can be seen through come last, and hide nothing.
     for (const soup of visible) if (isClear(soup) || soup.hasClear) drawSoup(soup, true);
+  }
+
+  /** The next picture is another one by itself. */
+  get moves(): boolean {
+    return this.flowMoves && this.flowLook === kMovingLook && (this.flow?.hasLines ?? false);
   }
 
   private get all(): Soup[] {

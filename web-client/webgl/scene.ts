@@ -99,9 +99,9 @@ export class Scene {
 
   /** Returns false if it is the same as before: a picture costs more than a comparison. */
   setLook(next: Look): boolean {
-    const {map, reversed, edges, creases, opacity, beyond, volume, onDark, lines} = next;
+    const {map, reversed, edges, creases, opacity, beyond, volume, onDark, lines, moves} = next;
     const look = JSON.stringify([
-      ...[map, reversed, edges, creases, opacity, beyond, volume, onDark, lines],
+      ...[map, reversed, edges, creases, opacity, beyond, volume, onDark, lines, moves],
     ]);
     if (look === this.last.look) return false;
     this.last.look = look;

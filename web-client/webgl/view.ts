@@ -68,6 +68,8 @@ export interface Look {
   volume?: number[] | null;
   /** One of kLooks; another text means the first. */
   lines?: string;
+  /** Dashes move. */
+  moves?: boolean;
   /** The canvas lies on a dark ground: creases are light, and the volume's colours stand off. */
   onDark?: boolean;
 }

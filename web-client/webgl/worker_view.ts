@@ -131,8 +131,9 @@ class WorkerView implements View {
   }
   setLook(look: Look): void {
     const {map, reversed, edges, creases, opacity, volume = null, onDark = false} = look;
-    const {beyond = [null, null]} = look;
-    this.command('setLook', {map, reversed, edges, creases, opacity, beyond, volume, onDark});
+    const {beyond = [null, null], lines = '', moves = false} = look;
+    const its = {map, reversed, edges, creases, opacity, beyond, volume, onDark, lines, moves};
+    this.command('setLook', its);
   }
   setRange(low: number, high: number, scaleRange: [number, number], logarithmic: boolean): void {
     this.command('setRange', low, high, scaleRange, logarithmic);

@@ -16,7 +16,7 @@ export type ReadStreamlines = (name: Name) => string | null;
 export const kMostLines = 2000;
 export const kMostAlongPlane = 40;
 /** Kinds of seeds at most: "line ...; sphere ...". */
-const kMostSeeds = 8;
+const kMostSeeds = 32;
 export const kFirstSeeds = 'even 100';
 export const kLooks = ['tubes', 'lines', 'dashes'] as const;
 export type LinesLook = (typeof kLooks)[number];

@@ -16,15 +16,25 @@ const kPlastic = 1.2207440846057596;
 const kSpread = [1 / kPlastic, 1 / kPlastic ** 2, 1 / kPlastic ** 3];
 const kGolden = Math.PI * (3 - Math.sqrt(5));
 
-/** Candidates for `even`; all for the others. Some may lie outside the mesh. */
-export function placesOf(seeds: Seeds, box: Box): Vector[] {
+/** Places along the longer side of a plane that tell how much of it is in the mesh. */
+const kProbesAlong = 64;
+
+/**
+ * Candidates for `even`; all for the others. Some may lie outside the mesh. `isIn` says which of
+ * some places lie in it.
+ */
+export function placesOf(
+  seeds: Seeds,
+  box: Box,
+  isIn: (places: readonly Vector[]) => boolean[],
+): Vector[] {
   switch (seeds.kind) {
     case 'even':
       return spread(rounded(box), kChoice * seeds.count);
     case 'line':
       return onLine(seeds);
     case 'plane':
-      return onPlane(seeds, rounded(box));
+      return onPlane(seeds, rounded(box), isIn);
     case 'sphere':
       return inSphere(seeds);
   }
@@ -50,24 +60,34 @@ const onLine = ({from, to, count}: Extract<Seeds, {kind: 'line'}>): Vector[] =>
     return from.map((x, axis) => x + share * (to[axis]! - x)) as Vector;
   });
 
-function onPlane({normal, offset, count}: Extract<Seeds, {kind: 'plane'}>, box: Box): Vector[] {
-  const [u, v] = acrossOf(normal);
+/** The grid covers the part of the plane that is in the mesh. */
+function onPlane(
+  {normal, offset, count}: Extract<Seeds, {kind: 'plane'}>,
+  box: Box,
+  isIn: (places: readonly Vector[]) => boolean[],
+): Vector[] {
+  const across = acrossOf(normal);
   const corners = Array.from(
     {length: 8},
     (_, i) => [0, 1, 2].map((axis) => box[axis + ((i >> axis) & 1) * 3]!) as Vector,
   );
-  const [fromU, toU] = extentOf(corners, u);
-  const [fromV, toV] = extentOf(corners, v);
-  const side = Math.max(toU - fromU, toV - fromV) / count;
-  const along = (from: number, to: number): number[] => {
-    const steps = Math.max(1, Math.round((to - from) / side));
-    return Array.from({length: steps}, (_, i) => from + ((i + 0.5) / steps) * (to - from));
+  const grid = (around: readonly Vector[], along: number): Vector[] => {
+    const extents = across.map((direction) => extentOf(around, direction));
+    const side = Math.max(...extents.map(([from, to]) => to - from)) / along;
+    const [us, vs] = extents.map(([from, to]) => {
+      const steps = Math.max(1, Math.round((to - from) / side));
+      return Array.from({length: steps}, (_, i) => from + ((i + 0.5) / steps) * (to - from));
+    }) as [number[], number[]];
+    return vs.flatMap((b) =>
+      us.map(
+        (a) => normal.map((n, i) => offset * n + a * across[0][i]! + b * across[1][i]!) as Vector,
+      ),
+    );
   };
-  return along(fromV, toV).flatMap((b) =>
-    along(fromU, toU).map(
-      (a) => [0, 1, 2].map((i) => offset * normal[i]! + a * u[i]! + b * v[i]!) as Vector,
-    ),
-  );
+  const probes = grid(corners, kProbesAlong);
+  const are = isIn(probes);
+  const inside = probes.filter((_, i) => are[i]);
+  return inside.length > 1 ? grid(inside, count) : inside;
 }
 
 /** Two directions across a unit vector, and across each other. */

@@ -3,8 +3,9 @@
 import type {Assembler} from '../decode/assembler';
 import {colorScale, type Display, type MeshArrays} from '../picture/display';
 import type {LineSoup} from '../picture/streamlines';
+import type {Vector} from '../protocol/geometry';
 import {remembered} from './neighbour_memory';
-import {streamlinesOf} from './streamlines';
+import {Streamlines} from './streamlines';
 
 type Across = (cell: number, corner: number) => number;
 
@@ -13,6 +14,20 @@ const memories = new WeakMap<Assembler, {chunks: number; across: Across}>();
 
 /** Null while the vectors have no values. */
 export function make(assembler: Assembler, mesh: MeshArrays, display: Display): LineSoup | null {
+  return linesIn(assembler, mesh, display)?.all(display.streamlines!.seeds) ?? null;
+}
+
+/** The line through a place of a cell. Null: there is none. */
+export function makeAt(
+  assembler: Assembler,
+  mesh: MeshArrays,
+  display: Display,
+  {cell, place}: {cell: number; place: Vector},
+): LineSoup | null {
+  return linesIn(assembler, mesh, display)?.at(cell, place) ?? null;
+}
+
+function linesIn(assembler: Assembler, mesh: MeshArrays, display: Display): Streamlines | null {
   const request = display.streamlines;
   const {codec, manifest} = assembler;
   const info = request && manifest?.fields[request.field];
@@ -20,11 +35,10 @@ export function make(assembler: Assembler, mesh: MeshArrays, display: Display): 
   if (!values || info!.components !== 3 || info!.association !== 'point') return null;
   const {points, tetrahedra, boundary} = mesh;
   const {step} = manifest!.lattice;
-  const across = acrossIn(assembler);
-  return streamlinesOf(
-    {points, tetrahedra, boundary, step, across},
+  return new Streamlines(
+    {points, tetrahedra, boundary, step, across: acrossIn(assembler)},
     {values, info: info!},
-    request!,
+    request!.limits,
     colorScale(mesh, display),
   );
 }

@@ -1,7 +1,7 @@
 // The streamlines of a field of vectors, from all seeds.
 
 import type {FieldScale} from '../picture/field_scale';
-import type {LineSoup, StreamlinesRequest} from '../picture/streamlines';
+import type {LineLimits, LineSoup, Seeds} from '../picture/streamlines';
 import {pointBounds} from '../picture/triangle_soup';
 import type {Vector} from '../protocol/geometry';
 import {cellsAt} from './cells_at';
@@ -23,44 +23,63 @@ export interface LinesMesh extends WalkMesh {
   step: number;
 }
 
-/** `scale` colours; null: the lines are plain. */
-export function streamlinesOf(
-  mesh: LinesMesh,
-  vectors: Vectors,
-  request: StreamlinesRequest,
-  scale: FieldScale | null,
-): LineSoup {
-  const box = pointBounds(mesh.points, mesh.boundary);
-  const diagonal = Math.hypot(...[0, 1, 2].map((i) => box[i + 3]! - box[i]!));
-  const walk = new VectorWalk(mesh, vectors, mesh.step);
-  const tracer = new Tracer(walk);
-  const lines = new LineBuilder(scale);
-  const {steps, length, time} = request.limits;
-  const fastest = vectors.info.range[1] / mesh.step;
-  const limits: TraceLimits = {
-    steps,
-    time,
-    length: length * diagonal,
-    stillSpeed: kStillShare * fastest,
-  };
-  const isEnough = (): boolean => tracer.steps >= kMostSteps || lines.isFull;
+export class Streamlines {
+  private readonly walk: VectorWalk;
+  private readonly tracer: Tracer;
+  private readonly lines: LineBuilder;
+  private readonly box: number[];
+  private readonly limits: TraceLimits;
+  private readonly crossing: number;
 
-  const trace = (cell: number, place: Vector): Float32Array | null => {
-    if (cell < 0 || isEnough()) return null;
+  /** `scale` colours; null: the lines are plain. */
+  constructor(
+    mesh: LinesMesh,
+    {values, info}: Vectors,
+    {steps, length, time}: LineLimits,
+    scale: FieldScale | null,
+  ) {
+    this.box = pointBounds(mesh.points, mesh.boundary);
+    const diagonal = Math.hypot(...[0, 1, 2].map((i) => this.box[i + 3]! - this.box[i]!));
+    const fastest = info.range[1] / mesh.step;
+    this.crossing = fastest > 0 ? diagonal / fastest : 1;
+    this.limits = {steps, time, length: length * diagonal, stillSpeed: kStillShare * fastest};
+    this.walk = new VectorWalk(mesh, {values, info}, mesh.step);
+    this.tracer = new Tracer(this.walk);
+    this.lines = new LineBuilder(scale);
+  }
+
+  all(seeds: readonly Seeds[]): LineSoup {
+    for (const its of seeds) {
+      const places = placesOf(its, this.box, (some) =>
+        Array.from(cellsAt(this.walk, some), (cell) => cell >= 0),
+      );
+      const cells = cellsAt(this.walk, places);
+      if (its.kind === 'even')
+        new EvenLines(this.box).choose(places, its.count, (i) => this.trace(cells[i]!, places[i]!));
+      else places.forEach((place, i) => this.trace(cells[i]!, place));
+    }
+    return this.lines.take(this.crossing, this.isEnough);
+  }
+
+  /** The line through one place; null: the cell does not have it. */
+  at(cell: number, place: Vector): LineSoup | null {
+    const isThere = cell < this.walk.mesh.tetrahedra.length / 4 && this.walk.holds(cell, place);
+    if (!isThere || !this.trace(cell, place)) return null;
+    return this.lines.take(this.crossing, false);
+  }
+
+  private get isEnough(): boolean {
+    return this.tracer.steps >= kMostSteps || this.lines.isFull;
+  }
+
+  private trace(cell: number, place: Vector): Float32Array | null {
+    const {limits, lines, tracer, walk} = this;
+    if (cell < 0 || this.isEnough) return null;
     tracer.follow(cell, place, -1, limits, lines);
     lines.turn();
     walk.enter(cell);
     if (walk.find(...place)) lines.add(place, 0, walk);
     tracer.follow(cell, place, 1, limits, lines);
     return lines.end();
-  };
-
-  for (const seeds of request.seeds) {
-    const places = placesOf(seeds, box);
-    const cells = cellsAt(walk, places);
-    if (seeds.kind === 'even')
-      new EvenLines(box).choose(places, seeds.count, (i) => trace(cells[i]!, places[i]!));
-    else places.forEach((place, i) => trace(cells[i]!, place));
   }
-  return lines.take(fastest > 0 ? diagonal / fastest : 1, isEnough());
 }

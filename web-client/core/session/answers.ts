@@ -18,6 +18,8 @@ export async function answerTo(
   switch (question.type) {
     case 'pick':
       return inspector.pick(question.ray, display);
+    case 'trace':
+      return inspector.trace(question, display);
     case 'probe':
       return inspector.probe(question.from, question.to, display);
     case 'line':

@@ -6,6 +6,7 @@ import type {Ray} from '../picture/cell_ray';
 import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
 import type {Axis, Histogram} from '../picture/histogram';
+import type {LineSoup} from '../picture/streamlines';
 import type {PartCount} from '../picture/part_counts';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
@@ -100,6 +101,9 @@ export class Client {
   }
   pick(ray: Ray): Promise<Pick | null> {
     return this.ask({type: 'pick', ray});
+  }
+  trace(cell: number, place: Vector): Promise<LineSoup | null> {
+    return this.ask({type: 'trace', cell, place});
   }
   probe(from: Vector, to: Vector): Promise<Probe | null> {
     return this.ask({type: 'probe', from, to});

@@ -24,6 +24,7 @@ import {histogramOf, type Axis, type Histogram} from '../picture/histogram';
 import {meshArrays} from '../picture/mesh_arrays';
 import {countParts, type PartCount} from '../picture/part_counts';
 import type {Cells} from '../picture/section';
+import type {LineSoup} from '../picture/streamlines';
 import {positionOf, type Vector} from '../protocol/geometry';
 import type {FieldInfo} from '../protocol/fields';
 import type {Manifest} from '../protocol/manifest';
@@ -108,6 +109,16 @@ export class Inspector {
       if (t < (best?.t ?? Infinity)) best = {cell: stretch.cell, t};
     }
     return best && this.pickAt(cells, best.cell, along(ray, best.t), display);
+  }
+
+  /** Null: the place has moved out of the cell, or there are no vectors yet. */
+  async trace(
+    {cell, place}: {cell: number; place: Vector},
+    display: Display,
+  ): Promise<LineSoup | null> {
+    const {makeAt} = await retry(() => import('../lines/shown_lines'));
+    const mesh = meshArrays(this.assembler, display);
+    return mesh && makeAt(this.assembler, mesh, display, {cell, place});
   }
 
   /** The coloured field from one lattice point to another; null while there is none. */

@@ -156,6 +156,7 @@ function obey(
       return void coarse.cells(have, publisher.now).then(send, () => send(null));
     }
     case 'pick':
+    case 'trace':
     case 'probe':
     case 'line':
     case 'at':

@@ -74,6 +74,8 @@ export type Question =
   /** Asks for the fields that a text defines, and those that the mesh implies. */
   | {type: 'derive'; text: string}
   | {type: 'pick'; ray: Ray}
+  /** Asks for the streamline through a lattice place of a cell, of the display's vectors. */
+  | {type: 'trace'; cell: number; place: Vector}
   | {type: 'probe'; from: Vector; to: Vector}
   | {type: 'line'; from: Vector; to: Vector}
   /** Asks for the cell at a lattice place of the mesh at rest. */
@@ -149,6 +151,7 @@ export type Answer =
   | Histogram
   | PartCount[]
   | Numbers
+  | LineSoup
   | CoarseCells
   | null;
 

@@ -23,6 +23,7 @@ import {lateRequests} from '../page/late_requests';
 import {adopt, setMarkup} from '../page/trusted';
 import {fillSelect} from '../page/select';
 import {shownScalar, type Settings} from '../settings/settings';
+import type {LateContent} from './late_panel';
 import {scalarName, type PanelTools} from './panel';
 import styles from './parts.css?inline';
 import {RepeatedQuestion} from './repeated_question';
@@ -79,7 +80,7 @@ type Change = (state: {
   colors: Map<number, readonly number[]>;
 }) => void;
 
-export class PartsList {
+export class PartsList implements LateContent {
   private readonly rows: HTMLElement;
   private readonly all: HTMLElement;
   private readonly height = kRowHeights[matchMedia('(pointer: coarse)').matches ? 1 : 0];
@@ -185,7 +186,11 @@ export class PartsList {
   }
 
   /** The mesh may have other cells. */
-  countSoon(ms = kRestMs): void {
+  showPicture(): void {
+    this.countSoon();
+  }
+
+  private countSoon(ms = kRestMs): void {
     if (!this.isSeen) return;
     this.timer ??= setTimeout(() => {
       this.timer = undefined;
