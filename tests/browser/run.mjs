@@ -25,6 +25,7 @@ import {movieChecks} from './movie_checks.mjs';
 import {numberChecks} from './number_checks.mjs';
 import {pageChecks} from './page_checks.mjs';
 import {partChecks} from './part_checks.mjs';
+import {streamlineChecks} from './streamline_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
 import {pinChecks} from './pin_checks.mjs';
 import {pictureChecks} from './picture_checks.mjs';
@@ -72,6 +73,7 @@ const lists = {
   },
   legend: {
     ...partChecks,
+    ...streamlineChecks,
     ...legendChecks,
     ...derivedChecks,
     ...colorChecks,

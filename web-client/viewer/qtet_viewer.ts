@@ -35,6 +35,13 @@
 //   hidden-parts names or numbers of parts, "Steel,3"; "all but Steel".
 //   part-opacity, part-colors
 //                "Steel=0.3,3=0.5"; "Steel=ff8800".
+//   streamlines  name of a point field of vectors, whose lines are drawn.
+//   seeds        where they begin: "even 100" (default), "line 0,0,0 1,0,0 20", "plane x:0.5 8",
+//                "sphere 0,0,0 0.1 50", several with ";" between them.
+//   streamline-look
+//                tubes (default), lines, dashes.
+//   streamline-limits
+//                "steps=500 length=2 time=0.1".
 //   volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen
 //                through instead of the surface; "auto" suits the mesh.
 //   axes         "on" draws a box with numbers round the mesh.

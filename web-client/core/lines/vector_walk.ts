@@ -46,7 +46,9 @@ export class VectorWalk {
   private readonly sizes = new Float64Array(kKept);
   private slot = 0;
   private readonly scale: number;
-  private readonly least: readonly number[];
+  private readonly leastX: number;
+  private readonly leastY: number;
+  private readonly leastZ: number;
 
   /** Vectors come in lattice steps a unit of time; `step` is the lattice's. */
   constructor(
@@ -56,10 +58,10 @@ export class VectorWalk {
   ) {
     const {info} = vectors;
     this.scale = info.step / step;
-    this.least = info.minimum.map((low) => low / step);
+    [this.leastX, this.leastY, this.leastZ] = info.minimum.map((low) => low / step) as Vector;
   }
 
-  /** The cube root of six times the cell's volume: near the length of its edges. */
+  /** The root mean square of the edges at the cell's first corner. */
   get size(): number {
     return this.sizes[this.slot]!;
   }
@@ -86,17 +88,16 @@ export class VectorWalk {
 
   private learn(cell: number, slot: number): void {
     this.cells[slot] = cell;
-    const {known, least, scale} = this;
+    const {known, scale, leastX, leastY, leastZ} = this;
     const {points, tetrahedra} = this.mesh;
     const {values} = this.vectors;
     const at = kCellWidth * slot;
-    for (let corner = 0; corner < 4; ++corner) {
+    for (let corner = 0, to = at + 12; corner < 4; ++corner, to += 3) {
       const from = 3 * tetrahedra[4 * cell + corner]!;
-      const to = at + 12 + 3 * corner;
-      for (let axis = 0; axis < 3; ++axis) {
-        const integer = values[from + axis]!;
-        known[to + axis] = integer === kMissing ? NaN : least[axis]! + scale * integer;
-      }
+      const [x, y, z] = [values[from]!, values[from + 1]!, values[from + 2]!];
+      known[to] = x === kMissing ? NaN : leastX + scale * x;
+      known[to + 1] = y === kMissing ? NaN : leastY + scale * y;
+      known[to + 2] = z === kMissing ? NaN : leastZ + scale * z;
     }
     const a = 3 * tetrahedra[4 * cell]!;
     const b = 3 * tetrahedra[4 * cell + 1]!;
@@ -131,7 +132,8 @@ export class VectorWalk {
     known[at + 9] = (by * cz - bz * cy) * inverse;
     known[at + 10] = (bz * cx - bx * cz) * inverse;
     known[at + 11] = (bx * cy - by * cx) * inverse;
-    this.sizes[slot] = Math.cbrt(Math.abs(volume));
+    const squares = bx * bx + by * by + bz * bz + cx * cx + cy * cy + cz * cz;
+    this.sizes[slot] = Math.sqrt((squares + dx * dx + dy * dy + dz * dz) / 3);
   }
 
   /**
