@@ -47,6 +47,8 @@ SAMPLES = (
             ),
             ("Vorticity in a slice", {"field": "Velocity.vorticity", "clip": "z:0.5",
                                       "clip-mode": "slice"}),
+            ("Arrows on a cut", {"arrows": "Velocity", "field": "Pressure", "clip": "y:0.5",
+                                 "arrow-size": "2.5"}),
             ("Streamlines", {"streamlines": "Velocity", "field": "Velocity", "opacity": "0.15",
                              "edges": "off"}),
             ("Moving dashes from a plane", {"streamlines": "Velocity", "field": "Velocity",

@@ -24,6 +24,7 @@ import {monkeyChecks} from './monkey_checks.mjs';
 import {movieChecks} from './movie_checks.mjs';
 import {numberChecks} from './number_checks.mjs';
 import {pageChecks} from './page_checks.mjs';
+import {arrowChecks} from './arrow_checks.mjs';
 import {partChecks} from './part_checks.mjs';
 import {streamlineChecks} from './streamline_checks.mjs';
 import {panelChecks} from './panel_checks.mjs';
@@ -73,6 +74,7 @@ const lists = {
   },
   legend: {
     ...partChecks,
+    ...arrowChecks,
     ...streamlineChecks,
     ...legendChecks,
     ...derivedChecks,

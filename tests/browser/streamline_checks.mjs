@@ -1,12 +1,9 @@
 // Streamlines: the picture, the section and the address follow each other.
 
 import assert from 'node:assert/strict';
+import {turningBox} from './arrow_checks.mjs';
 import {kSmallDesktop} from './browser.mjs';
 import {serveMesh} from './programs.mjs';
-import {linearBox} from './volume_checks.mjs';
-
-/** The vectors of a box of 1 x 2 x 3 turn round its middle axis, and rise. */
-const turningBox = () => linearBox(6, {U: (x, y) => [1 - y, x - 0.5, 0.25]});
 
 const state = (viewer) => viewer.page.locator('qtet-viewer .flow-state');
 

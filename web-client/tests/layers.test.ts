@@ -65,7 +65,8 @@ test('hasAnAttributeThatIsCheckedAndControls', () => {
     .join(' ');
   expect(layers).toBe(
     'clip clip-mode iso threshold parts hidden-parts part-opacity part-colors ' +
-      'streamlines seeds streamline-look streamline-limits volume toy',
+      'streamlines seeds streamline-look streamline-limits ' +
+      'arrows arrow-places arrow-density arrow-length arrow-size arrow-color volume toy',
   );
   expect(wrongParts(read({toy: 'p=1'}))).toEqual([]);
   expect(wrongParts(read({toy: 'p=1,2'}))).toEqual([

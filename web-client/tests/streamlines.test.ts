@@ -4,52 +4,17 @@ import {describe, expect, test} from 'vitest';
 import {cellsAt} from '../core/lines/cells_at';
 import {placesOf} from '../core/lines/seeds';
 import {Streamlines, type LinesMesh} from '../core/lines/streamlines';
-import {kOutside, VectorWalk, type Vectors} from '../core/lines/vector_walk';
-import {neighboursOf} from '../core/picture/neighbours';
-import {kMissing} from '../core/picture/field_scale';
+import {kOutside, VectorWalk} from '../core/lines/vector_walk';
 import {kLineWidth, type LineSoup, type Seeds} from '../core/picture/streamlines';
-import type {FieldInfo} from '../core/protocol/fields';
 import type {Vector} from '../core/protocol/geometry';
-import {cubes} from './cubes';
+import {boxMesh, vectorsOf} from './vector_fields';
 
 const kSide = 8;
 const kSize = 64;
 const kEnd = kSide * kSize;
 const kMiddle: Vector = [kEnd / 2, kEnd / 2, kEnd / 2];
 
-function mesh(side = kSide): LinesMesh {
-  const {points, tetrahedra} = cubes(side, kEnd / side);
-  const neighbours = neighboursOf(tetrahedra);
-  return {
-    points,
-    tetrahedra,
-    // every vertex, for the box
-    boundary: Uint32Array.from({length: points.length / 3}, (_, i) => i),
-    step: 1,
-    across: (cell, corner) => neighbours[4 * cell + corner]! >>> 0,
-  };
-}
-
-/** Integers that stand for themselves. */
-function vectors({points}: LinesMesh, at: (place: Vector) => Vector | null): Vectors {
-  const values = new Int32Array(points.length);
-  let longest = 0;
-  for (let i = 0; i < points.length; i += 3) {
-    const vector = at([points[i]!, points[i + 1]!, points[i + 2]!]);
-    values.set(vector?.map(Math.round) ?? [kMissing, kMissing, kMissing], i);
-    longest = Math.max(longest, Math.hypot(...(vector ?? [])));
-  }
-  const info = {
-    name: 'U',
-    components: 3,
-    type: 'float32',
-    association: 'point',
-    step: 1,
-    minimum: [0, 0, 0],
-    range: [0, longest],
-  } as unknown as FieldInfo;
-  return {values, info};
-}
+const mesh = (side = kSide): LinesMesh => boxMesh(side, kEnd);
 
 const kFar = {steps: 2000, length: 10, time: Infinity};
 const oneAt = (place: Vector): Seeds[] => [{kind: 'line', from: place, to: place, count: 1}];
@@ -67,7 +32,7 @@ describe('streamlines', () => {
     const its = mesh();
     const soup = new Streamlines(
       its,
-      vectors(its, () => [3, 0, 0]),
+      vectorsOf(its, () => [3, 0, 0]),
       kFar,
       null,
     ).all(oneAt([100, 200, 300]));
@@ -85,7 +50,7 @@ describe('streamlines', () => {
   test('aRotationGivesCircles', () => {
     const its = mesh();
     // linear, so that the cells hold it exactly
-    const field = vectors(its, ([x, y]) => [kMiddle[1] - y, x - kMiddle[0], 0]);
+    const field = vectorsOf(its, ([x, y]) => [kMiddle[1] - y, x - kMiddle[0], 0]);
     const limits = {...kFar, time: 2 * Math.PI};
     const soup = new Streamlines(its, field, limits, null).all(
       oneAt([kMiddle[0] + 150, kMiddle[1], 77]),
@@ -109,7 +74,7 @@ describe('streamlines', () => {
       limits: Partial<typeof kFar>,
     ): number[][] | undefined =>
       linesIn(
-        new Streamlines(its, vectors(its, at), {...kFar, ...limits}, null).all(
+        new Streamlines(its, vectorsOf(its, at), {...kFar, ...limits}, null).all(
           oneAt([200, 200, 200]),
         ),
       )[0];
@@ -130,7 +95,7 @@ describe('streamlines', () => {
     const its = mesh();
     const soup = new Streamlines(
       its,
-      vectors(its, () => [1, 0, 0]),
+      vectorsOf(its, () => [1, 0, 0]),
       kFar,
       null,
     ).all([{kind: 'even', count: 64}]);
@@ -147,7 +112,7 @@ describe('streamlines', () => {
     const [coarse, fine] = [mesh(4), mesh(8)].map((its) => {
       const soup = new Streamlines(
         its,
-        vectors(its, () => [0, 1, 0]),
+        vectorsOf(its, () => [0, 1, 0]),
         kFar,
         null,
       ).all([{kind: 'even', count: 20}]);
@@ -182,7 +147,7 @@ describe('seeds', () => {
     );
     const walk = new VectorWalk(
       its,
-      vectors(its, () => [0, 0, 0]),
+      vectorsOf(its, () => [0, 0, 0]),
       1,
     );
     const cells = cellsAt(walk, places);

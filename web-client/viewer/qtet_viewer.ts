@@ -42,6 +42,10 @@
 //                tubes (default), lines, dashes.
 //   streamline-limits
 //                "steps=500 length=2 time=0.1".
+//   arrows       name of a point field of vectors, which are drawn as arrows.
+//   arrow-places shown (default), volume, vertices.
+//   arrow-density, arrow-length, arrow-size, arrow-color
+//                "30"; magnitude (default), log, equal; "1.5"; plain or field.
 //   volume       opacities at even shares of the colours' range, "0,0.1,0.5": the cells are seen
 //                through instead of the surface; "auto" suits the mesh.
 //   axes         "on" draws a box with numbers round the mesh.

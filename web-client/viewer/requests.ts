@@ -54,6 +54,7 @@ export function displayOf(
     volume: settings.volume !== null,
     flux: parseScalar(read('flux'), fields),
     parts: lateRequests.parts?.(read, fields, mesh.selectedPart) ?? null,
+    arrows: lateRequests.arrows?.(read, fields) ?? null,
     streamlines:
       lateRequests.streamlines?.(read, mesh.manifest!, (plane) =>
         planeOf(plane, mesh.base.bounds),

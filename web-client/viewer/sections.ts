@@ -1,6 +1,7 @@
 // The sections of the panel, and the panels in them. Another panel takes a file and a line here.
 
 import {filePanel} from './drop/file_panel';
+import {arrowsPanel} from './panels/arrows_panel';
 import {axesPanel} from './panels/axes_panel';
 import {clipPanel} from './panels/clip_panel';
 import {colorPanel, stepsPanel} from './panels/color_panel';
@@ -41,6 +42,7 @@ const kSections: readonly Section[] = [
     panels: [clipPanel, ...valuePanels(true), volumePanel, ...valuePanels(false)],
   },
   {name: 'streamlines', title: 'Streamlines', isFolded: true, panels: [streamlinesPanel]},
+  {name: 'arrows', title: 'Arrows', isFolded: true, panels: [arrowsPanel]},
   {name: 'pointer', title: 'Pointer', panels: [{markup: kToolMarkup}, pinsPanel]},
   {name: 'numbers', title: 'Numbers', isFolded: true, panels: [numbersPanel]},
   {name: 'level', title: 'Level of detail', isFolded: true, panels: [levelPanel]},

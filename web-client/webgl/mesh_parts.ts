@@ -4,6 +4,7 @@
 import {linearPart} from '../core/picture/log_scale';
 import {kMaxPlanes} from '../core/picture/display';
 import type {Snapshot} from '../core/session/worker_messages';
+import type {ArrowView} from './arrow_view';
 import type {backToFront} from './clear_order';
 import {ColorTable} from './color_table';
 import {fadesOf} from './edge_fade';
@@ -58,6 +59,7 @@ export class MeshParts {
   /** They are loaded with the first lines. */
   flow: FlowLines | null = null;
   restEdges: LineParts | null = null;
+  arrows: ArrowView | null = null;
   private flowLook = '';
   private flowMoves = false;
   /** The uniforms of all. */
@@ -97,6 +99,7 @@ export class MeshParts {
     for (const soup of this.layers.values()) soup.setClip(snapshot.planes);
     this.surface.setClip(snapshot.planes);
     if (snapshot.streamlines !== undefined) this.flow?.show(snapshot.streamlines);
+    if (snapshot.arrows !== undefined) this.arrows?.show(snapshot.arrows);
     this.restEdges?.show(snapshot.warp?.restEdges ?? null);
     this.bounds = snapshot.bounds;
     this.isClosed = snapshot.planes.length === 0;
@@ -118,6 +121,7 @@ export class MeshParts {
   clear(): void {
     for (const soup of this.all) soup.show(null);
     this.flow?.show(null);
+    this.arrows?.show(null);
     this.restEdges?.show(null);
   }
 
@@ -198,6 +202,7 @@ export class MeshParts {
     this.restEdges?.draw({toEye, toCube}, {onDark, opacity: lines.creaseFade, pixelRatio});
     const [x0, y0, z0, x1, y1, z1] = this.bounds;
     const diagonal = Math.hypot(x1! - x0!, y1! - y0!, z1! - z0!);
+    this.arrows?.draw({toEye, toCube}, this.look);
     this.flow?.draw({toEye, toCube}, this.look, {kind: this.flowLook, diagonal, pixelRatio});
     // Soups that can be seen through come last, and hide nothing.
     for (const soup of visible) if (isClear(soup) || soup.hasClear) drawSoup(soup, true);
@@ -222,6 +227,7 @@ export class MeshParts {
     for (const soup of this.all) soup.dispose();
     this.restEdges?.dispose();
     this.flow?.dispose();
+    this.arrows?.dispose();
     this.program.dispose();
     this.colors.texture.dispose();
   }

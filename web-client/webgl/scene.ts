@@ -42,7 +42,7 @@ export class Scene {
    */
   awaits(snapshot: Snapshot): Promise<Snapshot> | null {
     const {parts} = this;
-    const {surface, cuts, streamlines, volume, warp} = snapshot;
+    const {arrows, surface, cuts, streamlines, volume, warp} = snapshot;
     if (volume && !this.volume)
       return loaded(import('./volume_view'), snapshot, {volume: null}, ({VolumeView}) => {
         this.volume ??= this.newVolume(VolumeView);
@@ -51,6 +51,10 @@ export class Scene {
     if (streamlines && !parts.flow)
       return loaded(import('./flow_lines'), snapshot, {streamlines: null}, ({FlowLines}) => {
         parts.flow ??= new FlowLines(this.graphics);
+      });
+    if (arrows && !parts.arrows)
+      return loaded(import('./arrow_view'), snapshot, {arrows: null}, ({ArrowView}) => {
+        parts.arrows ??= new ArrowView(this.graphics);
       });
     if (warp?.restEdges && !parts.restEdges) {
       const plain = {...warp};

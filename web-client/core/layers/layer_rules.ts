@@ -1,6 +1,17 @@
 // The texts that the attributes of layers take. They are needed where an attribute is wrong: a
 // page fetches them behind the first picture.
 
+import {
+  arrowDensity,
+  arrowSize,
+  isArrowColor,
+  isArrowLength,
+  isArrowPlaces,
+  kArrowColors,
+  kDensities,
+  kSizes,
+} from './arrows_text';
+import {kArrowLengths, kArrowPlaces} from '../picture/arrows';
 import {kClipModes, kMaxPlanes} from '../picture/display';
 import {kNoClip, parseClip} from './clip';
 import {parseNumbers} from './field_values';
@@ -66,6 +77,18 @@ export const kLayerRules: Readonly<Record<LayerAttribute, LayerRule>> = {
   'streamline-limits': [
     (text) => parseLimits(text) !== null,
     'steps, length over the diagonal, and time, each or none: steps=500 length=2 time=0.1',
+  ],
+  arrows: [(text) => text !== '', 'a field of vectors at points'],
+  'arrow-places': [isArrowPlaces, kArrowPlaces.join(', ')],
+  'arrow-density': [
+    (text) => arrowDensity(text) !== null,
+    `arrows along the longest side, ${kDensities.join(' to ')}`,
+  ],
+  'arrow-length': [isArrowLength, kArrowLengths.join(', ')],
+  'arrow-color': [isArrowColor, kArrowColors.join(', ')],
+  'arrow-size': [
+    (text) => arrowSize(text) !== null,
+    `the longest arrow over the distance between two, ${kSizes.join(' to ')}`,
   ],
   volume: [isVolume, `2 to ${kMaxOpacities} opacities from 0 to 1, or ${kAutoVolume}`],
 };

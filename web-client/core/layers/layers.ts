@@ -1,6 +1,7 @@
 // The layers, in the order of a link. A new one is a file beside this, a line here, one in
 // layer_work.ts, its rules in layer_rules.ts, and its controls in viewer/panels/value_controls.ts.
 
+import {arrows} from './arrows';
 import {clip} from './clip';
 import {isosurfaces} from './isosurfaces';
 import type {FieldLayer, Layer} from './layer';
@@ -9,7 +10,7 @@ import {streamlines} from './streamlines';
 import {threshold} from './threshold';
 import {volume} from './volume';
 
-const kAll = [clip, isosurfaces, threshold, parts, streamlines, volume] as const;
+const kAll = [clip, isosurfaces, threshold, parts, streamlines, arrows, volume] as const;
 
 type Listed = (typeof kAll)[number];
 type Further = Extract<Listed, {more: unknown}>['more'][number]['name'];

@@ -25,6 +25,7 @@ export function fieldsOf(display: Display): number[] {
     display.flux,
     display.parts?.scalar,
     display.streamlines,
+    display.arrows,
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];
   const named = scalars.filter((scalar) => scalar != null).map(({field}) => field);

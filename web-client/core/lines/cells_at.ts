@@ -4,7 +4,7 @@ import type {Vector} from '../protocol/geometry';
 import type {VectorWalk} from './vector_walk';
 
 /** Boxes along an axis at most, into which the places are sorted. */
-const kMostBoxes = 32;
+const kMostBoxes = 96;
 
 /**
  * By place the first cell that holds it; -1: none does. Places are on the lattice. The body is one
@@ -74,7 +74,7 @@ function sorted(places: readonly Vector[]): PlaceBoxes {
   const sizes = axes.map(
     (axis) => places.reduce((most, at) => Math.max(most, at[axis]), -Infinity) - low[axis]!,
   );
-  const most = Math.min(kMostBoxes, Math.ceil(Math.sqrt(places.length)));
+  const most = Math.min(kMostBoxes, Math.ceil(2 * Math.cbrt(places.length)));
   const counts = sizes.map((size) => (size > 0 ? most : 1));
   // the highest places are in the last box; one box holds all that is on its level
   const perBox = sizes.map((size, axis) => (size > 0 ? (counts[axis]! * (1 - 1e-9)) / size : 1));

@@ -9,72 +9,81 @@ import type {Box} from './seeds';
 const kFirstShare = 3;
 const kDistances = 12;
 
-export class EvenLines {
-  /** By distance the boxes of that size with a line in them. */
-  private readonly taken = Array.from({length: kDistances}, () => new Set<number>());
-  private readonly sizes: number[];
+/** The boxes of one size that have a line in them, with a margin of one box. */
+class TakenBoxes {
+  private readonly counts: readonly number[];
+  private readonly taken: Uint8Array;
+  /** From a box to itself and its 26 neighbours. */
+  private readonly around: readonly number[];
 
-  constructor(private readonly box: Box) {
-    const diagonal = Math.hypot(...[0, 1, 2].map((i) => box[i + 3]! - box[i]!));
-    this.sizes = this.taken.map((_, k) => Math.max(1, diagonal / (kFirstShare * Math.SQRT2 ** k)));
-  }
-
-  /**
-   * Calls `trace` with the numbers of places until it gave `count` lines. It gives the points of a
-   * line, kLineWidth numbers each; null: there is none.
-   */
-  choose(
-    places: readonly Vector[],
-    count: number,
-    trace: (place: number) => Float32Array | null,
-  ): void {
-    let left = places.map((_, place) => place);
-    let lines = 0;
-    for (let k = 0; k < kDistances && lines < count; ++k) {
-      const later: number[] = [];
-      for (const place of left) {
-        if (lines === count) return;
-        if (!this.isFree(k, places[place]!)) {
-          later.push(place);
-          continue;
-        }
-        const points = trace(place);
-        if (!points) continue;
-        this.take(points);
-        ++lines;
-      }
-      left = later;
-    }
-  }
-
-  private isFree(k: number, place: Vector): boolean {
-    const [x, y, z] = this.boxesOf(k, place[0], place[1], place[2]);
-    const middle = keyOf(x, y, z);
-    return kAround.every((step) => !this.taken[k]!.has(middle + step));
-  }
-
-  private take(points: Float32Array): void {
-    this.taken.forEach((boxes, k) => {
-      for (let at = 0; at < points.length; at += kLineWidth)
-        boxes.add(keyOf(...this.boxesOf(k, points[at]!, points[at + 1]!, points[at + 2]!)));
+  constructor(
+    private readonly box: Box,
+    private readonly size: number,
+  ) {
+    this.counts = [0, 1, 2].map((axis) => Math.floor((box[axis + 3]! - box[axis]!) / size) + 3);
+    const [x, y, z] = this.counts;
+    this.taken = new Uint8Array(x! * y! * z!);
+    this.around = Array.from({length: 27}, (_, i) => {
+      const [dx, dy, dz] = [(i % 3) - 1, (Math.floor(i / 3) % 3) - 1, Math.floor(i / 9) - 1];
+      return (dz * y! + dy) * x! + dx;
     });
   }
 
-  private boxesOf(k: number, x: number, y: number, z: number): [number, number, number] {
-    const size = this.sizes[k]!;
-    const {box} = this;
-    return [
-      Math.floor((x - box[0]!) / size),
-      Math.floor((y - box[1]!) / size),
-      Math.floor((z - box[2]!) / size),
-    ];
+  isFree([x, y, z]: Vector): boolean {
+    const {around, taken} = this;
+    const at = this.at(x, y, z);
+    for (let i = 0; i < 27; ++i) if (taken[at + around[i]!] !== 0) return false;
+    return true;
+  }
+
+  take(points: Float32Array): void {
+    for (let i = 0; i < points.length; i += kLineWidth)
+      this.taken[this.at(points[i]!, points[i + 1]!, points[i + 2]!)] = 1;
+  }
+
+  private at(x: number, y: number, z: number): number {
+    return (
+      (this.along(z, 2) * this.counts[1]! + this.along(y, 1)) * this.counts[0]! + this.along(x, 0)
+    );
+  }
+
+  /** Places a little outside of the box are in its margin. */
+  private along(x: number, axis: number): number {
+    const box = Math.floor((x - this.box[axis]!) / this.size) + 1;
+    return Math.max(1, Math.min(this.counts[axis]! - 2, box));
   }
 }
 
-/** Boxes are few along an axis. */
-const keyOf = (x: number, y: number, z: number): number => (x * 1024 + y) * 1024 + z;
-
-/** From the key of a box to that of itself and its 26 neighbours. */
-const kAround = Array.from({length: 27}, (_, i) =>
-  keyOf(Math.floor(i / 9) - 1, (Math.floor(i / 3) % 3) - 1, (i % 3) - 1),
-);
+/**
+ * Calls `trace` with the numbers of places until it gave `count` lines. It gives the points of a
+ * line, kLineWidth numbers each; null: there is none.
+ */
+export function chooseEven(
+  box: Box,
+  places: readonly Vector[],
+  count: number,
+  trace: (place: number) => Float32Array | null,
+): void {
+  const diagonal = Math.hypot(...[0, 1, 2].map((i) => box[i + 3]! - box[i]!));
+  const all = Array.from({length: kDistances}, (_, k) => {
+    const size = Math.max(1, diagonal / (kFirstShare * Math.SQRT2 ** k));
+    return new TakenBoxes(box, size);
+  });
+  let left = places.map((_, place) => place);
+  let lines = 0;
+  for (const boxes of all) {
+    const later: number[] = [];
+    for (const place of left) {
+      if (lines === count) return;
+      if (!boxes.isFree(places[place]!)) {
+        later.push(place);
+        continue;
+      }
+      const points = trace(place);
+      if (!points) continue;
+      ++lines;
+      for (const its of all) its.take(points);
+    }
+    left = later;
+  }
+}

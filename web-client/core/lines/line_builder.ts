@@ -36,7 +36,7 @@ export class LineBuilder implements LinePoints {
     points[at] = x;
     points[at + 1] = y;
     points[at + 2] = z;
-    points[at + 3] = this.valueIn(walk);
+    points[at + 3] = this.scale ? walk.valueOf(this.scale) : NaN;
     points[at + 4] = time;
     points[at + 5] = this.lines;
     this.size += kLineWidth;
@@ -70,19 +70,5 @@ export class LineBuilder implements LinePoints {
     const {lines} = this;
     const points = this.points.slice(0, this.size);
     return {points, lines, crossing, isCut: isCut || this.isFull};
-  }
-
-  private valueIn({cell, shares, mesh}: VectorWalk): number {
-    const {scale} = this;
-    if (!scale) return NaN;
-    if (scale.ofCells) return scale.at(cell);
-    const {tetrahedra} = mesh;
-    const at = 4 * cell;
-    return (
-      shares[0]! * scale.at(tetrahedra[at]!) +
-      shares[1]! * scale.at(tetrahedra[at + 1]!) +
-      shares[2]! * scale.at(tetrahedra[at + 2]!) +
-      shares[3]! * scale.at(tetrahedra[at + 3]!)
-    );
   }
 }

@@ -67,10 +67,6 @@ function onPlane(
   isIn: (places: readonly Vector[]) => boolean[],
 ): Vector[] {
   const across = acrossOf(normal);
-  const corners = Array.from(
-    {length: 8},
-    (_, i) => [0, 1, 2].map((axis) => box[axis + ((i >> axis) & 1) * 3]!) as Vector,
-  );
   const grid = (around: readonly Vector[], along: number): Vector[] => {
     const extents = across.map((direction) => extentOf(around, direction));
     const side = Math.max(...extents.map(([from, to]) => to - from)) / along;
@@ -84,11 +80,37 @@ function onPlane(
       ),
     );
   };
-  const probes = grid(corners, kProbesAlong);
+  const probes = grid(cornersOf(box), kProbesAlong);
   const are = isIn(probes);
   const inside = probes.filter((_, i) => are[i]);
   return inside.length > 1 ? grid(inside, count) : inside;
 }
+
+/** Places of a plane at equal distances, over a box. They are fixed in the plane. */
+export function planePlaces(
+  {normal, offset}: {normal: readonly number[]; offset: number},
+  box: Box,
+  spacing: number,
+): Vector[] {
+  const across = acrossOf(normal as Vector);
+  const [us, vs] = across.map((direction) => {
+    const [from, to] = extentOf(cornersOf(box), direction);
+    const first = Math.ceil(from / spacing);
+    const count = Math.max(0, Math.floor(to / spacing) - first + 1);
+    return Array.from({length: count}, (_, i) => (first + i) * spacing);
+  }) as [number[], number[]];
+  return vs.flatMap((b) =>
+    us.map(
+      (a) => normal.map((n, i) => offset * n + a * across[0][i]! + b * across[1][i]!) as Vector,
+    ),
+  );
+}
+
+const cornersOf = (box: Box): Vector[] =>
+  Array.from(
+    {length: 8},
+    (_, i) => [0, 1, 2].map((axis) => box[axis + ((i >> axis) & 1) * 3]!) as Vector,
+  );
 
 /** Two directions across a unit vector, and across each other. */
 function acrossOf(normal: Vector): [Vector, Vector] {

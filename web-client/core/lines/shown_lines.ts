@@ -1,11 +1,14 @@
 // The lines of a display, from the codec's mesh as it is now.
 
 import type {Assembler} from '../decode/assembler';
-import {colorScale, type Display, type MeshArrays} from '../picture/display';
+import {colorScale, cuttingPlanes, type Display, type MeshArrays} from '../picture/display';
+import type {lateMaking} from '../picture/late_making';
 import type {LineSoup} from '../picture/streamlines';
 import type {Vector} from '../protocol/geometry';
+import {Arrows} from './arrows';
 import {remembered} from './neighbour_memory';
 import {Streamlines} from './streamlines';
+import type {Vectors} from './vector_walk';
 
 type Across = (cell: number, corner: number) => number;
 
@@ -13,9 +16,29 @@ type Across = (cell: number, corner: number) => number;
 const memories = new WeakMap<Assembler, {chunks: number; across: Across}>();
 
 /** Null while the vectors have no values. */
-export function make(assembler: Assembler, mesh: MeshArrays, display: Display): LineSoup | null {
-  return linesIn(assembler, mesh, display)?.all(display.streamlines!.seeds) ?? null;
-}
+export const lines: typeof lateMaking.lines = (assembler, mesh, display) =>
+  linesIn(assembler, mesh, display)?.all(display.streamlines!.seeds) ?? null;
+
+/** As `lines`. */
+export const arrows: typeof lateMaking.arrows = (assembler, mesh, display) => {
+  const request = display.arrows;
+  const vectors = request ? vectorsIn(assembler, request.field) : null;
+  if (!vectors) return null;
+  const {body, mode, planes} = display;
+  const {bits, step} = assembler.manifest!.lattice;
+  return new Arrows(
+    {...mesh, step, across: acrossIn(assembler), longest: 2 ** bits},
+    vectors,
+    request!,
+  ).all(
+    {
+      hasSurface: body && mode !== 'slice',
+      cutting: cuttingPlanes(display),
+      cuts: mode === 'cells' ? [] : planes,
+    },
+    colorScale(mesh, display),
+  );
+};
 
 /** The line through a place of a cell. Null: there is none. */
 export function makeAt(
@@ -29,18 +52,23 @@ export function makeAt(
 
 function linesIn(assembler: Assembler, mesh: MeshArrays, display: Display): Streamlines | null {
   const request = display.streamlines;
-  const {codec, manifest} = assembler;
-  const info = request && manifest?.fields[request.field];
-  const values = info && codec.isWhole ? codec.field(request.field, info.components) : null;
-  if (!values || info!.components !== 3 || info!.association !== 'point') return null;
+  const vectors = request ? vectorsIn(assembler, request.field) : null;
+  if (!vectors) return null;
   const {points, tetrahedra, boundary} = mesh;
-  const {step} = manifest!.lattice;
+  const {step} = assembler.manifest!.lattice;
   return new Streamlines(
     {points, tetrahedra, boundary, step, across: acrossIn(assembler)},
-    {values, info: info!},
+    vectors,
     request!.limits,
     colorScale(mesh, display),
   );
+}
+
+function vectorsIn({codec, manifest}: Assembler, field: number): Vectors | null {
+  const info = manifest?.fields[field];
+  const values = info && codec.isWhole ? codec.field(field, info.components) : null;
+  if (!values || info?.components !== 3 || info.association !== 'point') return null;
+  return {values, info};
 }
 
 function acrossIn(assembler: Assembler): Across {

@@ -5,7 +5,7 @@ import type {LineLimits, LineSoup, Seeds} from '../picture/streamlines';
 import {pointBounds} from '../picture/triangle_soup';
 import type {Vector} from '../protocol/geometry';
 import {cellsAt} from './cells_at';
-import {EvenLines} from './even_lines';
+import {chooseEven} from './even_lines';
 import {LineBuilder} from './line_builder';
 import {placesOf} from './seeds';
 import {Tracer, type TraceLimits} from './trace';
@@ -55,7 +55,7 @@ export class Streamlines {
       );
       const cells = cellsAt(this.walk, places);
       if (its.kind === 'even')
-        new EvenLines(this.box).choose(places, its.count, (i) => this.trace(cells[i]!, places[i]!));
+        chooseEven(this.box, places, its.count, (i) => this.trace(cells[i]!, places[i]!));
       else places.forEach((place, i) => this.trace(cells[i]!, place));
     }
     return this.lines.take(this.crossing, this.isEnough);

@@ -1,7 +1,7 @@
 // Walks through the cells of a mesh, from one to the next across their faces, and reads a field of
 // vectors there. In a cell the field is linear, so that it takes a few products at each place.
 
-import {kMissing} from '../picture/field_scale';
+import {kMissing, type FieldScale} from '../picture/field_scale';
 import type {FieldInfo} from '../protocol/fields';
 import type {Vector} from '../protocol/geometry';
 
@@ -86,6 +86,43 @@ export class VectorWalk {
     return b >= kLeastShare && c >= kLeastShare && d >= kLeastShare && b + c + d <= 1 - kLeastShare;
   }
 
+  /** The vector at a place in the cell or close to it, and its shares there. */
+  readAt(cell: number, [x, y, z]: Vector): void {
+    this.enter(cell);
+    const {known, shares} = this;
+    const at = kCellWidth * this.slot;
+    const dx = x - known[at]!;
+    const dy = y - known[at + 1]!;
+    const dz = z - known[at + 2]!;
+    const b = known[at + 3]! * dx + known[at + 4]! * dy + known[at + 5]! * dz;
+    const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
+    const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
+    shares.set([1 - b - c - d, b, c, d]);
+    this.read(at + 12);
+  }
+
+  /** The value of a field at the place of `shares`. */
+  valueOf(scale: FieldScale): number {
+    const {cell, shares} = this;
+    if (scale.ofCells) return scale.at(cell);
+    const {tetrahedra} = this.mesh;
+    const at = 4 * cell;
+    return (
+      shares[0]! * scale.at(tetrahedra[at]!) +
+      shares[1]! * scale.at(tetrahedra[at + 1]!) +
+      shares[2]! * scale.at(tetrahedra[at + 2]!) +
+      shares[3]! * scale.at(tetrahedra[at + 3]!)
+    );
+  }
+
+  private read(v: number): void {
+    const {known, shares} = this;
+    const [a, b, c, d] = [shares[0]!, shares[1]!, shares[2]!, shares[3]!];
+    this.vx = a * known[v]! + b * known[v + 3]! + c * known[v + 6]! + d * known[v + 9]!;
+    this.vy = a * known[v + 1]! + b * known[v + 4]! + c * known[v + 7]! + d * known[v + 10]!;
+    this.vz = a * known[v + 2]! + b * known[v + 5]! + c * known[v + 8]! + d * known[v + 11]!;
+  }
+
   private learn(cell: number, slot: number): void {
     this.cells[slot] = cell;
     const {known, scale, leastX, leastY, leastZ} = this;
@@ -156,10 +193,7 @@ export class VectorWalk {
         shares[1] = b;
         shares[2] = c;
         shares[3] = d;
-        const v = at + 12;
-        this.vx = a * known[v]! + b * known[v + 3]! + c * known[v + 6]! + d * known[v + 9]!;
-        this.vy = a * known[v + 1]! + b * known[v + 4]! + c * known[v + 7]! + d * known[v + 10]!;
-        this.vz = a * known[v + 2]! + b * known[v + 5]! + c * known[v + 8]! + d * known[v + 11]!;
+        this.read(at + 12);
         return true;
       }
       const next = this.next(a, b, c, d);

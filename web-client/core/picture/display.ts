@@ -1,5 +1,6 @@
 // The display that the page wants, and how it is made from the mesh: plain data in, triangles out.
 
+import type {ArrowsRequest} from './arrows';
 import type {PartsRequest} from './parts_request';
 import type {Plane} from '../protocol/geometry';
 import {facesSoup, surfaceFaces} from './cell_surface';
@@ -44,6 +45,7 @@ export interface Display extends MayDerive {
   ahead?: number[];
   parts?: PartsRequest | null;
   streamlines?: StreamlinesRequest | null;
+  arrows?: ArrowsRequest | null;
   /** Layers without a member of their own, by name; the values are in [0, 1], too. */
   layers?: Record<string, {scalar: Scalar; values: number[]}>;
 }

@@ -17,7 +17,7 @@ import {scalarRange} from '../picture/field_scale';
 import {kLabelScaleRange, shownLabels, type ShownLabels} from '../picture/labels';
 import {meshArrays} from '../picture/mesh_arrays';
 import {amountsOf, middleOf} from '../picture/spread';
-import {lineMaking} from '../picture/line_making';
+import {lateMaking} from '../picture/late_making';
 import {noSoup, pointBounds, type CreasesOf} from '../picture/triangle_soup';
 import {volumeCells} from '../picture/volume';
 import type {Warp} from '../picture/warp';
@@ -26,7 +26,7 @@ import {KeptCreases} from './kept_creases';
 import type {Snapshot} from './worker_messages';
 
 export type Picture = Omit<Snapshot, 'statistics' | 'costMs'>;
-type Body = Pick<Snapshot, 'surface' | 'volume' | 'streamlines' | keyof LayerSoups>;
+type Body = Pick<Snapshot, 'surface' | 'volume' | 'streamlines' | 'arrows' | keyof LayerSoups>;
 
 /** Measuring these takes time. They change with the surface only. */
 interface Measures {
@@ -89,7 +89,8 @@ export class PictureMaker {
       surface: hasSurface ? surfaceOf(mesh, display, kept, creasesOf) : noSoup(),
       ...layerSoups(mesh, display, kept),
       volume: scale ? volumeCells(mesh, scale, kept) : null,
-      streamlines: lineMaking.make?.(this.assembler, mesh, display) ?? null,
+      streamlines: lateMaking.lines?.(this.assembler, {...mesh, kept}, display) ?? null,
+      arrows: lateMaking.arrows?.(this.assembler, {...mesh, kept}, display) ?? null,
     };
   }
 

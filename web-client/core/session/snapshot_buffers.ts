@@ -6,7 +6,7 @@ import {buffersOfVolume} from '../picture/volume';
 import type {Snapshot} from './worker_messages';
 
 export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
-  const {surface, cuts, volume, warp, streamlines} = snapshot;
+  const {surface, cuts, volume, warp, streamlines, arrows: few} = snapshot;
   const soups = [surface, ...cuts, ...kLayers.map((layer) => soupOf(snapshot, layer))].filter(
     (soup) => soup !== undefined,
   );
@@ -19,6 +19,7 @@ export function buffersOf(snapshot: Snapshot): ArrayBuffer[] {
     ...arrays.map(({buffer}) => buffer as ArrayBuffer),
     ...(warp?.restEdges ? [warp.restEdges.buffer as ArrayBuffer] : []),
     ...(streamlines ? [streamlines.points.buffer as ArrayBuffer] : []),
+    ...(few ? [few.arrows.buffer as ArrayBuffer] : []),
     ...(volume ? buffersOfVolume(volume) : []),
   ];
 }

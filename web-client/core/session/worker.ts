@@ -9,7 +9,7 @@ import {partCells} from '../layers/parts';
 import {derivation} from '../picture/derivation';
 import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
-import {lineMaking} from '../picture/line_making';
+import {lateMaking} from '../picture/late_making';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
@@ -169,14 +169,14 @@ function obey(
 }
 
 /** Loads the code that the display needs and that is not here; null: all is. */
-function missingFor({parts: its, streamlines}: Display): Promise<unknown> | null {
+function missingFor({parts: its, streamlines, arrows}: Display): Promise<unknown> | null {
   if (its && !partCells.paint)
     return retry(() => import('../layers/part_cells')).then((cells) =>
       Object.assign(partCells, cells),
     );
-  if (streamlines && !lineMaking.make)
+  if ((streamlines || arrows) && !lateMaking.lines)
     return retry(() => import('../lines/shown_lines')).then((lines) =>
-      Object.assign(lineMaking, lines),
+      Object.assign(lateMaking, lines),
     );
   return null;
 }

@@ -4,6 +4,7 @@
 import type {LevelBytes} from '../decode/plan';
 import type {Statistics} from '../decode/statistics';
 import type {LayerSoups} from '../layers/shown';
+import type {ArrowSoup} from '../picture/arrows';
 import type {BaseFigures} from '../picture/base_figures';
 import type {Ray} from '../picture/cell_ray';
 import type {DerivedFields} from '../picture/derived_field';
@@ -106,6 +107,7 @@ export interface Snapshot extends LayerSoups {
   volume?: VolumeCells | null;
   /** Null: there are none. */
   streamlines?: LineSoup | null;
+  arrows?: ArrowSoup | null;
   /** One a plane. The parts above the other planes must be hidden, as for the surface. */
   cuts: TriangleSoup[];
   planes: Plane[];

@@ -1,5 +1,6 @@
 // Readers of attributes that are loaded once one of the attributes is there.
 
+import type {readArrows} from '../../core/layers/arrows_text';
 import type {readParts} from '../../core/layers/parts_text';
 import type {readStreamlines} from '../../core/layers/streamlines_text';
 import type {ViewAttribute} from '../settings/settings';
@@ -8,7 +9,8 @@ import type {ViewAttribute} from '../settings/settings';
 export const lateRequests: {
   parts: typeof readParts | null;
   streamlines: typeof readStreamlines | null;
-} = {parts: null, streamlines: null};
+  arrows: typeof readArrows | null;
+} = {parts: null, streamlines: null, arrows: null};
 
 interface Late {
   names: readonly ViewAttribute[];
@@ -35,6 +37,14 @@ const kLate: readonly Late[] = [
       lateRequests.streamlines = text.readStreamlines;
     },
     giveUp: () => (lateRequests.streamlines = () => null),
+  },
+  {
+    names: ['arrows'],
+    isHere: () => lateRequests.arrows !== null,
+    load: async () => {
+      lateRequests.arrows = (await import('../../core/layers/arrows_text')).readArrows;
+    },
+    giveUp: () => (lateRequests.arrows = () => null),
   },
 ];
 

@@ -8,15 +8,12 @@ import {
   kMostAlongPlane,
   kMostLines,
   lineField,
-  lineFields,
-  lineFieldText,
   parseSeeds,
   readStreamlines,
   seedsText,
   type SeedsText,
 } from '../../core/layers/streamlines_text';
 import {parseNumbers} from '../../core/layers/field_values';
-import {kMagnitude} from '../../core/picture/field_scale';
 import {kLineWidth, type LineSoup} from '../../core/picture/streamlines';
 import {errorsOfLevel} from '../../core/protocol/limit';
 import {positionOf, type Vector} from '../../core/protocol/geometry';
@@ -29,8 +26,9 @@ import type {Settings} from '../settings/settings';
 import type {LateContent} from './late_panel';
 import {shape} from './marks';
 import {segments, toggle} from './markup';
-import {scalarName, type PanelTools, type Scene} from './panel';
+import type {PanelTools, Scene} from './panel';
 import styles from './streamlines.css?inline';
+import {chooseVectors, fillVectors} from './vector_menu';
 
 /** Digits of places that are written. */
 const kDigits = 6;
@@ -105,7 +103,9 @@ export class StreamlinesControls implements LateContent {
     this.marks.setAttribute('part', 'marks');
     find(page.root, '.layer').append(this.marks);
     this.on = this.input('streamlines');
-    this.on.addEventListener('change', () => this.toggle());
+    this.on.addEventListener('change', () =>
+      page.write('streamlines', this.on.checked ? chooseVectors(tools) : null),
+    );
     this.select('streamlines-field').addEventListener('change', (event) =>
       page.write('streamlines', (event.target as HTMLSelectElement).value),
     );
@@ -136,13 +136,7 @@ export class StreamlinesControls implements LateContent {
     this.on.checked = isOn;
     find(this.place, '.streamlines-body').hidden = !isOn;
     if (!isOn) return this.point(null);
-    const options = lineFields(fields).map((its) => ({
-      value: lineFieldText(its, fields),
-      title: scalarName({field: its, component: kMagnitude}, fields).replace(/, magnitude$/, ''),
-    }));
-    const select = this.select('streamlines-field');
-    fillSelect(select, options, lineFieldText(this.field, fields));
-    select.hidden = options.length < 2;
+    fillVectors(this.select('streamlines-field'), this.field, fields);
     this.seeds = parseSeeds(page.read('seeds') ?? kFirstSeeds) ?? parseSeeds(kFirstSeeds)!;
     this.showSeeds();
     const look = page.read('streamline-look') ?? kLooks[0];
@@ -259,15 +253,6 @@ export class StreamlinesControls implements LateContent {
   private write(seeds: readonly SeedsText[]): void {
     const its = seedsText(seeds);
     this.tools.page.write('seeds', its === kFirstSeeds ? null : its);
-  }
-
-  private toggle(): void {
-    const {page, host} = this.tools;
-    const {fields} = host.mesh.manifest!;
-    const all = lineFields(fields);
-    const shown = lineField(page.read('field'), fields);
-    const field = shown >= 0 ? shown : all[0]!;
-    page.write('streamlines', this.on.checked ? lineFieldText(field, fields) : null);
   }
 
   // ---- the line at the pointer

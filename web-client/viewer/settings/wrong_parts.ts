@@ -181,6 +181,7 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
   for (const [name, of] of [
     ['flux', ''],
     ['streamlines', ' of points'],
+    ['arrows', ' of points'],
   ] as const) {
     const text = read(name);
     const info = fields[parseScalar(text, fields)?.field ?? -1];

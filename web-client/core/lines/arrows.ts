@@ -1,0 +1,186 @@
+// The arrows of a field of vectors: where they stand, and how long they are.
+
+import {kArrowWidth, type ArrowSoup, type ArrowsRequest} from '../picture/arrows';
+import {surfaceFaces} from '../picture/cell_surface';
+import type {FieldScale} from '../picture/field_scale';
+import {isHole} from '../picture/neighbours';
+import {pointBounds} from '../picture/triangle_soup';
+import {dot, type Plane, type Vector} from '../protocol/geometry';
+import {cellsAt} from './cells_at';
+import {planePlaces} from './seeds';
+import {placesOnFaces, type CellPlace} from './surface_places';
+import {VectorWalk, type Vectors, type WalkMesh} from './vector_walk';
+
+export interface ArrowsMesh extends WalkMesh {
+  /** 3 vertices a triangle of the boundary. */
+  boundary: Uint32Array;
+  kept: Uint8Array | null;
+  /** The lattice's, in the mesh's unit. */
+  step: number;
+  /** The longest side of the mesh at rest, in lattice steps. */
+  longest: number;
+}
+
+/** The part of a display that says where arrows stand. */
+export interface Shown {
+  /** The surface is drawn. */
+  hasSurface: boolean;
+  /** What lies above any of them is cut away. */
+  cutting: readonly Plane[];
+  /** Each has a cut. */
+  cuts: readonly Plane[];
+}
+
+/** More are no picture any more, and graphics draw so many smoothly. */
+export const kMostArrows = 20_000;
+/** Places inside that are looked for: a tenth of a second of work. */
+const kMostPlaces = 100_000;
+/** Logarithmic lengths span so many decades. */
+const kDecades = 3;
+/** Shorter arrows, over the longest one, are left out. */
+const kLeastLength = 0.02;
+
+export class Arrows {
+  private readonly walk: VectorWalk;
+  private readonly longest: number;
+  private spacing: number;
+  private isCut = false;
+
+  constructor(
+    private readonly mesh: ArrowsMesh,
+    {values, info}: Vectors,
+    private readonly request: ArrowsRequest,
+  ) {
+    this.walk = new VectorWalk(mesh, {values, info}, mesh.step);
+    this.longest = info.range[1] / mesh.step;
+    this.spacing = mesh.longest / request.density;
+  }
+
+  /** `scale` colours; null: they are plain. */
+  all(shown: Shown, scale: FieldScale | null): ArrowSoup {
+    const places = this.places(shown);
+    if (places.length > kMostArrows) this.isCut = true;
+    const few = places.filter(
+      (_, i) => (i * kMostArrows) % places.length < kMostArrows || places.length <= kMostArrows,
+    );
+    const arrows = new Float32Array(kArrowWidth * few.length);
+    let size = 0;
+    for (const {cell, place, outward} of few) {
+      const way = this.wayAt(cell, place);
+      if (!way) continue;
+      // Arrows into the drawn body end at its surface, so that all of them are seen.
+      const back = outward ? Number(dot(way, outward) < 0) : 0.5;
+      for (let axis = 0; axis < 3; ++axis) {
+        arrows[size + axis] = place[axis]! - back * way[axis]!;
+        arrows[size + 3 + axis] = way[axis]!;
+      }
+      arrows[size + 6] = scale && this.request.isColored ? this.walk.valueOf(scale) : NaN;
+      size += kArrowWidth;
+    }
+    return {
+      arrows: arrows.slice(0, size),
+      count: size / kArrowWidth,
+      spacing: this.spacing,
+      isCut: this.isCut,
+    };
+  }
+
+  private places(shown: Shown): CellPlace[] {
+    switch (this.request.places) {
+      case 'shown':
+        return this.shownPlaces(shown);
+      case 'volume':
+        return this.inside(this.grid());
+      case 'vertices':
+        return this.vertices();
+    }
+  }
+
+  private shownPlaces({hasSurface, cutting, cuts}: Shown): CellPlace[] {
+    const {mesh, spacing} = this;
+    const box = pointBounds(mesh.points, mesh.boundary);
+    const isBelow = (planes: readonly Plane[], place: Vector): boolean =>
+      planes.every(({normal, offset}) => dot(normal, place) <= offset);
+    const surface = hasSurface
+      ? placesOnFaces(mesh, surfaceFaces(mesh, mesh.boundary), spacing)
+      : [];
+    const inCuts = cuts.flatMap((plane) => {
+      const others = cutting.filter((other) => other !== plane);
+      const all = planePlaces(plane, box, spacing).filter((place) => isBelow(others, place));
+      const isOpen = cutting.includes(plane);
+      return this.inside(all).map((its) => ({...its, ...(isOpen && {outward: plane.normal})}));
+    });
+    return [...surface.filter(({place}) => isBelow(cutting, place)), ...inCuts];
+  }
+
+  private inside(places: readonly Vector[]): CellPlace[] {
+    const few = places.slice(0, kMostPlaces);
+    this.isCut ||= few.length < places.length;
+    const cells = cellsAt(this.walk, few);
+    return few.flatMap((place, i) => {
+      const cell = cells[i]!;
+      return cell >= 0 && this.mesh.kept?.[cell] !== 0 ? [{cell, place}] : [];
+    });
+  }
+
+  /** Every other layer lies between the places of the last. */
+  private grid(): Vector[] {
+    const box = pointBounds(this.mesh.points, this.mesh.boundary);
+    const countWith = (spacing: number): number[] =>
+      [0, 1, 2].map((axis) => Math.floor((box[axis + 3]! - box[axis]!) / spacing) + 1);
+    let counts = countWith(this.spacing);
+    while (counts.reduce((all, count) => all * count) > kMostPlaces) {
+      this.spacing *= 1.25;
+      this.isCut = true;
+      counts = countWith(this.spacing);
+    }
+    const {spacing} = this;
+    const first = [0, 1, 2].map((axis) => Math.ceil(box[axis]! / spacing));
+    const places: Vector[] = [];
+    for (let z = 0; z < counts[2]!; ++z)
+      for (let y = 0; y < counts[1]!; ++y)
+        for (let x = 0; x < counts[0]!; ++x) {
+          const aside = (first[2]! + z) & 1 ? 0.5 : 0;
+          places.push([
+            (first[0]! + x + aside) * spacing,
+            (first[1]! + y + aside) * spacing,
+            (first[2]! + z) * spacing,
+          ]);
+        }
+    return places;
+  }
+
+  private vertices(): CellPlace[] {
+    const {points, tetrahedra, kept} = this.mesh;
+    const cellOf = new Int32Array(points.length / 3).fill(-1);
+    for (let at = 0; at < tetrahedra.length; ++at) {
+      const cell = at >> 2;
+      if (kept?.[cell] !== 0 && !isHole(tetrahedra, cell)) cellOf[tetrahedra[at]!] = cell;
+    }
+    const places: CellPlace[] = [];
+    cellOf.forEach((cell, vertex) => {
+      if (cell < 0) return;
+      const at = 3 * vertex;
+      places.push({cell, place: [points[at]!, points[at + 1]!, points[at + 2]!]});
+    });
+    return places;
+  }
+
+  /** Null: there is no vector, or it is too short to be seen. */
+  private wayAt(cell: number, place: Vector): Vector | null {
+    const {longest, request, spacing, walk} = this;
+    walk.readAt(cell, place);
+    const length = Math.hypot(walk.vx, walk.vy, walk.vz);
+    if (!(length > 0)) return null;
+    const share = length / longest;
+    const shares = {
+      magnitude: share,
+      log: 1 + Math.log10(share) / kDecades,
+      equal: 1,
+    };
+    const its = shares[request.length];
+    if (!(its >= kLeastLength)) return null;
+    const factor = (its * request.size * spacing) / length;
+    return [walk.vx * factor, walk.vy * factor, walk.vz * factor];
+  }
+}

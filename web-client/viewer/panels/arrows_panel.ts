@@ -1,0 +1,13 @@
+// The section of arrows.
+
+import {lineFields} from '../../core/layers/streamlines_text';
+import {latePanel} from './late_panel';
+
+export const arrowsPanel = latePanel({
+  name: 'arrows',
+  suits: (fields) => lineFields(fields).length > 0,
+  load: async (tools, place) => {
+    const {ArrowsControls} = await import('./arrows_controls');
+    return new ArrowsControls(tools, place);
+  },
+});
