@@ -6,7 +6,7 @@ import {Made, type Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
 import type {Eye} from './lens';
 
-/** Of the shape, over its length. */
+/** Shares of the length of the shape. */
 const kShaftRadius = 0.032;
 const kHeadRadius = 0.1;
 const kHeadLength = 0.32;
