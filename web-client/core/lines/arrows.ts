@@ -25,7 +25,7 @@ export interface ArrowsMesh extends WalkMesh {
 export interface Shown {
   /** The surface is drawn. */
   hasSurface: boolean;
-  /** What lies above any of them is cut away. */
+  /** The part above any of them is cut away. */
   cutting: readonly Plane[];
   /** Each has a cut. */
   cuts: readonly Plane[];
