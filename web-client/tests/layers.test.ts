@@ -65,7 +65,7 @@ test('hasAnAttributeThatIsCheckedAndControls', () => {
     .join(' ');
   expect(layers).toBe(
     'clip clip-mode iso threshold parts hidden-parts part-opacity part-colors ' +
-      'streamlines seeds streamline-look streamline-limits ' +
+      'streamlines streamline-kind seeds streamline-look streamline-limits ' +
       'arrows arrow-places arrow-density arrow-length arrow-size arrow-color volume toy',
   );
   expect(wrongParts(read({toy: 'p=1'}))).toEqual([]);

@@ -1,6 +1,7 @@
 import {afterEach, beforeEach, describe, expect, test, vi} from 'vitest';
 import type {Assembler} from '../core/decode/assembler';
 import {kPlainDisplay, type Display} from '../core/picture/display';
+import type {ArrowsRequest} from '../core/picture/arrows';
 import type {FieldInfo} from '../core/protocol/fields';
 import {markSeries} from '../core/protocol/series';
 import {Publisher} from '../core/session/publisher';
@@ -327,7 +328,7 @@ test('aComponentOfASeriesHasOneRangeForAllInstants', () => {
   }
 });
 
-test('colourAndWarpOfTwoSeriesChangeTogether', () => {
+test('colourWarpAndArrowsOfTwoSeriesChangeTogether', () => {
   const names = ['T@0', 'T@1', 'u@0', 'u@1'];
   const fields = names.map((name, field): FieldInfo => {
     const components = field < 2 ? 1 : 3;
@@ -360,6 +361,7 @@ test('colourAndWarpOfTwoSeriesChangeTogether', () => {
       ...kPlainDisplay,
       color: {field: instant, component: -1},
       warp: {field: 2 + instant, scale},
+      arrows: {field: 2 + instant} as unknown as ArrowsRequest,
     });
   show(0, 5);
   codec.applyField(0, 0);
@@ -369,8 +371,10 @@ test('colourAndWarpOfTwoSeriesChangeTogether', () => {
   show(1, 6);
   codec.applyField(1, 0);
   expect([seen(), publisher.now.warp]).toEqual([[0, 2, 6], {field: 2, scale: 6}]);
+  expect(publisher.now.arrows?.field).toBe(2);
   codec.applyField(3, 0);
   expect(seen()).toEqual([1, 3, 6]);
+  expect(publisher.now.arrows?.field).toBe(3);
 });
 
 describe('theEdgesAtRest', () => {

@@ -1,12 +1,19 @@
 // Lines through fields whose lines are known.
 
 import {describe, expect, test} from 'vitest';
+import {parseLimits, parseSeeds, readStreamlines, seedsText} from '../core/layers/streamlines_text';
 import {cellsAt} from '../core/lines/cells_at';
 import {placesOf} from '../core/lines/seeds';
 import {Streamlines, type LinesMesh} from '../core/lines/streamlines';
 import {kOutside, VectorWalk} from '../core/lines/vector_walk';
-import {kLineWidth, type LineSoup, type Seeds} from '../core/picture/streamlines';
+import {
+  kLineWidth,
+  type LineSoup,
+  type Seeds,
+  type StreamlinesRequest,
+} from '../core/picture/streamlines';
 import type {Vector} from '../core/protocol/geometry';
+import type {Manifest} from '../core/protocol/manifest';
 import {boxMesh, vectorsOf} from './vector_fields';
 
 const kSide = 8;
@@ -119,6 +126,98 @@ describe('streamlines', () => {
       return linesIn(soup).map(([point]) => [point![0], point![2]]);
     });
     expect(fine).toEqual(coarse);
+  });
+});
+
+describe('path lines', () => {
+  /** The line through a place at `begin`, with a speed along x for each instant 0, 1, ... */
+  function pathOf(speeds: readonly number[], begin: number, limits = kFar): number[][] {
+    const its = mesh();
+    const instants = speeds.map((speed, time) => ({...vectorsOf(its, () => [speed, 0, 0]), time}));
+    const soup = new Streamlines(its, instants[begin]!, limits, null, {instants, begin});
+    return linesIn(soup.all(oneAt([200, 200, 200])))[0]!;
+  }
+
+  test('goThroughVectorsThatChangeInTime', () => {
+    const line = pathOf([0, 10, 20, 30, 40], 2);
+    for (const [x, , , , time] of line) expect(x! - 200).toBeCloseTo(5 * (2 + time!) ** 2 - 20, 2);
+    expect(line[0]![4]).toBeCloseTo(-2);
+    expect(line.at(-1)![4]).toBeCloseTo(2);
+  });
+
+  test('waitWhereNothingMovesYet', () => {
+    const line = pathOf([0, 0, 0, 20], 0);
+    expect(line.at(-1)![0]).toBeCloseTo(210, 1);
+    expect(line.at(-1)![4]).toBeCloseTo(3);
+  });
+
+  test('endAtALimitOfTime', () => {
+    const line = pathOf([10, 10, 10], 1, {...kFar, time: 0.5});
+    expect([line[0]![0], line.at(-1)![0]]).toEqual([195, 205]);
+  });
+});
+
+describe('attributes', () => {
+  const kFields = ['U@0', 'U@1', 'U@2'].map((name, field) => ({
+    name,
+    components: 3,
+    association: 'point',
+    instant: {series: 'U', time: field, isShown: field === 1},
+  }));
+  const manifest = (vertices: number): Manifest =>
+    ({
+      fields: kFields,
+      lattice: {bits: 16, step: 0.5, origin: [1, 1, 1]},
+      levels: [{vertices}],
+    }) as unknown as Manifest;
+  const request = (its: Record<string, string>, vertices = 10): StreamlinesRequest | null =>
+    readStreamlines(
+      (name) => its[name] ?? null,
+      manifest(vertices),
+      ({normal}) => ({normal, offset: 7}),
+    );
+
+  test('seedsComeOntoTheLattice', () => {
+    const seeds = 'line 1,1,1 2,1,1 3; plane -y:0.2 4; sphere 1,2,1 3 5; even 6';
+    expect(request({streamlines: 'U', seeds})?.seeds).toEqual([
+      {kind: 'line', from: [0, 0, 0], to: [2, 0, 0], count: 3},
+      {kind: 'plane', normal: [0, 1, 0], offset: 7, count: 4},
+      {kind: 'sphere', centre: [0, 2, 0], radius: 6, count: 5},
+      {kind: 'even', count: 6},
+    ]);
+    expect(seedsText(parseSeeds(seeds)!)).toBe(seeds);
+  });
+
+  test.each([
+    'even 0',
+    'even 2001',
+    'even 1.5',
+    'plane x:0.5 41',
+    'plane x:2 5',
+    'sphere 0,0,0 0 5',
+    'line 0,0,0 1,0 5',
+    'ring 5',
+    '',
+    Array(33).fill('even 1').join(';'),
+  ])('%s isNoSeeds', (text) => expect(parseSeeds(text)).toBeNull());
+
+  test.each(['even 1', 'even 2000', 'plane x:0.5 40', Array(32).fill('even 1').join(';')])(
+    '%s isSeeds',
+    (text) => expect(parseSeeds(text)).not.toBeNull(),
+  );
+
+  test('limitsAreNumbersAboveZero', () => {
+    expect(parseLimits('steps=10000 time=2')).toEqual({steps: 10000, length: 3, time: 2});
+    for (const text of ['steps=10001', 'steps=1.5', 'length=0', 'time=', 'speed=1', 'steps=1=2'])
+      expect(parseLimits(text), text).toBeNull();
+  });
+
+  test('pathLinesTakeTheInstantsThatFitMemory', () => {
+    const its = {streamlines: 'U', 'streamline-kind': 'path'};
+    expect(request({streamlines: 'U'})?.instants).toBeUndefined();
+    expect(request(its)?.instants?.map(({field}) => field)).toEqual([0, 1, 2]);
+    expect(request(its, 10_000_000)?.instants?.map(({field}) => field)).toEqual([0, 1, 2]);
+    expect(request(its)?.field).toBe(1);
   });
 });
 

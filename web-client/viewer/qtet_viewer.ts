@@ -38,6 +38,8 @@
 //   streamlines  name of a point field of vectors, whose lines are drawn.
 //   seeds        where they begin: "even 100" (default), "line 0,0,0 1,0,0 20", "plane x:0.5 8",
 //                "sphere 0,0,0 0.1 50", several with ";" between them.
+//   streamline-kind
+//                stream (default), or path: through the instants of the series.
 //   streamline-look
 //                tubes (default), lines, dashes.
 //   streamline-limits

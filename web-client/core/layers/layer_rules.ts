@@ -17,8 +17,10 @@ import {kNoClip, parseClip} from './clip';
 import {parseNumbers} from './field_values';
 import type {LayerAttribute} from './layers';
 import {
+  isLineKind,
   isLook,
   kFirstSeeds,
+  kLineKinds,
   kLooks,
   kMostAlongPlane,
   kMostLines,
@@ -73,6 +75,7 @@ export const kLayerRules: Readonly<Record<LayerAttribute, LayerRule>> = {
     `${kFirstSeeds}, line 0,0,0 1,0,0 20, plane x:0.5 8, or sphere 0,0,0 0.1 50, with ";" ` +
       `between several; at most ${kMostLines} of a kind, and ${kMostAlongPlane} along a plane`,
   ],
+  'streamline-kind': [isLineKind, kLineKinds.join(', ')],
   'streamline-look': [isLook, kLooks.join(', ')],
   'streamline-limits': [
     (text) => parseLimits(text) !== null,

@@ -25,6 +25,7 @@ export function fieldsOf(display: Display): number[] {
     display.flux,
     display.parts?.scalar,
     display.streamlines,
+    ...(display.streamlines?.instants ?? []),
     display.arrows,
     ...fieldLayers().map((layer) => layer.requestOf(display)?.scalar),
   ];

@@ -6,6 +6,11 @@ import type {Layer} from './layer';
 
 export const streamlines = {
   name: 'streamlines',
-  more: [{name: 'seeds'}, {name: 'streamline-look'}, {name: 'streamline-limits'}],
+  more: [
+    {name: 'streamline-kind'},
+    {name: 'seeds'},
+    {name: 'streamline-look'},
+    {name: 'streamline-limits'},
+  ],
   requestOf: (display: Display) => display.streamlines ?? null,
 } as const satisfies Layer;

@@ -2,14 +2,14 @@
 // have them.
 
 import {kMagnitude} from '../picture/field_scale';
-import type {LineLimits, Seeds, StreamlinesRequest} from '../picture/streamlines';
+import type {LineInstant, LineLimits, Seeds, StreamlinesRequest} from '../picture/streamlines';
 import type {FieldInfo} from '../protocol/fields';
 import type {Plane, Vector} from '../protocol/geometry';
 import type {Manifest} from '../protocol/manifest';
 import {parseClip, type ClipSetting} from './clip';
 import {fieldOfKey, parseNumbers, scalarText} from './field_values';
 
-type Name = 'streamlines' | 'seeds' | 'streamline-look' | 'streamline-limits';
+type Name = 'streamlines' | 'streamline-kind' | 'seeds' | 'streamline-look' | 'streamline-limits';
 export type ReadStreamlines = (name: Name) => string | null;
 
 /** Lines at most of one kind of seeds; the grid of a plane has so many along a side. */
@@ -104,6 +104,29 @@ export function parseLimits(text: string): LineLimits | null {
   return limits;
 }
 
+/** Streamlines of the shown instant, or path lines through all instants. */
+export const kLineKinds = ['stream', 'path'] as const;
+/** Values of vectors that path lines may hold: 240 MB. */
+const kMostHeld = 60_000_000;
+
+export const isLineKind = (text: string): boolean =>
+  (kLineKinds as readonly string[]).includes(text);
+
+/** Instants of the field's series: all, or evenly chosen ones. None: it has no series. */
+function instantsOf(field: number, {fields, levels}: Manifest): LineInstant[] {
+  const series = fields[field]!.instant?.series;
+  if (series === undefined) return [];
+  const all = fields
+    .flatMap(({instant, components}, its) =>
+      instant?.series === series && components === 3 ? [{field: its, time: instant.time}] : [],
+    )
+    .sort((a, b) => a.time - b.time);
+  const vertices = levels.at(-1)?.vertices ?? 1;
+  const most = Math.max(2, Math.floor(kMostHeld / (3 * vertices)));
+  const step = Math.ceil(all.length / most);
+  return all.filter((its, i) => i % step === 0 || its.field === field || i === all.length - 1);
+}
+
 export const isLook = (text: string): text is LinesLook =>
   (kLooks as readonly string[]).includes(text);
 
@@ -113,9 +136,10 @@ export const isLook = (text: string): text is LinesLook =>
  */
 export function readStreamlines(
   read: ReadStreamlines,
-  {fields, lattice}: Manifest,
+  manifest: Manifest,
   planeOf: (setting: ClipSetting) => Plane,
 ): StreamlinesRequest | null {
+  const {fields, lattice} = manifest;
   const field = lineField(read('streamlines'), fields);
   if (field < 0) return null;
   const onLattice = (place: Vector): Vector =>
@@ -134,5 +158,7 @@ export function readStreamlines(
       }
     },
   );
-  return {field, seeds, limits: parseLimits(read('streamline-limits') ?? '') ?? kFirstLimits};
+  const limits = parseLimits(read('streamline-limits') ?? '') ?? kFirstLimits;
+  const instants = read('streamline-kind') === 'path' ? instantsOf(field, manifest) : [];
+  return {field, seeds, limits, ...(instants.length > 1 && {instants})};
 }

@@ -56,11 +56,20 @@ function linesIn(assembler: Assembler, mesh: MeshArrays, display: Display): Stre
   if (!vectors) return null;
   const {points, tetrahedra, boundary} = mesh;
   const {step} = assembler.manifest!.lattice;
+  // instants that have come; there are more with each picture
+  const instants = (request!.instants ?? []).flatMap(({field, time}) => {
+    const its = vectorsIn(assembler, field);
+    return its ? [{...its, time}] : [];
+  });
+  const begin = request!.instants?.find(({field}) => field === request!.field)?.time;
+  const changes = begin !== undefined && instants.length > 1 ? {instants, begin} : null;
+  if (request!.instants && !changes) return null;
   return new Streamlines(
     {points, tetrahedra, boundary, step, across: acrossIn(assembler)},
     vectors,
     request!.limits,
     colorScale(mesh, display),
+    changes,
   );
 }
 

@@ -6,6 +6,7 @@ import {pointBounds} from '../picture/triangle_soup';
 import type {Vector} from '../protocol/geometry';
 import {cellsAt} from './cells_at';
 import {chooseEven} from './even_lines';
+import {InstantsClock, type TimedVectors} from './instants_clock';
 import {LineBuilder} from './line_builder';
 import {placesOf} from './seeds';
 import {Tracer, type TraceLimits} from './trace';
@@ -31,12 +32,16 @@ export class Streamlines {
   private readonly limits: TraceLimits;
   private readonly crossing: number;
 
-  /** `scale` colours; null: the lines are plain. */
+  /**
+   * `scale` colours; null: the lines are plain. With `instants` the vectors change in time, and are
+   * those of `begin` at the seeds.
+   */
   constructor(
     mesh: LinesMesh,
     {values, info}: Vectors,
     {steps, length, time}: LineLimits,
     scale: FieldScale | null,
+    changes: {instants: readonly TimedVectors[]; begin: number} | null = null,
   ) {
     this.box = pointBounds(mesh.points, mesh.boundary);
     const diagonal = Math.hypot(...[0, 1, 2].map((i) => this.box[i + 3]! - this.box[i]!));
@@ -44,7 +49,8 @@ export class Streamlines {
     this.crossing = fastest > 0 ? diagonal / fastest : 1;
     this.limits = {steps, time, length: length * diagonal, stillSpeed: kStillShare * fastest};
     this.walk = new VectorWalk(mesh, {values, info}, mesh.step);
-    this.tracer = new Tracer(this.walk);
+    const clock = changes && new InstantsClock(this.walk, changes.instants, changes.begin);
+    this.tracer = new Tracer(this.walk, clock);
     this.lines = new LineBuilder(scale);
   }
 

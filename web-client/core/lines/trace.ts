@@ -24,6 +24,23 @@ export interface LinePoints {
   add(place: Vector, time: number, walk: VectorWalk): void;
 }
 
+/** The time of vectors that change. Times count from where the lines begin. */
+export interface LineClock {
+  /**
+   * Prepares steps from this time, forwards (1) or backwards (-1). Gives the time in which they may
+   * end; 0: there are no vectors.
+   */
+  prepare(time: number, sign: number): number;
+  /** The walk has the vectors of this time. REQUIRES: a time that was prepared. */
+  set(time: number): void;
+  /** The time between two instants, of those that are prepared. */
+  readonly spacing: number;
+}
+
+/** A place without motion waits for this share of the time between two instants. */
+const kWaits = 1 / 64;
+/** The shares of a step at which its slopes are taken. */
+const kNodes = [0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1];
 /** Steps are shares of the size of a cell. */
 const kFirstStep = 0.25;
 const kLongestStep = 0.5;
@@ -41,7 +58,11 @@ export class Tracer {
   // the seven slopes
   private readonly k = new Float64Array(21);
 
-  constructor(private readonly walk: VectorWalk) {}
+  /** `clock`: null, or absent: the vectors stay. */
+  constructor(
+    private readonly walk: VectorWalk,
+    private readonly clock: LineClock | null = null,
+  ) {}
 
   /**
    * Follows the vectors, or their reverse, from a place in the cell. The place itself is not added.
@@ -59,23 +80,29 @@ export class Tracer {
     let time = 0;
     let length = 0;
     walk.enter(cell);
-    if (!walk.find(x, y, z)) return 'boundary';
-    k[0] = sign * walk.vx;
-    k[1] = sign * walk.vy;
-    k[2] = sign * walk.vz;
+    if (this.timeLeft(0, sign) <= 0) return 'time';
+    if (!this.begin(x, y, z, sign)) return 'boundary';
     let share = kFirstStep;
     for (let count = 0; count < limits.steps;) {
-      const speed = Math.sqrt(k[0] * k[0] + k[1] * k[1] + k[2] * k[2]);
+      const untilTime = Math.min(limits.time - time, this.timeLeft(time, sign));
+      if (untilTime <= 0) return 'time';
+      const speed = Math.sqrt(k[0]! ** 2 + k[1]! ** 2 + k[2]! ** 2);
       if (Number.isNaN(speed)) return 'missing';
-      if (!(speed > limits.stillSpeed)) return 'still';
+      if (!(speed > limits.stillSpeed)) {
+        if (!this.clock) return 'still';
+        // it waits for the vectors of a later time
+        ++count;
+        time += Math.min(untilTime, kWaits * this.clock.spacing);
+        if (this.timeLeft(time, sign) > 0) this.begin(x, y, z, sign);
+        continue;
+      }
       const {cell: from, size} = walk;
       let reach = share * size;
       const left = limits.length - length;
       if (left <= 0) return 'length';
       if (reach > left) reach = left;
-      const untilTime = limits.time - time;
-      if (untilTime <= 0) return 'time';
       const h = Math.min(reach / speed, untilTime);
+      this.time = time;
       const error = this.tryStep(x, y, z, h, sign);
       const isShortest = share <= kShortestStep;
       if (error < 0) {
@@ -116,6 +143,27 @@ export class Tracer {
     return 'steps';
   }
 
+  /** The first slope, at a place. False: it is outside. */
+  private begin(x: number, y: number, z: number, sign: number): boolean {
+    const {walk, k} = this;
+    if (!walk.find(x, y, z)) return false;
+    k[0] = sign * walk.vx;
+    k[1] = sign * walk.vy;
+    k[2] = sign * walk.vz;
+    return true;
+  }
+
+  /** The time in which a step may end that begins at this time. */
+  private timeLeft(time: number, sign: number): number {
+    if (!this.clock) return Infinity;
+    const left = this.clock.prepare(sign * time, sign);
+    if (left > 0) this.clock.set(sign * time);
+    return left;
+  }
+
+  /** When the step in hand begins, and how long it is. */
+  private time = 0;
+  private h = 0;
   private nextX = 0;
   private nextY = 0;
   private nextZ = 0;
@@ -130,6 +178,7 @@ export class Tracer {
   private tryStep(x: number, y: number, z: number, h: number, sign: number): number {
     const {k} = this;
     this.lacksVector = false;
+    this.h = h;
     const k1x = k[0]!;
     const k1y = k[1]!;
     const k1z = k[2]!;
@@ -222,6 +271,7 @@ export class Tracer {
   /** False: the place is outside, or without a vector. */
   private slope(i: number, x: number, y: number, z: number, sign: number): boolean {
     const {walk, k} = this;
+    this.clock?.set(sign * (this.time + kNodes[i]! * this.h));
     if (!walk.find(x, y, z)) return false;
     k[3 * i] = sign * walk.vx;
     k[3 * i + 1] = sign * walk.vy;

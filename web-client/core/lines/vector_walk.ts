@@ -27,8 +27,38 @@ const kMostTurns = 4096;
 
 /** Cells that are remembered: a step takes places in a few, and goes to and fro between them. */
 const kKept = 16;
-/** The first corner; the rows that give the shares of the other three; the vectors of all four. */
-const kCellWidth = 24;
+/**
+ * The first corner; the rows that give the shares of the other three; the vectors of all four, now
+ * and at the next instant.
+ */
+const kCellWidth = 36;
+const kVectorsAt = 12;
+const kNextAt = 24;
+
+/** The integers of vectors as vectors in lattice steps a unit of time. */
+class VectorScale {
+  readonly values: Int32Array;
+  private readonly scale: number;
+  private readonly leastX: number;
+  private readonly leastY: number;
+  private readonly leastZ: number;
+
+  /** `step` is the lattice's. */
+  constructor({values, info}: Vectors, step: number) {
+    this.values = values;
+    this.scale = info.step / step;
+    [this.leastX, this.leastY, this.leastZ] = info.minimum.map((low) => low / step) as Vector;
+  }
+
+  /** Writes the vector of a vertex; NaN: it is missing. */
+  write(vertex: number, to: Float64Array, at: number): void {
+    const {values, scale} = this;
+    const [x, y, z] = [values[3 * vertex]!, values[3 * vertex + 1]!, values[3 * vertex + 2]!];
+    to[at] = x === kMissing ? NaN : this.leastX + scale * x;
+    to[at + 1] = y === kMissing ? NaN : this.leastY + scale * y;
+    to[at + 2] = z === kMissing ? NaN : this.leastZ + scale * z;
+  }
+}
 
 export class VectorWalk {
   /** The cell in hand; -1: none. */
@@ -45,20 +75,32 @@ export class VectorWalk {
   private readonly known = new Float64Array(kKept * kCellWidth);
   private readonly sizes = new Float64Array(kKept);
   private slot = 0;
-  private readonly scale: number;
-  private readonly leastX: number;
-  private readonly leastY: number;
-  private readonly leastZ: number;
+  private now: VectorScale;
+  /** Null: the vectors stay. */
+  private next: VectorScale | null = null;
+  /** The share of the way to the next instant. */
+  private share = 0;
 
-  /** Vectors come in lattice steps a unit of time; `step` is the lattice's. */
+  /** `step` is the lattice's. */
   constructor(
     readonly mesh: WalkMesh,
-    private readonly vectors: Vectors,
-    step: number,
+    vectors: Vectors,
+    private readonly step: number,
   ) {
-    const {info} = vectors;
-    this.scale = info.step / step;
-    [this.leastX, this.leastY, this.leastZ] = info.minimum.map((low) => low / step) as Vector;
+    this.now = new VectorScale(vectors, step);
+  }
+
+  /** Vectors change from these to the next ones. */
+  between(now: Vectors, next: Vectors): void {
+    this.now = new VectorScale(now, this.step);
+    this.next = new VectorScale(next, this.step);
+    this.cells.fill(-1);
+    if (this.cell >= 0) this.enter(this.cell);
+  }
+
+  /** From 0 to 1. REQUIRES: between() was called. */
+  setShare(share: number): void {
+    this.share = share;
   }
 
   /** The root mean square of the edges at the cell's first corner. */
@@ -98,7 +140,7 @@ export class VectorWalk {
     const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
     const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
     shares.set([1 - b - c - d, b, c, d]);
-    this.read(at + 12);
+    this.read(at);
   }
 
   /** The value of a field at the place of `shares`. */
@@ -115,7 +157,17 @@ export class VectorWalk {
     );
   }
 
-  private read(v: number): void {
+  private read(at: number): void {
+    this.readFrom(at + kVectorsAt);
+    if (!this.next) return;
+    const {share, vx, vy, vz} = this;
+    this.readFrom(at + kNextAt);
+    this.vx = vx + share * (this.vx - vx);
+    this.vy = vy + share * (this.vy - vy);
+    this.vz = vz + share * (this.vz - vz);
+  }
+
+  private readFrom(v: number): void {
     const {known, shares} = this;
     const [a, b, c, d] = [shares[0]!, shares[1]!, shares[2]!, shares[3]!];
     this.vx = a * known[v]! + b * known[v + 3]! + c * known[v + 6]! + d * known[v + 9]!;
@@ -125,16 +177,13 @@ export class VectorWalk {
 
   private learn(cell: number, slot: number): void {
     this.cells[slot] = cell;
-    const {known, scale, leastX, leastY, leastZ} = this;
+    const {known, next, now} = this;
     const {points, tetrahedra} = this.mesh;
-    const {values} = this.vectors;
     const at = kCellWidth * slot;
-    for (let corner = 0, to = at + 12; corner < 4; ++corner, to += 3) {
-      const from = 3 * tetrahedra[4 * cell + corner]!;
-      const [x, y, z] = [values[from]!, values[from + 1]!, values[from + 2]!];
-      known[to] = x === kMissing ? NaN : leastX + scale * x;
-      known[to + 1] = y === kMissing ? NaN : leastY + scale * y;
-      known[to + 2] = z === kMissing ? NaN : leastZ + scale * z;
+    for (let corner = 0; corner < 4; ++corner) {
+      const vertex = tetrahedra[4 * cell + corner]!;
+      now.write(vertex, known, at + kVectorsAt + 3 * corner);
+      next?.write(vertex, known, at + kNextAt + 3 * corner);
     }
     const a = 3 * tetrahedra[4 * cell]!;
     const b = 3 * tetrahedra[4 * cell + 1]!;
@@ -193,18 +242,18 @@ export class VectorWalk {
         shares[1] = b;
         shares[2] = c;
         shares[3] = d;
-        this.read(at + 12);
+        this.read(at);
         return true;
       }
-      const next = this.next(a, b, c, d);
-      if (next === kOutside) return false;
-      this.enter(next);
+      const other = this.onward(a, b, c, d);
+      if (other === kOutside) return false;
+      this.enter(other);
     }
     return false;
   }
 
   /** Across the face that the place is farthest behind, or another that it is behind. */
-  private next(a: number, b: number, c: number, d: number): number {
+  private onward(a: number, b: number, c: number, d: number): number {
     const {cell, mesh} = this;
     const worst = a <= b && a <= c && a <= d ? 0 : b <= c && b <= d ? 1 : c <= d ? 2 : 3;
     const first = mesh.across(cell, worst);

@@ -20,9 +20,17 @@ export interface LineLimits {
   time: number;
 }
 
+/** An instant of the vectors. */
+export interface LineInstant {
+  field: number;
+  time: number;
+}
+
 export interface StreamlinesRequest {
   /** A field of points with three components. */
   field: number;
+  /** Lines go through these, by ascending time, and `field` is one of them; absent: through one. */
+  instants?: readonly LineInstant[];
   seeds: readonly Seeds[];
   limits: LineLimits;
 }

@@ -13,6 +13,9 @@ export interface Drawn {
   inputs?: readonly number[];
   /** Null: the mesh is at rest. */
   warp: Warp | null;
+  /** Absent: none are asked for. */
+  streamlines?: Display['streamlines'];
+  arrows?: Display['arrows'];
   /** The chunks of its mesh. */
   chunks: number;
 }
@@ -25,6 +28,8 @@ export function isWaiting(assembler: Assembler, wanted: Display, drawn: Drawn | 
   return (
     (isComponent && waitsFor(assembler, color, drawn.color)) ||
     waitsFor(assembler, warp, drawn.warp) ||
+    waitsFor(assembler, wanted.streamlines, drawn.streamlines) ||
+    waitsFor(assembler, wanted.arrows, drawn.arrows) ||
     derivation
       .inputs?.(wanted, drawn)
       .some(([its, before]) => waitsFor(assembler, {field: its}, {field: before})) === true
@@ -32,26 +37,32 @@ export function isWaiting(assembler: Assembler, wanted: Display, drawn: Drawn | 
 }
 
 /**
- * The display as it can be drawn now. If both the colour and the warp are series, they change
+ * The display as it can be drawn now. If colour, warp, lines and arrows are series, they change
  * together.
  */
 export function drawable(assembler: Assembler, wanted: Display, drawn: Drawn | null): Display {
   if (!drawn || !isWaiting(assembler, wanted, drawn)) return wanted;
   const held = <T extends {field: number}>(
-    its: T | null,
-    before: Warp | Scalar | null,
-  ): T | null =>
+    its: T | null | undefined,
+    before: {field: number} | null | undefined,
+  ): T | null | undefined =>
     its && before && areOfSeries(assembler, its, before) ? {...its, field: before.field} : its;
-  const {color, warp} = wanted;
-  const display = {...wanted, color: held(color, drawn.color), warp: held(warp, drawn.warp)};
+  const {color, warp, streamlines, arrows} = wanted;
+  const display: Display = {
+    ...wanted,
+    color: held(color, drawn.color) ?? null,
+    warp: held(warp, drawn.warp) ?? null,
+    ...(streamlines && {streamlines: held(streamlines, drawn.streamlines) ?? null}),
+    ...(arrows && {arrows: held(arrows, drawn.arrows) ?? null}),
+  };
   return derivation.held?.(display, drawn) ?? display;
 }
 
 /** The wanted instant has no values, or more of them are decoded soon. */
 function waitsFor(
   assembler: Assembler,
-  wanted: {field: number} | null,
-  before: {field: number} | null,
+  wanted: {field: number} | null | undefined,
+  before: {field: number} | null | undefined,
 ): boolean {
   const {codec} = assembler;
   if (!wanted || !before || !areOfSeries(assembler, wanted, before)) return false;

@@ -160,7 +160,8 @@ export class Publisher {
     const isFirst = !this.hasPublished;
     const {color, inputs, warp = null} = picture;
     const chunks = assembler.codec.chunksApplied;
-    this.drawn = {color, warp, chunks, ...(inputs && {inputs})};
+    const {streamlines, arrows} = now;
+    this.drawn = {color, warp, chunks, streamlines, arrows, ...(inputs && {inputs})};
     this.seen = {...now, ahead: []};
     this.due = null;
     const statistics = assembler.statistics(fieldsOf(this.display));

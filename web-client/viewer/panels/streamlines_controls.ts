@@ -58,6 +58,7 @@ const kMarkup = `
 ${toggle('streamlines', 'Streamlines')}
 <div class="sub streamlines-body" hidden>
   <select name="streamlines-field" aria-label="Vectors that lines follow"></select>
+  ${toggle('streamline-kind', 'Through all instants')}
   <label class="field"><span class="name">Begin</span><select name="seeds"></select></label>
   ${text('from', 'From', 'line')}${text('to', 'To', 'line')}
   <fieldset class="segments of-kind" data-kind="plane">
@@ -117,6 +118,8 @@ export class StreamlinesControls implements LateContent {
     place.addEventListener('change', ({target}) => {
       const {name, value} = target as HTMLInputElement;
       if (name === 'streamline-look') page.write(name, value === kLooks[0] ? null : value);
+      if (name === 'streamline-kind')
+        page.write(name, (target as HTMLInputElement).checked ? 'path' : null);
       if (name === 'seeds-axis') this.type('axis');
       if (name === 'pointer-line') this.point(null);
     });
@@ -137,6 +140,9 @@ export class StreamlinesControls implements LateContent {
     find(this.place, '.streamlines-body').hidden = !isOn;
     if (!isOn) return this.point(null);
     fillVectors(this.select('streamlines-field'), this.field, fields);
+    const kind = this.input('streamline-kind');
+    kind.checked = page.read('streamline-kind') === 'path';
+    kind.closest('label')!.hidden = fields[this.field]!.instant === undefined;
     this.seeds = parseSeeds(page.read('seeds') ?? kFirstSeeds) ?? parseSeeds(kFirstSeeds)!;
     this.showSeeds();
     const look = page.read('streamline-look') ?? kLooks[0];

@@ -92,6 +92,7 @@ const kTitles: Record<string, string> = {
   'arrow-length': 'arrows',
   'arrow-size': 'arrows',
   'arrow-color': 'arrows',
+  'streamline-kind': 'streamlines',
   'streamline-look': 'streamlines',
   'streamline-limits': 'streamlines',
   'length-unit': 'unit of length',
