@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {kCoarsePhone, kDesktop} from './browser.mjs';
-import {serveMesh} from './programs.mjs';
+import {makeLog, serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
 
 /** Longer than the numbers follow the picture. */
@@ -166,7 +166,80 @@ async function markExtremes(context) {
   }
 }
 
+/** The texts of marks, kept points and lines, and the mean. */
+const textsNow = ({page}) =>
+  page.evaluate(() => {
+    const {shadowRoot: root} = window.qtetViewer;
+    const texts = (selector) => [...root.querySelectorAll(selector)].map((its) => its.textContent);
+    return {
+      pins: texts('.pin:not([hidden]) button:first-child'),
+      table: texts('.kept output'),
+      mean: texts('.numbers > div').find((its) => its.startsWith('Mean of Density')),
+    };
+  });
+
+/** Each state that is seen is one instant's or one level's, and the last one is that of a stop. */
+async function followTimeAndStream({server, browser, out, bin}) {
+  makeLog(bin, 'played', out, ['fin', '--steps', '4', '--cells', '5000'], ['--fields', 'Density']);
+  server.kill();
+  await server.start();
+  const kept = 'points=Tip:1,0.5,0.5&lines=Wake:0,0,0.2+3,1,1';
+  const address = `${server.url}?field=Density&extremes=on&${kept}`;
+  const open = async (query, state = 'complete') => {
+    const viewer = await browser.open(`${address}&${query}`, kDesktop);
+    await viewer.waitForState(state);
+    await viewer.waitForPicture();
+    await viewer.waitForControls();
+    await viewer.page.locator('qtet-viewer summary', {hasText: 'Numbers'}).click();
+    await viewer.page.locator('qtet-viewer .numbers > div').nth(1).waitFor();
+    await viewer.page.waitForTimeout(kRestMs);
+    return viewer;
+  };
+  const viewer = await open('mesh=played&time=0');
+  const instants = [];
+  for (const time of ['0', '1', '2', '3']) {
+    await set(viewer, 'time', time);
+    await viewer.settle();
+    await viewer.page.waitForTimeout(kRestMs);
+    instants.push(await textsNow(viewer));
+  }
+  assert.equal(new Set(instants.map(({pins}) => pins.join())).size, 4);
+  await viewer.page.getByRole('button', {name: 'Play', exact: true}).press('Enter');
+  const [seen, means] = [new Set(), new Set()];
+  for (let i = 0; i < 40; ++i) {
+    await viewer.page.waitForTimeout(100);
+    const now = await textsNow(viewer);
+    const at = instants.findIndex(({pins}) => pins.join() === now.pins.join());
+    assert.ok(at >= 0, `no instant has ${now.pins.join()}`);
+    assert.deepEqual(now.table, instants[at].table);
+    seen.add(at);
+    assert.ok(
+      instants.some(({mean}) => mean === now.mean),
+      now.mean,
+    );
+    means.add(now.mean);
+  }
+  assert.ok(seen.size > 2 && means.size > 1, `${seen.size} instants, ${means.size} means`);
+  assert.deepEqual(viewer.problems, []);
+  await browser.closePages();
+
+  const coarse = await open('mesh=fin&quality=cells:3000', 'held');
+  const before = await textsNow(coarse);
+  await set(coarse, 'quality', 'full');
+  await coarse.waitForState('complete');
+  await coarse.settle();
+  await coarse.page.waitForTimeout(kRestMs);
+  const after = await textsNow(coarse);
+  assert.deepEqual(coarse.problems, []);
+  await browser.closePages();
+  assert.notDeepEqual(after.pins, before.pins);
+  assert.notEqual(after.mean, before.mean);
+  assert.deepEqual(after, await textsNow(await open('mesh=fin')));
+  return `${seen.size} of 4 instants were seen while they played`;
+}
+
 export const numberChecks = {
+  numbersFollowTimeAndStream: followTimeAndStream,
   numbersMarkExtremes: markExtremes,
   numbersAreExact: areExact,
 };

@@ -1,9 +1,13 @@
 // Points that are kept on the mesh, each with a small card.
 
 import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
 import {kCoarsePhone, kDesktop} from './browser.mjs';
 import {serveMesh} from './programs.mjs';
 import {linearBox} from './volume_checks.mjs';
+
+/** Longer than changes that are one step lie apart. */
+const kStepMs = 400;
 
 const opened = ({server, browser}, query, device) =>
   browser.openSettled(`${server.url}?${query}`, device);
@@ -61,7 +65,7 @@ async function keepsSeveralPoints(context) {
   assert.notDeepEqual((await pinsOf(viewer))[0].at, pins[0].at);
   const link = await pointsOf(viewer);
   await page.waitForURL(/points=/);
-  await page.getByRole('button', {name: 'Remove point 1'}).click();
+  await page.locator('qtet-viewer .pins').getByRole('button', {name: 'Remove point 1'}).click();
   await viewer.settle();
   assert.equal(await pointsOf(viewer), link.split(' ')[1]);
   await page.locator('qtet-viewer .scene').focus();
@@ -169,6 +173,126 @@ async function findsRoomForCardsOnAPhone(context) {
   assert.deepEqual(viewer.problems, []);
 }
 
+const attribute = ({page}, name) =>
+  page.evaluate((its) => window.qtetViewer.getAttribute(its), name);
+
+const setAttribute = ({page}, name, value) =>
+  page.evaluate((words) => window.qtetViewer.setAttribute(...words), [name, value]);
+
+/** Names are edited, a line is kept, and rows are removed by keys. All of it is undone. */
+async function listsKeptPointsAndLines(context) {
+  const {browser} = context;
+  const Height = (x, y, z) => z;
+  const U = (x, y, z) => [x, y, z];
+  await serveMesh(context, 'listed', linearBox(3, {Height, U}));
+  const points = 'Tip: 0.5,0,0.5; 0.5,0,2.5; <i>Foot</i>: 0.5,1,0.5';
+  const lines = 'Wall: 0.5,0,0.5 0.5,0,2.5';
+  const query = `mesh=listed&field=Height&points=${encodeURIComponent(points)}&lines=${lines}`;
+  const viewer = await opened(context, query, kDesktop);
+  const {page} = viewer;
+  const table = page.locator('qtet-viewer .kept');
+  const row = (title, value) =>
+    table.locator('dl div', {hasText: title}).filter({hasText: value}).waitFor();
+  await row('Distance from Tip to Point 2', '2.0000');
+  await row('Angle at Point 2, from Tip to <i>Foot</i>', '26.565');
+  assert.deepEqual(
+    (await pinsOf(viewer)).map(({text}) => text),
+    ['Tip 0.5000', '2.5000', '<i>Foot</i> 0.5000', 'Wall 2.0000\nmean 1.5000\n0.5000 to 2.5000'],
+  );
+  const name = page.getByLabel('Name of point 2');
+  await name.fill(' Root;\u202e ');
+  await name.press('Enter');
+  assert.equal(await attribute(viewer, 'points'), points.replace('; 0', '; Root: 0'));
+  await row('Distance from Tip to Root', '2.0000');
+  assert.equal((await pinsOf(viewer))[1].text, 'Root 2.5000');
+  assert.equal(await name.inputValue(), 'Root');
+  for (const which of ['Tip', '<i>Foot</i>']) await page.getByLabel(`Measure ${which}`).check();
+  await row('Distance from Tip to <i>Foot</i>', '1.0000');
+  await viewer.settle();
+  await table.locator('.save-kept').scrollIntoViewIfNeeded();
+  await viewer.screenshot('kept-desktop-light');
+  assert.deepEqual(await viewer.accessibilityViolations(), []);
+  await page.getByLabel('All fields in copies').check();
+  for (const field of ['U', 'Height']) {
+    await setAttribute(viewer, 'field', field);
+    await viewer.settle();
+  }
+  const [saved] = await Promise.all([
+    page.waitForEvent('download'),
+    table.locator('.save-kept').click(),
+  ]);
+  assert.equal(saved.suggestedFilename(), 'listed_Height_kept.csv');
+  const csv = readFileSync(await saved.path(), 'utf8');
+  assert.match(csv, /^"quantity","value","unit","within","mesh","field"\r\n"Place of Tip, x",0.5,/);
+  assert.match(csv, /"Value of U, magnitude at Root",2.5\d*,/);
+  assert.match(csv, /"Mean of Height along Wall",1.[45]\d*,"",\d/);
+
+  const remove = (title) => table.getByRole('button', {name: `Remove ${title}`});
+  await remove('Root').press('Enter');
+  await page.waitForTimeout(kStepMs);
+  await remove('<i>Foot</i>').press('Enter');
+  assert.equal(await attribute(viewer, 'points'), 'Tip: 0.5,0,0.5');
+  assert.equal(await viewer.page.evaluate(focusedLabel), 'Remove Wall');
+  await viewer.settle();
+  for (const left of [
+    'Tip: 0.5,0,0.5; <i>Foot</i>: 0.5,1,0.5',
+    points.replace('; 0', '; Root: 0'),
+  ]) {
+    await page.locator('qtet-viewer .scene').focus();
+    await page.keyboard.press('Control+z');
+    await viewer.settle();
+    assert.equal(await attribute(viewer, 'points'), left);
+  }
+  await keepsALine(viewer);
+  await setAttribute(viewer, 'points', 'Tip: 0.5,0,0.5; Wrong');
+  await page.getByText('is not understood').waitFor();
+  await browser.closePages();
+
+  const phone = await opened(context, query, {...kCoarsePhone, colorScheme: 'dark'});
+  await phone.page.getByRole('button', {name: 'Controls'}).click();
+  await phone.page.locator('qtet-viewer .kept li').first().waitFor();
+  await phone.page.locator('qtet-viewer .kept').scrollIntoViewIfNeeded();
+  await phone.screenshot('kept-phone-dark');
+  const isWide = await phone.page.evaluate(() => {
+    const {scrollWidth, clientWidth} = window.qtetViewer.shadowRoot.querySelector('.kept');
+    return scrollWidth > clientWidth;
+  });
+  assert.ok(!isWide, 'the table is wider than the phone');
+  assert.deepEqual(await phone.accessibilityViolations(), []);
+  assert.deepEqual(phone.problems, []);
+}
+
+const focusedLabel = () => window.qtetViewer.shadowRoot.activeElement.ariaLabel;
+
+/** The line tool's card keeps it. A click on the kept line's value opens that card again. */
+async function keepsALine(viewer) {
+  const {page} = viewer;
+  const keep = page.getByRole('button', {name: 'Keep', exact: true});
+  await page.locator('qtet-viewer .tools').getByText('Line', {exact: true}).click();
+  const ends = await page.evaluate(() => {
+    const {meshView, viewing} = window.qtetViewer;
+    const {origin, step} = viewing.mesh.manifest.lattice;
+    return [1, 2].map((z) =>
+      meshView.project([0.9, 0, z].map((x, axis) => (x - origin[axis]) / step)),
+    );
+  });
+  for (const {x, y} of ends) await page.mouse.click(x, y);
+  await keep.click();
+  await page.locator('qtet-viewer .result').waitFor({state: 'hidden'});
+  const [wall, kept] = (await attribute(viewer, 'lines')).split('; ');
+  assert.equal(wall, 'Wall: 0.5,0,0.5 0.5,0,2.5');
+  assert.equal(kept.split(' ').length, 2);
+  const value = page.locator('qtet-viewer .pin button', {hasText: 'Line B'});
+  await value.waitFor();
+  const [, length] = /^Line B ([\d.]+)/.exec(await value.innerText());
+  assert.ok(Math.abs(Number(length) - 1) < 0.05, length);
+  await value.press('Enter');
+  await page.locator('qtet-viewer .result', {hasText: `Distance${length}`}).waitFor();
+  assert.equal(await keep.count(), 0);
+  await page.locator('qtet-viewer .close-result').click();
+  await page.getByText('Turn', {exact: true}).click();
+}
+
 /** The numbers of the points whose cards are open. */
 const cardsOf = (viewer) =>
   viewer.page.evaluate(() =>
@@ -208,6 +332,7 @@ async function tapPoint(viewer, number) {
 
 export const pinChecks = {
   pinsFindRoomOnAPhone: findsRoomForCardsOnAPhone,
+  pinsAreListed: listsKeptPointsAndLines,
   pinsKeepSeveralPoints: keepsSeveralPoints,
   pinsMoveWithAWarp: movesPointsWithAWarp,
 };

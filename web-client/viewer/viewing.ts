@@ -114,10 +114,10 @@ export class Viewing implements LaterHost, PictureHost {
     );
   }
 
-  /** Those of vectors wait for the first picture, unless one colours it. */
+  /** Those of vectors wait for the first picture, unless an attribute names one. */
   private hasQuantities({components, association}: FieldInfo): boolean {
-    const colours = /\.(div|vorticity|Q)\b/.test(this.page.read('field') ?? '');
-    const isTime = this.later !== null || colours;
+    const isNamed = /\.(div|vorticity|Q)\b/.test([...this.page.view.values()].join());
+    const isTime = this.later !== null || isNamed;
     return components === 6 || (components === 3 && association === 'point' && isTime);
   }
 

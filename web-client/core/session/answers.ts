@@ -32,6 +32,8 @@ export async function answerTo(
       return inspector.histogram(question.axis, display);
     case 'parts':
       return inspector.parts(question.field);
+    case 'kept':
+      return inspector.kept(question.places, display);
     case 'numbers':
       return inspector.numbers(display);
   }

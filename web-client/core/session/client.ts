@@ -11,7 +11,7 @@ import type {PartCount} from '../picture/part_counts';
 import type {CoarseCells} from '../picture/volume';
 import type {Vector} from '../protocol/geometry';
 import type {Limit} from '../protocol/limit';
-import type {LineValues, Numbers, Pick, Probe} from './inspector';
+import type {KeptPlaces, KeptValues, LineValues, Numbers, Pick, Probe} from './inspector';
 import {
   kNoSource,
   type FromWorker,
@@ -128,6 +128,11 @@ export class Client {
   /** The parts that a label makes of the whole mesh; null while it has no values. */
   parts(field: number): Promise<PartCount[] | null> {
     return this.ask({type: 'parts', field});
+  }
+
+  /** Inspector.kept; null while there is no mesh. */
+  kept(places: KeptPlaces): Promise<KeptValues | null> {
+    return this.ask({type: 'kept', places});
   }
 
   /** Integrals over what is drawn; null while there is no mesh. */

@@ -2,6 +2,7 @@
 // field along a line.
 
 import type {Assembler} from '../decode/assembler';
+import type * as Module from '../integrals/integrals';
 import type {Integrals} from '../integrals/integrals';
 import {labelsOfCells} from '../layers/part_cells';
 import {kLayerWork} from '../layers/layer_work';
@@ -73,7 +74,38 @@ export interface Numbers extends Integrals {
   /** The level of the mesh that they are of. */
   level: number;
   color: Scalar | null;
-  /** Where the least and the largest value of it is; null: there is none. */
+}
+
+/** Places of the mesh at rest, on the lattice. */
+export interface KeptPlaces {
+  points: Vector[];
+  lines: [from: Vector, to: Vector][];
+  /** The places of the least and the largest value are wanted, too. */
+  hasExtremes: boolean;
+}
+
+/** The coloured values along a line; NaN: it has none. */
+export interface AlongLine {
+  /** By length, of values that are there. */
+  mean: number;
+  least: number;
+  largest: number;
+}
+
+export interface KeptLine extends AlongLine {
+  /** Where a warp moves them. */
+  ends: [Pick, Pick];
+  /** In the mesh's own unit. */
+  length: number;
+}
+
+/** All are of one picture. */
+export interface KeptValues {
+  level: number;
+  color: Scalar | null;
+  points: (Pick | null)[];
+  lines: (KeptLine | null)[];
+  /** Null: there is none. Labels have none: their numbers stand for names. */
   extremes: (Pick | null)[];
 }
 
@@ -86,16 +118,49 @@ export class Inspector {
 
   /** Null while there is no mesh. The integrals are loaded on use. */
   async numbers(display: Display): Promise<Numbers | null> {
-    const {extremesOf, ShownIntegrals} = await retry(() => import('../integrals/integrals'));
+    const {ShownIntegrals} = await integralsModule();
     const mesh = meshArrays(this.assembler, display);
     if (!mesh) return null;
     const integrals = new ShownIntegrals(mesh, display, this.assembler.manifest!).all();
-    const {level} = this.assembler.statistics([]);
-    const extremes = extremesOf(integrals).map((extreme) => {
+    return {...integrals, level: this.level, color: display.color};
+  }
+
+  /** Values of one picture: a series that plays shows another one before the next question. */
+  async kept(places: KeptPlaces, display: Display): Promise<KeptValues | null> {
+    const {color} = display;
+    const integrals = places.hasExtremes ? await integralsModule() : null;
+    const mesh = meshArrays(this.assembler, display);
+    if (!mesh) return null;
+    const {manifest} = this.assembler;
+    const isLabel = color ? infoIn(display, manifest!, color.field).labels !== undefined : true;
+    const all =
+      integrals && !isLabel ? new integrals.ShownIntegrals(mesh, display, manifest!).all() : null;
+    const extremes = (all ? integrals!.extremesOf(all) : []).map((extreme) => {
       const cell = extreme ? cellAt(mesh, extreme.place) : -1;
       return extreme && cell >= 0 ? this.pickAt(mesh, cell, extreme.place, display) : null;
     });
-    return {...integrals, extremes, level, color: display.color};
+    return {
+      level: this.level,
+      color,
+      points: places.points.map((place) => this.at(place, display)),
+      lines: places.lines.map((ends) => this.keptLine(ends, display)),
+      extremes,
+    };
+  }
+
+  /** A coarse mesh may end before a place. Without a warp the line goes there all the same. */
+  private keptLine(places: readonly Vector[], display: Display): KeptLine | null {
+    const [from, to] = places.map((lattice) => {
+      const pick = this.at(lattice, display);
+      const position = this.positionOf(lattice);
+      return pick && !pick.rest ? {...pick, lattice, position} : pick;
+    });
+    const probe = from && to && this.probe(from.lattice, to.lattice, display);
+    return probe ? {ends: [from, to], length: probe.length, ...alongLine(probe)} : null;
+  }
+
+  private get level(): number {
+    return this.assembler.statistics([]).level;
   }
 
   /** The first visible thing that `ray` (lattice coordinates) meets; null if there is none. */
@@ -288,6 +353,8 @@ export class Inspector {
   }
 }
 
+const integralsModule = (): Promise<typeof Module> => retry(() => import('../integrals/integrals'));
+
 const cornersOf = ({tetrahedra}: Cells, cell: number): number[] => [
   ...tetrahedra.subarray(4 * cell, 4 * cell + 4),
 ];
@@ -340,4 +407,23 @@ function components(
 function push(probe: Probe, at: number, value: number): void {
   probe.at.push(at);
   probe.values.push(value);
+}
+
+/** Values are linear between the places of a probe. Where cells share a place, parts cancel. */
+export function alongLine({at, values}: Omit<Probe, 'length'>): AlongLine {
+  const known = values.filter((value) => !Number.isNaN(value));
+  if (known.length === 0) return {mean: NaN, least: NaN, largest: NaN};
+  let [sum, length] = [0, 0];
+  for (let i = 1; i < at.length; ++i) {
+    const middle = (values[i]! + values[i - 1]!) / 2;
+    if (Number.isNaN(middle)) continue;
+    const part = at[i]! - at[i - 1]!;
+    sum += part * middle;
+    length += part;
+  }
+  return {
+    mean: length > 0 ? sum / length : known[0]!,
+    least: known.reduce((a, b) => Math.min(a, b)),
+    largest: known.reduce((a, b) => Math.max(a, b)),
+  };
 }

@@ -21,7 +21,7 @@ import type {Vector, Plane} from '../protocol/geometry';
 import {kFull, type Limit} from '../protocol/limit';
 import type {Manifest} from '../protocol/manifest';
 import type {LogAddress} from '../transport/transports';
-import type {LineValues, Numbers, Pick, Probe} from './inspector';
+import type {KeptPlaces, KeptValues, LineValues, Numbers, Pick, Probe} from './inspector';
 
 /** The state of the stream. `paused`: by the user; `held`: it has reached the limit. */
 export type StreamState =
@@ -87,6 +87,8 @@ export type Question =
   | {type: 'histogram'; axis: Axis}
   /** Counts the cells of the parts that a label makes. */
   | {type: 'parts'; field: number}
+  /** Asks for kept points and lines, places of the mesh at rest, and for the extremes. */
+  | {type: 'kept'; places: KeptPlaces}
   /** Asks for integrals over what is drawn. */
   | {type: 'numbers'}
   /** Asks for a volume with few cells. The page has version `have`. */
@@ -152,6 +154,7 @@ export type Answer =
   | number[][]
   | Histogram
   | PartCount[]
+  | KeptValues
   | Numbers
   | LineSoup
   | CoarseCells

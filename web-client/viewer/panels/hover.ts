@@ -27,22 +27,21 @@ export function hoverText(pick: Pick, scalar: Scalar, fields: readonly FieldInfo
   return value === null ? null : `${scalarName(scalar, fields)} ${value}`;
 }
 
-/** "1.25 m/s", or "no value"; null if the field is not here. */
-export function valueText(
-  {fields: values}: Pick,
-  scalar: Scalar,
-  fields: readonly FieldInfo[],
-): string | null {
-  const found = values.find(({field}) => field === scalar.field)?.values;
+/** NaN: it is missing; null: the field is not here. */
+export function valueOf({fields}: Pick, {field, component}: Scalar): number | null {
+  const found = fields.find((its) => its.field === field)?.values;
   if (!found) return null;
-  const {component} = scalar;
-  const isVector = found.length > 1;
-  const value = !isVector
-    ? found[0]!
-    : component === kMagnitude
-      ? Math.hypot(...found)
-      : found[component]!;
-  const info = fields[scalar.field]!;
+  if (found.length === 1) return found[0]!;
+  return component === kMagnitude ? Math.hypot(...found) : found[component]!;
+}
+
+/** "1.25 m/s", or "no value"; null if the field is not here. */
+export function valueText(pick: Pick, scalar: Scalar, fields: readonly FieldInfo[]): string | null {
+  const value = valueOf(pick, scalar);
+  return value === null ? null : textOfValue(value, fields[scalar.field]!);
+}
+
+export function textOfValue(value: number, info: FieldInfo): string {
   const unit = info.unit === undefined ? '' : `\u00a0${info.unit}`;
   return Number.isNaN(value) ? 'no value' : formatIn(info, value) + unit;
 }

@@ -42,10 +42,10 @@ export interface InspectHost extends OverTimeHost {
   readonly view: View | null;
   /** The middle of the free area, as shares of the canvas. */
   readonly middle: [number, number];
-  /** This place may stay: it does not yet, and there is room. */
-  mayKeep(place: Vector): boolean;
-  /** A place of the mesh at rest, in its own coordinates. */
-  keep(place: Vector): void;
+  /** This point or line may stay: it does not yet, and there is room. */
+  mayKeep(places: Vector[]): boolean;
+  /** Places of the mesh at rest, in its own coordinates: one of a point, two of a line. */
+  keep(places: Vector[]): void;
 }
 
 export class Inspect {
@@ -125,13 +125,16 @@ export class Inspect {
     void this.click(x * view.canvas.clientWidth, y * view.canvas.clientHeight);
   }
 
-  /** Opens the card of a point, as if it was pointed at. */
-  open(pick: Pick): void {
-    this.use('point');
-    this.setPoints([pick]);
+  /** Opens the card of a point or of a line, as if it was pointed at. */
+  open(picks: Pick[]): void {
+    const [pick, to] = picks;
+    if (!pick) return;
+    this.use(to ? 'line' : 'point');
+    this.setPoints(picks);
     this.place();
     this.hint('');
-    this.showPick(pick);
+    if (to) void this.showLine(pick, to);
+    else this.showPick(pick);
   }
 
   /** The place that is pointed at, in lattice coordinates; null for none. */
@@ -246,7 +249,7 @@ export class Inspect {
     const {isOpen} = this.overTime;
     const {color, mesh} = this.host;
     this.card.show(pickTitle(pick, color, mesh.manifest!), pickRows(pick, mesh.manifest!), isOpen);
-    this.card.offerKeep(this.host.mayKeep(placeAtRest(pick)));
+    this.card.offerKeep(this.host.mayKeep([placeAtRest(pick)]));
     this.card.offerOverTime(this.offersOverTime);
     this.placeCard();
     if (isOpen) void this.overTime.begin(materialPlace(pick));
@@ -254,10 +257,9 @@ export class Inspect {
 
   /** It gets a card of its own. */
   private keep(): void {
-    const [pick] = this.points;
-    if (!pick) return;
+    const places = this.points.map(placeAtRest);
     this.clear();
-    this.host.keep(placeAtRest(pick));
+    this.host.keep(places);
   }
 
   private get offersOverTime(): boolean {
@@ -288,6 +290,7 @@ export class Inspect {
     ];
     const opens = !this.card.isOpen;
     this.card.show('Line', rows, hasPlot);
+    this.card.offerKeep(this.host.mayKeep([from, to].map(placeAtRest)));
     if (opens) this.placeCard();
     const info = color && mesh.manifest?.fields[color.field];
     const format = info?.labels && ((value: number): string => formatIn(info, value));

@@ -106,18 +106,7 @@ class NumbersPanel implements Panel {
     const {manifest} = mesh;
     if (!numbers || !table || !manifest || opening !== null) return;
     this.rows = table.rowsOf(numbers, manifest, lengthUnit(settings, manifest));
-    this.list.replaceChildren(
-      ...this.rows.map((row) => {
-        const line = document.createElement('div');
-        const value = document.createElement('dd');
-        const [unit, within] = [document.createElement('span'), document.createElement('small')];
-        unit.textContent = row.unit && `\u202f${row.unit}`;
-        within.textContent = table.withinText(row);
-        value.append(table.valueText(row), unit, within);
-        line.append(Object.assign(document.createElement('dt'), {textContent: row.title}), value);
-        return line;
-      }),
-    );
+    table.fillRows(this.list, this.rows);
   }
 
   private async copy(): Promise<void> {

@@ -146,6 +146,22 @@ export function valueText({values, noise = 0}: Row): string {
 export const withinText = ({within = 0, unit}: Row): string =>
   within > 0 ? `within ${roundedUp(within)}${unit && `\u202f${unit}`}` : '';
 
+/** Writes the rows into a list of terms. */
+export function fillRows(list: HTMLElement, rows: readonly Row[]): void {
+  list.replaceChildren(
+    ...rows.map((row) => {
+      const line = document.createElement('div');
+      const value = document.createElement('dd');
+      const [unit, within] = [document.createElement('span'), document.createElement('small')];
+      unit.textContent = row.unit && `\u202f${row.unit}`;
+      within.textContent = withinText(row);
+      value.append(valueText(row), unit, within);
+      line.append(Object.assign(document.createElement('dt'), {textContent: row.title}), value);
+      return line;
+    }),
+  );
+}
+
 /** Lines with tabs, for spreadsheets and reports. */
 export const textOfRows = (rows: readonly Row[]): string =>
   rows

@@ -49,8 +49,8 @@ export interface PanelTools {
   signal: AbortSignal;
   /** Opens files of this machine. */
   take: (files: File[]) => void;
-  /** Opens the card of a point. */
-  open: (pick: Picked) => void;
+  /** Opens the card of a point, or of a line. */
+  open: (picks: Picked[]) => void;
 }
 
 export interface Panel {

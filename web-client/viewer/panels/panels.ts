@@ -8,7 +8,7 @@ import type {Snapshot, StreamState} from '../../core/session/worker_messages';
 import {seriesServer} from '../../core/transport/series_server';
 import {bindFolds} from '../page/folds';
 import type {ShownMesh} from '../page/shown_mesh';
-import {kMaxPoints, parsePoints, pointsText} from '../settings/points';
+import {keptText, mayKeep, parseKept, type Kept, type KeptName} from '../settings/points';
 import {kViewAttributes, shownScalar, type Settings, type ShownRange} from '../settings/settings';
 import {Inspect} from './inspect';
 import {scalarTitle, type Panel, type PanelKind, type PanelTools, type Scene} from './panel';
@@ -30,9 +30,12 @@ export class Panels {
     const {host, page} = tools;
     const {root} = page;
     bindFolds(root);
-    const open = (pick: Pick): void => this.inspect.open(pick);
+    const open = (picks: Pick[]): void => this.inspect.open(picks);
     this.panels = kinds.flatMap((kind) => kind.make?.({...tools, open}) ?? []);
-    const keptPoints = (): Vector[] => parsePoints(page.read('points') ?? '') ?? [];
+    const keptOf = (places: Vector[]): [KeptName, Kept[]] => {
+      const name = places.length > 1 ? 'lines' : 'points';
+      return [name, parseKept(name, page.read(name) ?? '') ?? []];
+    };
     this.inspect = new Inspect(root, {
       get client() {
         return host.opening === null ? host.client : null;
@@ -53,13 +56,11 @@ export class Panels {
         const {manifest, firstField} = host.mesh;
         return manifest && shownScalar(page.read('field'), manifest.fields, firstField);
       },
-      mayKeep: (place) => {
-        const kept = keptPoints();
-        return (
-          kept.length < kMaxPoints && !kept.some((its) => pointsText([its]) === pointsText([place]))
-        );
+      mayKeep: (places) => mayKeep(...keptOf(places), places),
+      keep: (places) => {
+        const [name, all] = keptOf(places);
+        page.write(name, keptText([...all, {name: '', places}]));
       },
-      keep: (place) => page.write('points', pointsText([...keptPoints(), place])),
       apply: () => host.apply(),
       showTime: (text) => page.write('time', text),
       get fieldTitle() {

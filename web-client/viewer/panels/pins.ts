@@ -1,99 +1,81 @@
-// Points that are kept, and those of the least and the largest value. Each is a dot on the mesh,
-// and beside it a small card of the same colour with the value of the shown field. They follow the
-// mesh, its time, and the camera. A card without room is folded: the dot has the point's number. A
-// click on a dot opens the point.
+// Points and lines that are kept, and the points of the least and the largest value. Each is a dot
+// on the mesh, that of a line at its middle. Beside it a small card of the same colour has values
+// of the shown field. They follow the mesh, its time, and the camera. A card without room is
+// folded: the dot has its number. A click on a dot opens the point or the line.
 
-import type {Vector} from '../../core/protocol/geometry';
 import {isEqual} from '../../core/protocol/equal';
 import type {FieldInfo} from '../../core/protocol/fields';
-import type {Pick} from '../../core/session/inspector';
+import type {Vector} from '../../core/protocol/geometry';
+import type {KeptLine, KeptValues, Pick} from '../../core/session/inspector';
 import {find, setText} from '../page/find';
+import {formatValue} from '../page/format';
 import {placeLabels} from '../page/label_place';
-import type {Page} from '../page/page';
-import {parsePoints, pointsText} from '../settings/points';
-import {valueText} from './hover';
+import {keptText, parseKept, type Kept, type KeptName} from '../settings/points';
+import {textOfValue, valueText} from './hover';
+import type {KeptTable} from './kept_table';
+import {shape} from './marks';
 import {toggle} from './markup';
-import type {Panel, PanelKind, PanelsHost} from './panel';
+import type {Panel, PanelKind, PanelTools} from './panel';
+import {nounOf, Pin, titleOf} from './pin';
 import {RepeatedQuestion} from './repeated_question';
 
-/** They differ from each other on both grounds, also for most who see few colours. */
-const kColors = [
-  '#e8590c',
-  '#1c7ed6',
-  '#2f9e44',
-  '#d6336c',
-  '#7048e8',
-  '#0c8599',
-  '#a6761d',
-  '#5c6773',
-];
-
-/** The least value's and the largest's. */
-const kExtremeColor = '#495057';
-const kExtremes = [
-  ['Least', '\u2193'],
-  ['Largest', '\u2191'],
-] as const;
-
-interface Pin {
-  root: HTMLElement;
-  card: HTMLElement;
-  value: HTMLElement;
-  /** The card's. */
-  size: {width: number; height: number};
-  /** As LabelledDot.last. */
-  last: number;
-}
+const kExtremes = ['Least', 'Largest'];
+const kNone: KeptValues = {level: 0, color: null, points: [], lines: [], extremes: []};
 
 class Pins implements Panel {
   private readonly input: HTMLInputElement;
   private readonly layer = document.createElement('div');
-  private points: Vector[] = [];
+  private readonly lines: SVGElement = shape('svg', {class: 'marks'});
+  private readonly place: HTMLElement;
+  private kept: {points: Kept[]; lines: Kept[]} = {points: [], lines: []};
   /** The least and the largest value are marked, too. Their pins are the last ones. */
   private hasExtremes = false;
-  /** Null: the point is not known yet, or the mesh has no cells. */
-  private picks: (Pick | null)[] = [];
+  private answer = kNone;
   private pins: Pin[] = [];
+  private table: KeptTable | null = null;
   private readonly question = new RepeatedQuestion(
     () => this.ask(),
-    (picks) => this.take(picks),
+    (answer) => this.take(answer),
   );
 
-  constructor(
-    private readonly page: Page,
-    private readonly host: PanelsHost,
-    private readonly open: (pick: Pick) => void,
-  ) {
+  constructor(private readonly tools: PanelTools) {
+    const {page, signal} = tools;
     this.layer.className = 'pins';
     find(page.root, '.layer').after(this.layer);
     this.input = find(page.root, 'input[name=extremes]');
     this.input.addEventListener('change', () =>
       page.write('extremes', this.input.checked ? 'on' : null),
     );
+    this.place = find(page.root, '.kept');
+    // The content of a folded section or sheet takes no room.
+    const watch = new ResizeObserver(() => void this.showTable());
+    watch.observe(this.place);
+    signal.addEventListener('abort', () => watch.disconnect());
   }
 
   update(): void {
-    const points = parsePoints(this.page.read('points') ?? '') ?? [];
-    const hasExtremes = this.page.read('extremes') === 'on';
+    const {page} = this.tools;
+    const [points, lines] = (['points', 'lines'] as const).map(
+      (name) => parseKept(name, page.read(name) ?? '') ?? [],
+    );
+    const kept = {points: points!, lines: lines!};
+    const hasExtremes = page.read('extremes') === 'on';
     this.input.checked = hasExtremes;
-    if (isEqual(points, this.points) && hasExtremes === this.hasExtremes) return;
-    this.points = points;
+    if (isEqual([kept, hasExtremes], [this.kept, this.hasExtremes])) return;
+    const hasSame = isEqual(placesOf(kept), placesOf(this.kept));
+    this.kept = kept;
     this.hasExtremes = hasExtremes;
-    this.picks = [];
+    if (!hasSame) this.answer = kNone;
     this.pins = [
-      ...points.map((_, i) => {
-        const others = (): string | null => pointsText(this.points.filter((_its, at) => at !== i));
-        return this.pinOf(i, `${i + 1}`, kColors[i]!, `point ${i + 1}`, () =>
-          this.page.write('points', others()),
-        );
-      }),
-      ...(hasExtremes ? kExtremes : []).map(([title, sign], i) =>
-        this.pinOf(points.length + i, sign, kExtremeColor, title.toLowerCase(), () =>
-          this.page.write('extremes', null),
-        ),
+      ...this.pinsOf('points'),
+      ...this.pinsOf('lines'),
+      ...(hasExtremes ? kExtremes : []).map((title, i) =>
+        this.pinOf('extremes', i, title.toLowerCase(), () => page.write('extremes', null)),
       ),
     ];
-    this.layer.replaceChildren(...this.pins.map(({root}) => root));
+    this.layer.replaceChildren(this.lines, ...this.pins.map(({root}) => root));
+    if (hasSame) this.take(this.answer);
+    void this.showTable();
     this.question.forget();
     this.question.repeat();
   }
@@ -102,14 +84,15 @@ class Pins implements Panel {
     this.question.repeat();
   }
 
-  /** The pins follow the picture. The card of the last point chooses its place first. */
+  /** The pins follow the picture. The card of the last one chooses its place first. */
   follow(): void {
-    const {view} = this.host;
-    const seen = this.pins.flatMap((pin, i) => {
-      const pick = this.picks[i];
-      pin.root.hidden = !pick || !view;
-      return pick && view ? [{pin, ...view.project(pick.lattice)}] : [];
+    const {view} = this.tools.host;
+    const seen = this.pins.flatMap((pin) => {
+      const place = this.middleOf(pin);
+      pin.root.hidden = !place || !view;
+      return place && view ? [{pin, ...view.project(place)}] : [];
     });
+    this.drawLines();
     if (!view) return;
     seen.reverse();
     const {clientWidth: width, clientHeight: height} = view.canvas;
@@ -127,65 +110,118 @@ class Pins implements Panel {
 
   clear(): void {
     this.question.forget();
-    this.picks = [];
+    this.answer = kNone;
+    this.table?.clear();
     this.follow();
   }
 
-  private pinOf(i: number, sign: string, color: string, name: string, remove: () => void): Pin {
-    const [root, card] = [document.createElement('div'), document.createElement('div')];
-    const dot = document.createElement('i'); // the keyboard has the value
-    dot.ariaHidden = 'true';
-    dot.textContent = sign;
-    dot.addEventListener('click', () => this.openPoint(i));
-    const value = buttonOf(() => this.openPoint(i));
-    root.className = 'pin';
-    root.hidden = true;
-    root.style.setProperty('--pin', color);
-    const close = buttonOf(remove);
-    close.textContent = '\u00d7';
-    close.ariaLabel = `Remove ${name}`;
-    card.append(value, close);
-    root.append(dot, card);
-    return {root, card, value, size: {width: 0, height: 0}, last: 0};
+  private pinsOf(kind: KeptName): Pin[] {
+    return this.kept[kind].map((kept, i) =>
+      this.pinOf(kind, i, nounOf(kind, kept, i), () =>
+        this.tools.page.write(kind, keptText(this.kept[kind].filter((_, at) => at !== i))),
+      ),
+    );
   }
 
-  private openPoint(i: number): void {
-    const pick = this.picks[i];
-    if (pick && this.host.opening === null) this.open(pick);
+  private pinOf(kind: Pin['kind'], i: number, title: string, remove: () => void): Pin {
+    return new Pin(kind, i, title, {open: () => this.openPin(kind, i), remove});
   }
 
-  private ask(): Promise<(Pick | null)[]> | null {
-    const {client, mesh, opening} = this.host;
+  private openPin(kind: Pin['kind'], i: number): void {
+    const {host, open} = this.tools;
+    const {answer} = this;
+    const picks = kind === 'lines' ? (answer.lines[i]?.ends ?? []) : [answer[kind][i] ?? null];
+    if (host.opening === null) open(picks.filter((pick) => pick !== null));
+  }
+
+  /** On the lattice, as drawn. */
+  private middleOf({kind, at}: Pin): Vector | null {
+    if (kind !== 'lines') return this.answer[kind][at]?.lattice ?? null;
+    const [from, to] = this.answer.lines[at]?.ends ?? [];
+    if (!from || !to) return null;
+    return from.lattice.map((x, axis) => (x + to.lattice[axis]!) / 2) as Vector;
+  }
+
+  private drawLines(): void {
+    const {view} = this.tools.host;
+    const shapes = this.pins.flatMap(({at, color, kind}) => {
+      const ends = kind === 'lines' && view ? this.answer.lines[at]?.ends : undefined;
+      if (!ends) return [];
+      const [from, to] = ends.map(({lattice}) => view!.project(lattice));
+      const line = shape('line', {x1: from!.x, y1: from!.y, x2: to!.x, y2: to!.y});
+      const dots = [from!, to!].map(({x, y}) => shape('circle', {cx: x, cy: y, r: 4}));
+      const its = [line, ...dots];
+      for (const element of its) element.style.setProperty('--pin', color);
+      return its;
+    });
+    this.lines.replaceChildren(...shapes);
+  }
+
+  private ask(): Promise<KeptValues | null> | null {
+    const {client, mesh, opening} = this.tools.host;
     if (this.pins.length === 0 || !mesh.snapshot || opening !== null) return null;
     const {origin, step} = mesh.manifest!.lattice;
-    const extremes = this.hasExtremes ? client.numbers() : null;
-    return Promise.all([
-      ...this.points.map((point) =>
-        client.at(point.map((x, axis) => (x - origin[axis]!) / step) as Vector),
-      ),
-      ...kExtremes.map(async (_, i) => (await extremes)?.extremes[i] ?? null),
-    ]);
+    const on = (place: Vector): Vector =>
+      place.map((x, axis) => (x - origin[axis]!) / step) as Vector;
+    return client.kept({
+      points: this.kept.points.map(({places: [place]}) => on(place!)),
+      lines: this.kept.lines.map(({places: [from, to]}) => [on(from!), on(to!)]),
+      hasExtremes: this.hasExtremes,
+    });
   }
 
-  private take(picks: (Pick | null)[]): void {
-    const {mesh, opening} = this.host;
-    if (opening !== null) return; // the worker has another mesh
-    this.picks = picks;
-    const color = mesh.snapshot?.color;
-    const fields = mesh.manifest?.fields ?? [];
-    this.pins.forEach((pin, i) => {
-      const pick = picks[i] ?? null;
-      const value = pick && color ? valueText(pick, color, fields) : null;
-      const [title] = kExtremes[i - this.points.length] ?? [];
-      const text =
-        title && [title, value, pick && partName(pick, fields)].filter(Boolean).join(' ');
-      setText(pin.value, text ?? value ?? `Point ${i + 1}`);
-    });
+  private take(answer: KeptValues | null): void {
+    if (!answer || this.tools.host.opening !== null) return; // the worker has another mesh
+    this.answer = answer;
+    for (const pin of this.pins) setText(pin.value, this.textOf(pin));
     for (const {root} of this.pins) root.hidden = false; // else it has no size
     for (const pin of this.pins)
       pin.size = {width: pin.card.offsetWidth, height: pin.card.offsetHeight};
     this.follow();
+    this.table?.show(this.kept, answer);
   }
+
+  private textOf({kind, at}: Pin): string {
+    const fields = this.tools.host.mesh.manifest?.fields ?? [];
+    const info = fields[this.answer.color?.field ?? -1] ?? null;
+    const color = info && this.answer.color; // a derived field may have gone
+    if (kind === 'lines')
+      return lineText(titleOf(kind, this.kept.lines[at]!, at), this.answer.lines[at], info);
+    const pick = this.answer[kind][at] ?? null;
+    const value = pick && color ? valueText(pick, color, fields) : null;
+    if (kind === 'extremes')
+      return [kExtremes[at], value, pick && partName(pick, fields)].filter(Boolean).join(' ');
+    const {name} = this.kept.points[at]!;
+    return value === null ? titleOf(kind, this.kept.points[at]!, at) : `${name} ${value}`.trim();
+  }
+
+  /** The table is loaded once it is seen, and there is something in it. */
+  private async showTable(): Promise<void> {
+    const {kept, place, tools} = this;
+    const isUsed = kept.points.length + kept.lines.length > 0;
+    if (!this.table && (!isUsed || !place.offsetParent)) return;
+    const loaded = this.table ? null : await import('./kept_table').catch(() => null);
+    if (loaded) this.table ??= new loaded.KeptTable(tools, place);
+    this.table?.show(this.kept, this.answer);
+  }
+}
+
+const placesOf = ({points, lines}: {points: Kept[]; lines: Kept[]}): unknown =>
+  [points, lines].map((all) => all.map(({places}) => places));
+
+/** A title, then the mean and the ends of the values. Labels have neither. */
+function lineText(
+  title: string,
+  line: KeptLine | null | undefined,
+  info: FieldInfo | null,
+): string {
+  if (!line) return title;
+  const length = `${title} ${formatValue(line.length)}`;
+  if (!info || info.labels || Number.isNaN(line.mean)) return length;
+  const [mean, least, largest] = [line.mean, line.least, line.largest].map((value) =>
+    textOfValue(value, info),
+  );
+  return `${length}\nmean ${mean}\n${least} to ${largest}`;
 }
 
 /** "in steel": the name of a label there; null: there is none. */
@@ -197,14 +233,7 @@ function partName({fields: values}: Pick, fields: readonly FieldInfo[]): string 
   return name === undefined ? null : `in ${name}`;
 }
 
-function buttonOf(press: () => void): HTMLButtonElement {
-  const button = document.createElement('button');
-  button.type = 'button';
-  button.addEventListener('click', press);
-  return button;
-}
-
 export const pinsPanel: PanelKind = {
-  markup: toggle('extremes', 'Mark least and largest'),
-  make: ({page, host, open}) => new Pins(page, host, open),
+  markup: `${toggle('extremes', 'Mark least and largest')}<div class="sub kept"></div>`,
+  make: (tools) => new Pins(tools),
 };

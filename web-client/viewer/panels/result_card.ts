@@ -15,7 +15,7 @@ export interface CardActions {
   close(): void;
   /** Saves the plot's values. */
   saveTable(): void;
-  /** The point stays. */
+  /** The point or the line stays. */
   keep(): void;
   /** Plots the values over time. */
   overTime(): void;
@@ -87,7 +87,7 @@ export class ResultCard {
     find(this.card, '.over-time').hidden = !isOffered;
   }
 
-  /** Offers to keep the point, or not. */
+  /** Offers to keep the point or the line, or not. */
   offerKeep(isOffered: boolean): void {
     find(this.card, '.keep-point').hidden = !isOffered;
   }

@@ -41,6 +41,7 @@ const kAfterLayers = [
   'length-unit',
   'ground',
   'points',
+  'lines',
   'flux',
   'extremes',
   'quality',

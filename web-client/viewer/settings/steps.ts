@@ -97,6 +97,7 @@ const kTitles: Record<string, string> = {
   'streamline-limits': 'streamlines',
   'length-unit': 'unit of length',
   points: 'kept points',
+  lines: 'kept lines',
   extremes: 'least and largest',
   flux: 'field of the flux',
   quality: 'level of detail',

@@ -23,7 +23,7 @@ import type {FieldInfo} from '../../core/protocol/fields';
 import {kTransportKinds} from '../../core/transport/auto_transport';
 import {isGround, kGrounds} from './ground';
 import {hint} from './nearest';
-import {kMaxPoints, parsePoints} from './points';
+import {kMaxLines, kMaxName, kMaxPoints, parseKept} from './points';
 import {kViewAttributes, type ViewAttribute} from './settings';
 import {kNoWarp, warpField} from './warp';
 
@@ -83,8 +83,13 @@ const kRules: Partial<Record<Name, Rule>> = {
   opacity: [(text) => Number(text) > 0 && Number(text) <= 1, 'a number above 0, at most 1'],
   ...kLayerRules,
   points: [
-    (text) => parsePoints(text) !== null,
-    `up to ${kMaxPoints} places of three coordinates: 1,2,0.5 3,2,0`,
+    (text) => parseKept('points', text) !== null,
+    `up to ${kMaxPoints} places of three coordinates, 1,2,0.5 3,2,0, with names of at most ` +
+      `${kMaxName} letters if you like: Tip: 1,2,0.5; 3,2,0`,
+  ],
+  lines: [
+    (text) => parseKept('lines', text) !== null,
+    `up to ${kMaxLines} pairs of places: Wake: 1,2,0.5 3,2,0; 1,0,0 1,0,2`,
   ],
   quality: [
     (text) => parseLimit(text) !== null,
