@@ -2,11 +2,13 @@
 
 import {describe, expect, test} from 'vitest';
 import {Arrows, kMostArrows, type ArrowsMesh, type Shown} from '../core/lines/arrows';
+import {principalAxes} from '../core/lines/principal_axes';
 import {readArrows} from '../core/layers/arrows_text';
 import {kArrowWidth, type ArrowsRequest, type ArrowSoup} from '../core/picture/arrows';
 import type {FieldInfo} from '../core/protocol/fields';
 import type {Vector} from '../core/protocol/geometry';
 import {wrongParts} from '../viewer/settings/wrong_parts';
+import {randomOf} from './random';
 import {boxMesh, vectorsOf} from './vector_fields';
 
 const kEnd = 512;
@@ -116,6 +118,62 @@ describe('arrows', () => {
     expect(soup.count).toBeLessThanOrEqual(kMostArrows);
     expect(soup.count).toBeGreaterThan(kMostArrows / 4);
     expect(soup.isCut).toBe(true);
+  });
+});
+
+describe('tensors', () => {
+  test('principalAxesAreThoseOfTheTensor', () => {
+    const random = randomOf(7);
+    for (let turn = 0; turn < 50; ++turn) {
+      const [xx, yy, zz, xy, yz, xz] = Array.from({length: 6}, () => random() * 20 - 10);
+      const rows = [
+        [xx!, xy!, xz!],
+        [xy!, yy!, yz!],
+        [xz!, yz!, zz!],
+      ];
+      const axes = principalAxes([xx!, yy!, zz!, xy!, yz!, xz!]);
+      for (const {value, direction} of axes) {
+        expect(Math.hypot(...direction)).toBeCloseTo(1, 10);
+        rows.forEach((row, i) => {
+          const product = row.reduce((sum, x, k) => sum + x * direction[k]!, 0);
+          expect(product).toBeCloseTo(value * direction[i]!, 8);
+        });
+      }
+    }
+  });
+
+  test('tensionPointsApartAndCompressionTowards', () => {
+    const mesh = meshOf(2);
+    const tensor = [4, -2, 0, 0, 0, 0];
+    const values = Int32Array.from(
+      {length: 2 * mesh.points.length},
+      (_, i) => tensor[i % 6]! + 10, // the least value is -10
+    );
+    const info = {
+      ...vectorsOf(mesh, () => [1, 0, 0]).info,
+      components: 6,
+      minimum: [-10, -10, -10, -10, -10, -10],
+      range: [0, 4] as [number, number],
+    };
+    const soup = new Arrows(mesh, {values, info}, {...kRequest, places: 'vertices'}).all(
+      kWhole,
+      null,
+    );
+    expect(soup.count).toBe(27 * 4); // two directions; nothing along the third
+    const ofFirst = listed(soup).slice(0, 4);
+    expect(ofFirst.map(({tail}) => tail)).toEqual([
+      [0, 0, 0],
+      [0, 0, 0],
+      [0, 16, 0],
+      [0, -16, 0],
+    ]);
+    const ways = ofFirst.map(({way}) => way.map((x) => Math.round(x) + 0));
+    expect(ways).toEqual([
+      [32, 0, 0],
+      [-32, 0, 0],
+      [0, -16, 0],
+      [0, 16, 0],
+    ]);
   });
 });
 

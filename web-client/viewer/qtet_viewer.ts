@@ -44,7 +44,7 @@
 //                tubes (default), lines, dashes.
 //   streamline-limits
 //                "steps=500 length=2 time=0.1".
-//   arrows       name of a point field of vectors, which are drawn as arrows.
+//   arrows       name of a point field of vectors or symmetric tensors, drawn as arrows.
 //   arrow-places shown (default), volume, vertices.
 //   arrow-density, arrow-length, arrow-size, arrow-color
 //                "30"; magnitude (default), log, equal; "1.5"; plain or field.

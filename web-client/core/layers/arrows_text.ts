@@ -2,11 +2,14 @@
 
 import {kArrowLengths, kArrowPlaces, type ArrowsRequest} from '../picture/arrows';
 import type {FieldInfo} from '../protocol/fields';
-import {lineField} from './streamlines_text';
+import {vectorField} from './streamlines_text';
 
 type Name =
   'arrows' | 'arrow-places' | 'arrow-density' | 'arrow-length' | 'arrow-size' | 'arrow-color';
 export type ReadArrows = (name: Name) => string | null;
+
+/** Those of vectors, and of symmetric tensors. */
+export const kArrowComponents = [3, 6];
 
 export const kFirstDensity = 30;
 /** Fewer are no picture of a field, and more do not fit kMostArrows of core/lines. */
@@ -37,7 +40,7 @@ export const arrowSize = (text: string | null): number | null => within(text, kS
 
 /** Null: no arrows are asked for, or they do not fit the mesh. */
 export function readArrows(read: ReadArrows, fields: readonly FieldInfo[]): ArrowsRequest | null {
-  const field = lineField(read('arrows'), fields);
+  const field = vectorField(read('arrows'), fields, kArrowComponents);
   if (field < 0) return null;
   const [text, length, color] = [read('arrow-places'), read('arrow-length'), read('arrow-color')];
   const places = isArrowPlaces(text) ? text : kArrowPlaces[0];

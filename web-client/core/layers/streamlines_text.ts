@@ -31,21 +31,28 @@ export type SeedsText =
   | {kind: 'plane'; plane: string; count: number}
   | {kind: 'sphere'; centre: Vector; radius: number; count: number};
 
-/** The fields that lines can follow. A series has its shown instant. */
-export function lineFields(fields: readonly FieldInfo[]): number[] {
+/** Fields of points with so many components. A series has its shown instant. */
+export function vectorFields(
+  fields: readonly FieldInfo[],
+  components: readonly number[] = [3],
+): number[] {
   return [...fields.keys()].filter((field) => {
-    const {association, components, instant} = fields[field]!;
-    return association === 'point' && components === 3 && instant?.isShown !== false;
+    const {association, components: its, instant} = fields[field]!;
+    return association === 'point' && components.includes(its) && instant?.isShown !== false;
   });
 }
 
-/** The field that the attribute means; -1: none. */
-export function lineField(text: string | null, fields: readonly FieldInfo[]): number {
+/** The field of those that a text means; -1: none. */
+export function vectorField(
+  text: string | null,
+  fields: readonly FieldInfo[],
+  components: readonly number[] = [3],
+): number {
   const field = text === null ? -1 : fieldOfKey(text, fields);
-  return lineFields(fields).includes(field) ? field : -1;
+  return vectorFields(fields, components).includes(field) ? field : -1;
 }
 
-export const lineFieldText = (field: number, fields: readonly FieldInfo[]): string =>
+export const vectorText = (field: number, fields: readonly FieldInfo[]): string =>
   scalarText({field, component: kMagnitude}, fields);
 
 /** "even 100", "line 0,0,0 1,0,0 20", "plane x:0.5 8", "sphere 0,0,0 0.1 50", with ";" between. */
@@ -140,7 +147,7 @@ export function readStreamlines(
   planeOf: (setting: ClipSetting) => Plane,
 ): StreamlinesRequest | null {
   const {fields, lattice} = manifest;
-  const field = lineField(read('streamlines'), fields);
+  const field = vectorField(read('streamlines'), fields);
   if (field < 0) return null;
   const onLattice = (place: Vector): Vector =>
     place.map((x, axis) => (x - lattice.origin[axis]!) / lattice.step) as Vector;

@@ -1,12 +1,13 @@
-// The arrows of a field of vectors: where they stand, and how long they are.
+// The arrows of a field of vectors or symmetric tensors: where they stand, and how long they are.
 
 import {kArrowWidth, type ArrowSoup, type ArrowsRequest} from '../picture/arrows';
 import {surfaceFaces} from '../picture/cell_surface';
-import type {FieldScale} from '../picture/field_scale';
+import {kMissing, type FieldScale} from '../picture/field_scale';
 import {isHole} from '../picture/neighbours';
 import {pointBounds} from '../picture/triangle_soup';
 import {dot, type Plane, type Vector} from '../protocol/geometry';
 import {cellsAt} from './cells_at';
+import {principalAxes} from './principal_axes';
 import {planePlaces} from './seeds';
 import {placesOnFaces, type CellPlace} from './surface_places';
 import {VectorWalk, type Vectors, type WalkMesh} from './vector_walk';
@@ -37,52 +38,73 @@ export const kMostArrows = 20_000;
 const kMostPlaces = 100_000;
 /** Logarithmic lengths span so many decades. */
 const kDecades = 3;
+const kTensorComponents = 6;
+/** Two along each principal direction. */
+const kArrowsOfTensor = 6;
 /** Shorter arrows, over the longest one, are left out. */
 const kLeastLength = 0.02;
 
 export class Arrows {
   private readonly walk: VectorWalk;
+  private readonly isTensor: boolean;
+  /** The longest vector, in the field's unit. */
   private readonly longest: number;
   private spacing: number;
   private isCut = false;
 
   constructor(
     private readonly mesh: ArrowsMesh,
-    {values, info}: Vectors,
+    private readonly vectors: Vectors,
     private readonly request: ArrowsRequest,
   ) {
-    this.walk = new VectorWalk(mesh, {values, info}, mesh.step);
-    this.longest = info.range[1] / mesh.step;
+    const {components, range} = vectors.info;
+    this.isTensor = components === kTensorComponents;
+    this.walk = new VectorWalk(mesh, this.isTensor ? null : vectors, 1);
+    this.longest = range[1];
     this.spacing = mesh.longest / request.density;
   }
 
   /** `scale` colours; null: they are plain. */
   all(shown: Shown, scale: FieldScale | null): ArrowSoup {
     const places = this.places(shown);
-    if (places.length > kMostArrows) this.isCut = true;
-    const few = places.filter(
-      (_, i) => (i * kMostArrows) % places.length < kMostArrows || places.length <= kMostArrows,
-    );
-    const arrows = new Float32Array(kArrowWidth * few.length);
-    let size = 0;
-    for (const {cell, place, outward} of few) {
-      const way = this.wayAt(cell, place);
-      if (!way) continue;
-      // Arrows into the drawn body end at its surface, so that all of them are seen.
-      const back = outward ? Number(dot(way, outward) < 0) : 0.5;
-      for (let axis = 0; axis < 3; ++axis) {
-        arrows[size + axis] = place[axis]! - back * way[axis]!;
-        arrows[size + 3 + axis] = way[axis]!;
+    const most = this.isTensor ? kMostArrows / kArrowsOfTensor : kMostArrows;
+    if (places.length > most) this.isCut = true;
+    const few = places.filter((_, i) => (i * most) % places.length < most);
+    const all = few.flatMap((its) => this.arrowsAt(its, scale));
+    const arrows = new Float32Array(kArrowWidth * all.length);
+    all.forEach(({tail, way, value}, i) => arrows.set([...tail, ...way, value], kArrowWidth * i));
+    return {arrows, count: all.length, isCut: this.isCut};
+  }
+
+  private arrowsAt({cell, place, outward}: CellPlace, scale: FieldScale | null): Arrow[] {
+    const {request, walk} = this;
+    walk.readAt(cell, place);
+    const value = scale && request.isColored ? walk.valueOf(scale) : NaN;
+    if (this.isTensor)
+      return principalAxes(this.tensorAt(cell)).flatMap(({value: size, direction}) =>
+        pairOf(place, this.scaled(direction, size, 0.5), size > 0).map((its) => ({...its, value})),
+      );
+    const vector: Vector = [walk.vx, walk.vy, walk.vz];
+    const way = this.scaled(vector, Math.hypot(...vector), 1);
+    if (!way) return [];
+    // Arrows into the drawn body end at its surface, so that all of them are seen.
+    const back = outward ? Number(dot(way, outward) < 0) : 0.5;
+    return [{tail: place.map((x, axis) => x - back * way[axis]!) as Vector, way, value}];
+  }
+
+  /** At the place of the walk. */
+  private tensorAt(cell: number): number[] {
+    const {values, info} = this.vectors;
+    const {mesh, shares} = this.walk;
+    return info.minimum.map((least, component) => {
+      let sum = 0;
+      for (let corner = 0; corner < 4; ++corner) {
+        const at = kTensorComponents * mesh.tetrahedra[4 * cell + corner]! + component;
+        const integer = values[at]!;
+        sum += shares[corner]! * (integer === kMissing ? NaN : least + info.step * integer);
       }
-      arrows[size + 6] = scale && this.request.isColored ? this.walk.valueOf(scale) : NaN;
-      size += kArrowWidth;
-    }
-    return {
-      arrows: arrows.slice(0, size),
-      count: size / kArrowWidth,
-      spacing: this.spacing,
-      isCut: this.isCut,
-    };
+      return sum;
+    });
   }
 
   private places(shown: Shown): CellPlace[] {
@@ -166,21 +188,36 @@ export class Arrows {
     return places;
   }
 
-  /** Null: there is no vector, or it is too short to be seen. */
-  private wayAt(cell: number, place: Vector): Vector | null {
-    const {longest, request, spacing, walk} = this;
-    walk.readAt(cell, place);
-    const length = Math.hypot(walk.vx, walk.vy, walk.vz);
-    if (!(length > 0)) return null;
-    const share = length / longest;
-    const shares = {
-      magnitude: share,
-      log: 1 + Math.log10(share) / kDecades,
-      equal: 1,
-    };
-    const its = shares[request.length];
+  /**
+   * The way of an arrow along a direction, for a vector of this length; `share` of the length is
+   * drawn. Null: there is no vector, or it is too short to be seen.
+   */
+  private scaled(direction: Vector, size: number, share: number): Vector | null {
+    const {longest, request, spacing} = this;
+    const length = Math.hypot(...direction);
+    const part = Math.abs(size) / longest;
+    if (!(length > 0 && part > 0)) return null;
+    const parts = {magnitude: part, log: 1 + Math.log10(part) / kDecades, equal: 1};
+    const its = parts[request.length];
     if (!(its >= kLeastLength)) return null;
-    const factor = (its * request.size * spacing) / length;
-    return [walk.vx * factor, walk.vy * factor, walk.vz * factor];
+    const factor = (share * its * request.size * spacing) / length;
+    return direction.map((x) => x * factor) as Vector;
   }
+}
+
+interface Arrow {
+  tail: Vector;
+  way: Vector;
+  /** NaN: it is plain. */
+  value: number;
+}
+
+/** Two arrows apart from a place, or (in compression) towards it. */
+function pairOf(place: Vector, way: Vector | null, isApart: boolean): Omit<Arrow, 'value'>[] {
+  if (!way) return [];
+  return [1, -1].map((sign) => {
+    const own = way.map((x) => sign * x) as Vector;
+    const end = place.map((x, axis) => x + own[axis]!) as Vector;
+    return isApart ? {tail: place, way: own} : {tail: end, way: own.map((x) => -x) as Vector};
+  });
 }

@@ -22,7 +22,7 @@ export const lines: typeof lateMaking.lines = (assembler, mesh, display) =>
 /** As `lines`. */
 export const arrows: typeof lateMaking.arrows = (assembler, mesh, display) => {
   const request = display.arrows;
-  const vectors = request ? vectorsIn(assembler, request.field) : null;
+  const vectors = request ? vectorsIn(assembler, request.field, [3, 6]) : null;
   if (!vectors) return null;
   const {body, mode, planes} = display;
   const {bits, step} = assembler.manifest!.lattice;
@@ -73,11 +73,16 @@ function linesIn(assembler: Assembler, mesh: MeshArrays, display: Display): Stre
   );
 }
 
-function vectorsIn({codec, manifest}: Assembler, field: number): Vectors | null {
+function vectorsIn(
+  {codec, manifest}: Assembler,
+  field: number,
+  components: readonly number[] = [3],
+): Vectors | null {
   const info = manifest?.fields[field];
   const values = info && codec.isWhole ? codec.field(field, info.components) : null;
-  if (!values || info?.components !== 3 || info.association !== 'point') return null;
-  return {values, info};
+  if (!values || !components.includes(info!.components) || info!.association !== 'point')
+    return null;
+  return {values, info: info!};
 }
 
 function acrossIn(assembler: Assembler): Across {

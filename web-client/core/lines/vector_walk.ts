@@ -13,7 +13,7 @@ export interface WalkMesh {
   across(cell: number, corner: number): number;
 }
 
-/** The integers of a field of points with three components. */
+/** The integers of a field of points with three components, or of symmetric tensors. */
 export interface Vectors {
   values: Int32Array;
   info: FieldInfo;
@@ -75,19 +75,19 @@ export class VectorWalk {
   private readonly known = new Float64Array(kKept * kCellWidth);
   private readonly sizes = new Float64Array(kKept);
   private slot = 0;
-  private now: VectorScale;
+  private now: VectorScale | null;
   /** Null: the vectors stay. */
   private next: VectorScale | null = null;
   /** The share of the way to the next instant. */
   private share = 0;
 
-  /** `step` is the lattice's. */
+  /** `step` is the lattice's. Without vectors it finds places alone. */
   constructor(
     readonly mesh: WalkMesh,
-    vectors: Vectors,
+    vectors: Vectors | null,
     private readonly step: number,
   ) {
-    this.now = new VectorScale(vectors, step);
+    this.now = vectors && new VectorScale(vectors, step);
   }
 
   /** Vectors change from these to the next ones. */
@@ -115,21 +115,20 @@ export class VectorWalk {
   }
 
   /** Whether the cell has the place. It is in hand then. */
-  holds(cell: number, [x, y, z]: Vector): boolean {
-    this.enter(cell);
-    const {known} = this;
-    const at = kCellWidth * this.slot;
-    const dx = x - known[at]!;
-    const dy = y - known[at + 1]!;
-    const dz = z - known[at + 2]!;
-    const b = known[at + 3]! * dx + known[at + 4]! * dy + known[at + 5]! * dz;
-    const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
-    const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
-    return b >= kLeastShare && c >= kLeastShare && d >= kLeastShare && b + c + d <= 1 - kLeastShare;
+  holds(cell: number, place: Vector): boolean {
+    this.takeShares(cell, place);
+    const {shares} = this;
+    for (let corner = 0; corner < 4; ++corner) if (!(shares[corner]! >= kLeastShare)) return false;
+    return true;
   }
 
   /** The vector at a place in the cell or close to it, and its shares there. */
-  readAt(cell: number, [x, y, z]: Vector): void {
+  readAt(cell: number, place: Vector): void {
+    this.takeShares(cell, place);
+    this.read(kCellWidth * this.slot);
+  }
+
+  private takeShares(cell: number, [x, y, z]: Vector): void {
     this.enter(cell);
     const {known, shares} = this;
     const at = kCellWidth * this.slot;
@@ -139,8 +138,10 @@ export class VectorWalk {
     const b = known[at + 3]! * dx + known[at + 4]! * dy + known[at + 5]! * dz;
     const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
     const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
-    shares.set([1 - b - c - d, b, c, d]);
-    this.read(at);
+    shares[0] = 1 - b - c - d;
+    shares[1] = b;
+    shares[2] = c;
+    shares[3] = d;
   }
 
   /** The value of a field at the place of `shares`. */
@@ -182,7 +183,7 @@ export class VectorWalk {
     const at = kCellWidth * slot;
     for (let corner = 0; corner < 4; ++corner) {
       const vertex = tetrahedra[4 * cell + corner]!;
-      now.write(vertex, known, at + kVectorsAt + 3 * corner);
+      now?.write(vertex, known, at + kVectorsAt + 3 * corner);
       next?.write(vertex, known, at + kNextAt + 3 * corner);
     }
     const a = 3 * tetrahedra[4 * cell]!;

@@ -25,8 +25,6 @@ export interface ArrowSoup {
   arrows: Float32Array;
   /** How many there are. */
   count: number;
-  /** The distance between two, in lattice steps. */
-  spacing: number;
   /** There would be more: they lie farther apart, or some are left out. */
   isCut: boolean;
 }

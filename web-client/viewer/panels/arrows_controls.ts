@@ -2,6 +2,7 @@
 
 import {
   firstColor,
+  kArrowComponents,
   kDensities,
   kFirstSize,
   kSizes,
@@ -31,7 +32,7 @@ const kLengths: Record<ArrowsRequest['length'], string> = {
 const kMarkup = `
 ${toggle('arrows', 'Arrows')}
 <div class="sub arrows-body" hidden>
-  <select name="arrows-field" aria-label="Vectors that arrows show"></select>
+  <select name="arrows-field" aria-label="Field that arrows show"></select>
   <fieldset class="segments">
     <legend class="visually-hidden">Places of the arrows</legend>
     ${segments('arrow-places', kPlaces)}
@@ -63,7 +64,7 @@ export class ArrowsControls implements LateContent {
     setMarkup(place, kMarkup);
     this.on = find(place, 'input[name=arrows]');
     this.on.addEventListener('change', () =>
-      page.write('arrows', this.on.checked ? chooseVectors(tools) : null),
+      page.write('arrows', this.on.checked ? chooseVectors(tools, kArrowComponents) : null),
     );
     place.addEventListener('change', ({target}) => {
       const {name, value} = target as HTMLInputElement;
@@ -90,7 +91,7 @@ export class ArrowsControls implements LateContent {
     this.on.checked = request !== null;
     find(this.place, '.arrows-body').hidden = !request;
     if (!request) return;
-    fillVectors(find(this.place, 'select'), request.field, fields);
+    fillVectors(find(this.place, 'select'), request.field, fields, kArrowComponents);
     for (const [name, value] of [
       ['arrow-places', request.places],
       ['arrow-length', request.length],

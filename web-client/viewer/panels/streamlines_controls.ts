@@ -7,7 +7,7 @@ import {
   kLooks,
   kMostAlongPlane,
   kMostLines,
-  lineField,
+  vectorField,
   parseSeeds,
   readStreamlines,
   seedsText,
@@ -134,7 +134,7 @@ export class StreamlinesControls implements LateContent {
   update(settings: Settings, scene: Scene | null): void {
     const fields = scene?.manifest.fields ?? [];
     const {page} = this.tools;
-    this.field = lineField(page.read('streamlines'), fields);
+    this.field = vectorField(page.read('streamlines'), fields);
     const isOn = this.field >= 0;
     this.on.checked = isOn;
     find(this.place, '.streamlines-body').hidden = !isOn;

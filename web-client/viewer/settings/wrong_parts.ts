@@ -10,6 +10,7 @@ import {
   scalarKey,
   scalarText,
 } from '../../core/layers/field_values';
+import {kArrowComponents} from '../../core/layers/arrows_text';
 import {kLayerRules} from '../../core/layers/layer_rules';
 import {fieldLayers} from '../../core/layers/layers';
 import {partField, partFields, unknownParts} from '../../core/layers/parts_text';
@@ -183,18 +184,20 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
         ? `warp="${warp}" moves nothing: it takes a field of points with three components.`
         : `warp="${warp}" moves nothing: the mesh has no such field.${hint(warp, keys)} ${has}`,
     );
-  for (const [name, of] of [
-    ['flux', ''],
-    ['streamlines', ' of points'],
-    ['arrows', ' of points'],
-  ] as const) {
+  const kTakes: [name: Name, of: string, takes: readonly number[]][] = [
+    ['flux', '', [3]],
+    ['streamlines', ' of points', [3]],
+    ['arrows', ' of points', kArrowComponents],
+  ];
+  for (const [name, of, takes] of kTakes) {
     const text = read(name);
     const info = fields[parseScalar(text, fields)?.field ?? -1];
-    if (text === null || (info?.components === 3 && (!of || info.association === 'point')))
-      continue;
+    const isFit = info && takes.includes(info.components);
+    if (text === null || (isFit && (!of || info.association === 'point'))) continue;
+    const counts = takes.length > 1 ? 'three or six' : 'three';
     sentences.push(
       info
-        ? `${name}="${text}" is not shown: it takes a field${of} with three components.`
+        ? `${name}="${text}" is not shown: it takes a field${of} with ${counts} components.`
         : `${name}="${text}" is not shown: the mesh has no such field.${hint(text, keys)} ${has}`,
     );
   }
