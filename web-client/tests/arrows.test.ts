@@ -105,6 +105,14 @@ describe('arrows', () => {
     expect(lengths('equal')).toEqual([64]);
   });
 
+  test('aMeshThatAWarpMakesLargerHasNoMore', () => {
+    const mesh = meshOf(4);
+    const points = mesh.points.map((x) => x * 1_000_000);
+    const soup = make({...mesh, points}, () => [1, 0, 0]);
+    expect(soup.count).toBeGreaterThan(100);
+    expect(soup.count).toBeLessThan(6 * 9 * 9 + 1);
+  });
+
   test('missingVectorsHaveNone', () => {
     const soup = make(meshOf(2), ([x]) => (x === 0 ? null : [1, 0, 0]), {places: 'vertices'});
     expect(soup.count).toBe(2 * 9);

@@ -12,6 +12,7 @@ import {
   type Seeds,
   type StreamlinesRequest,
 } from '../core/picture/streamlines';
+import {neighboursOf} from '../core/picture/neighbours';
 import type {Vector} from '../core/protocol/geometry';
 import type {Manifest} from '../core/protocol/manifest';
 import {boxMesh, vectorsOf} from './vector_fields';
@@ -129,6 +130,55 @@ describe('streamlines', () => {
   });
 });
 
+describe('cells without volume', () => {
+  /** A square in a plane as one cell, with two cells above it and two below. */
+  const withFlat = (flat: readonly number[]): LinesMesh => {
+    const points = [
+      [0, 0, 0],
+      [900, 0, 0],
+      [0, 900, 0],
+      [900, 900, 0],
+      [450, 450, 900],
+      [450, 450, -900],
+    ];
+    const cells = [[0, 1, 2, 4], [1, 3, 2, 4], [0, 1, 3, 5], [0, 3, 2, 5], flat];
+    const tetrahedra = Uint32Array.from(cells.flat());
+    const neighbours = neighboursOf(tetrahedra);
+    return {
+      points: Int32Array.from(points.flat()),
+      tetrahedra,
+      boundary: Uint32Array.from(points.keys()),
+      step: 1,
+      across: (cell, corner) => neighbours[4 * cell + corner]! >>> 0,
+    };
+  };
+
+  test.each([
+    [0, 1, 2, 3],
+    [3, 2, 1, 0],
+    [1, 3, 0, 2],
+    [2, 0, 3, 1],
+    [0, 3, 1, 2],
+  ])('linesPassThem (%i %i %i %i)', (...flat) => {
+    const its = withFlat(flat);
+    for (const [x, y] of [
+      [300, 500],
+      [500, 300],
+      [440, 470],
+    ] as const) {
+      const lines = new Streamlines(
+        its,
+        vectorsOf(its, () => [0, 0, -1]),
+        kFar,
+        null,
+      );
+      const [line] = linesIn(lines.all(oneAt([x, y, 50])));
+      expect(line![0]![2]).toBeGreaterThan(200);
+      expect(line!.at(-1)![2]).toBeLessThan(-200);
+    }
+  });
+});
+
 describe('path lines', () => {
   /** The line through a place at `begin`, with a speed along x for each instant 0, 1, ... */
   function pathOf(speeds: readonly number[], begin: number, limits = kFar): number[][] {
@@ -235,6 +285,17 @@ describe('seeds', () => {
     if (seeds.kind === 'sphere')
       for (const [x, y, z] of places)
         expect(Math.hypot(x - 50, y - 50, z - 50)).toBeLessThanOrEqual(10);
+  });
+
+  test.each([0, 1e-12, 1e-9, 1e-5, 1e-3, 1])('placesThatDifferBy %d areFound', (difference) => {
+    const its = mesh();
+    const walk = new VectorWalk(its, null, 1);
+    const places = Array.from({length: 20}, (_, i): Vector => [
+      20 * i + 7,
+      300 + (i * difference) / 20,
+      77,
+    ]);
+    expect([...cellsAt(walk, places)].every((cell) => cell >= 0)).toBe(true);
   });
 
   test('cellsOfManyPlacesAreThoseThatHoldThem', () => {

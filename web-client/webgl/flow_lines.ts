@@ -94,6 +94,15 @@ ${kColorShader}
 const kAttributes = ['from', 'fromMore', 'to', 'toMore'];
 const kBytes = 4 * kLineWidth;
 
+export interface FlowLook {
+  /** A LinesLook. */
+  kind: string;
+  /** That of the mesh's box, in lattice steps. */
+  diagonal: number;
+  /** Pixels of the target in a pixel of the canvas. */
+  pixelRatio: number;
+}
+
 interface Buffers {
   vertices: WebGLVertexArrayObject;
   buffer: WebGLBuffer;
@@ -101,6 +110,8 @@ interface Buffers {
 
 export class FlowLines {
   private soup: LineSoup | null = null;
+  /** The share of a period that has passed. Dashes at rest, and in tiles of a picture, stay. */
+  private clock = 0;
   private readonly program: Program;
   private readonly made: Made<Buffers>;
 
@@ -117,6 +128,11 @@ export class FlowLines {
     );
   }
 
+  /** Dashes are where they should be now. */
+  tick(): void {
+    this.clock = ((performance.now() / 1000) * kPerSecond) % 1;
+  }
+
   get hasLines(): boolean {
     return (this.soup?.lines ?? 0) > 0;
   }
@@ -126,11 +142,11 @@ export class FlowLines {
     this.made.dispose();
   }
 
-  /** `look` has the uniforms of all that is coloured; `kind` is a LinesLook. */
+  /** `look` has the uniforms of all that is coloured. */
   draw(
     {toEye, toCube}: Eye,
     look: Readonly<Record<string, Uniform>>,
-    {kind, diagonal, pixelRatio}: {kind: string; diagonal: number; pixelRatio: number},
+    {kind, diagonal, pixelRatio}: FlowLook,
   ): void {
     const {soup} = this;
     const segments = (soup?.points.length ?? 0) / kLineWidth - 1;
@@ -147,7 +163,7 @@ export class FlowLines {
       width: (isTube ? kLeastTube : kind === 'dashes' ? 1.6 * kWidth : kWidth) * pixelRatio,
       isTube,
       period: kind === 'dashes' ? kPeriodShare * soup.crossing : 0,
-      clock: ((performance.now() / 1000) * kPerSecond) % 1,
+      clock: this.clock,
     });
     gl.bindVertexArray(this.made.get().vertices);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, segments);

@@ -6,12 +6,17 @@ import {usePixels, type ViewCanvas} from './worker_canvas';
 
 /** Slower graphics show parts that move at rest: they would be busy for ever. */
 const kMostMovingMs = 50;
+/** So many slow pictures in a row are no accident: the first ones make programs and buffers. */
+const kMostSlow = 6;
 
 export class Frames {
   /** The time of the last one on this thread. */
   ms = 0;
   /** The user has changed something since the last picture; new levels alone do not count. */
   private moved = false;
+  /** Slow pictures in a row. */
+  private slow = 0;
+  private hasEnded = false;
   /** The requested frame; 0: none is. */
   private requested = 0;
   /** Between two pictures; 0: nothing plays. */
@@ -60,7 +65,9 @@ export class Frames {
     const tell = (ms: number): void => {
       if (!scene.hasVolume) this.budget.learn(share, ms);
       done.forEach((drawn) => drawn(ms));
-      if (scene.parts.moves && ms < kMostMovingMs) this.invalidate(false);
+      this.slow = ms < kMostMovingMs ? 0 : this.slow + 1;
+      const goesOn = !this.hasEnded && !graphics.gl.isContextLost() && this.slow < kMostSlow;
+      if (scene.parts.moves && goesOn) this.invalidate(false);
     };
     try {
       const {lens} = camera.orbit;
@@ -74,6 +81,12 @@ export class Frames {
     } finally {
       if (done.length > 0 || scene.parts.moves) void whenDrawn(graphics.gl, start).then(tell);
     }
+  }
+
+  /** Nothing is drawn any more. */
+  end(): void {
+    this.hasEnded = true;
+    this.cancel();
   }
 
   /** A requested one is not drawn. */

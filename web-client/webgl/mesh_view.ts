@@ -216,7 +216,7 @@ export class MeshView implements View {
   }
 
   dispose(): void {
-    this.frames.cancel();
+    this.frames.end();
     this.ended.abort();
     this.scene.dispose();
   }

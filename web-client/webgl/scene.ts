@@ -144,6 +144,7 @@ export class Scene {
     const {graphics} = this;
     const {gl} = graphics;
     this.fadeLines(lens, canvas);
+    if (this.parts.moves) this.parts.flow?.tick();
     graphics.beginCanvas();
     graphics.use({depths: 'written'});
     gl.clearColor(0, 0, 0, 0);

@@ -103,7 +103,7 @@ export function parseLimits(text: string): LineLimits | null {
   for (const word of text.split(/\s+/).filter(Boolean)) {
     const [name = '', value = '', ...more] = word.split('=');
     const number = Number(value);
-    const isRight = name in limits && value !== '' && more.length === 0 && number > 0;
+    const isRight = Object.hasOwn(limits, name) && value !== '' && more.length === 0 && number > 0;
     if (!isRight || !Number.isFinite(number)) return null;
     if (name === 'steps' && !(Number.isInteger(number) && number <= kMostLineSteps)) return null;
     limits[name as keyof LineLimits] = number;

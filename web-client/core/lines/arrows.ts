@@ -49,6 +49,7 @@ export class Arrows {
   private readonly isTensor: boolean;
   /** The longest vector, in the field's unit. */
   private readonly longest: number;
+  private readonly box: number[];
   private spacing: number;
   private isCut = false;
 
@@ -61,19 +62,27 @@ export class Arrows {
     this.isTensor = components === kTensorComponents;
     this.walk = new VectorWalk(mesh, this.isTensor ? null : vectors, 1);
     this.longest = range[1];
-    this.spacing = mesh.longest / request.density;
+    // a warp may make the mesh larger
+    this.box = pointBounds(mesh.points, mesh.boundary);
+    const sides = [0, 1, 2].map((axis) => this.box[axis + 3]! - this.box[axis]!);
+    this.spacing = Math.max(mesh.longest, ...sides) / request.density;
   }
 
   /** `scale` colours; null: they are plain. */
   all(shown: Shown, scale: FieldScale | null): ArrowSoup {
     const places = this.places(shown);
-    const most = this.isTensor ? kMostArrows / kArrowsOfTensor : kMostArrows;
+    const {most} = this;
     if (places.length > most) this.isCut = true;
     const few = places.filter((_, i) => (i * most) % places.length < most);
     const all = few.flatMap((its) => this.arrowsAt(its, scale));
     const arrows = new Float32Array(kArrowWidth * all.length);
     all.forEach(({tail, way, value}, i) => arrows.set([...tail, ...way, value], kArrowWidth * i));
     return {arrows, count: all.length, isCut: this.isCut};
+  }
+
+  /** Places at most. */
+  private get most(): number {
+    return this.isTensor ? Math.floor(kMostArrows / kArrowsOfTensor) : kMostArrows;
   }
 
   private arrowsAt({cell, place, outward}: CellPlace, scale: FieldScale | null): Arrow[] {
@@ -119,8 +128,7 @@ export class Arrows {
   }
 
   private shownPlaces({hasSurface, cutting, cuts}: Shown): CellPlace[] {
-    const {mesh, spacing} = this;
-    const box = pointBounds(mesh.points, mesh.boundary);
+    const {box, mesh, spacing} = this;
     const isBelow = (planes: readonly Plane[], place: Vector): boolean =>
       planes.every(({normal, offset}) => dot(normal, place) <= offset);
     const surface = hasSurface
@@ -147,7 +155,7 @@ export class Arrows {
 
   /** Every other layer lies between the places of the last. */
   private grid(): Vector[] {
-    const box = pointBounds(this.mesh.points, this.mesh.boundary);
+    const {box} = this;
     const countWith = (spacing: number): number[] =>
       [0, 1, 2].map((axis) => Math.floor((box[axis + 3]! - box[axis]!) / spacing) + 1);
     let counts = countWith(this.spacing);
@@ -179,9 +187,12 @@ export class Arrows {
       const cell = at >> 2;
       if (kept?.[cell] !== 0 && !isHole(tetrahedra, cell)) cellOf[tetrahedra[at]!] = cell;
     }
+    const all = cellOf.reduce((count, cell) => count + Number(cell >= 0), 0);
+    this.isCut = all > this.most;
     const places: CellPlace[] = [];
+    let i = 0;
     cellOf.forEach((cell, vertex) => {
-      if (cell < 0) return;
+      if (cell < 0 || (i++ * this.most) % all >= this.most) return;
       const at = 3 * vertex;
       places.push({cell, place: [points[at]!, points[at + 1]!, points[at + 2]!]});
     });

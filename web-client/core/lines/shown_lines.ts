@@ -5,6 +5,7 @@ import {colorScale, cuttingPlanes, type Display, type MeshArrays} from '../pictu
 import type {lateMaking} from '../picture/late_making';
 import type {LineSoup} from '../picture/streamlines';
 import type {Vector} from '../protocol/geometry';
+import type {Manifest} from '../protocol/manifest';
 import {Arrows} from './arrows';
 import {remembered} from './neighbour_memory';
 import {Streamlines} from './streamlines';
@@ -13,7 +14,10 @@ import type {Vectors} from './vector_walk';
 type Across = (cell: number, corner: number) => number;
 
 /** By the mesh's log what walks have found in it. */
-const memories = new WeakMap<Assembler, {chunks: number; across: Across}>();
+const memories = new WeakMap<
+  Assembler,
+  {chunks: number; manifest: Manifest | null; across: Across}
+>();
 
 /** Null while the vectors have no values. */
 export const lines: typeof lateMaking.lines = (assembler, mesh, display) =>
@@ -86,10 +90,11 @@ function vectorsIn(
 }
 
 function acrossIn(assembler: Assembler): Across {
-  const {codec} = assembler;
+  const {codec, manifest} = assembler;
+  const chunks = codec.chunksApplied;
   const known = memories.get(assembler);
-  if (known?.chunks === codec.chunksApplied) return known.across;
+  if (known?.chunks === chunks && known.manifest === manifest) return known.across;
   const across = remembered(codec.tetrahedronCount, (cell, corner) => codec.across(cell, corner));
-  memories.set(assembler, {chunks: codec.chunksApplied, across});
+  memories.set(assembler, {chunks, manifest, across});
   return across;
 }

@@ -14,6 +14,8 @@ import {VectorWalk, type Vectors, type WalkMesh} from './vector_walk';
 
 /** Steps of all lines: a second or two of work. */
 export const kMostSteps = 1_000_000;
+/** Cells that all walks go through: as much work as kMostSteps. */
+const kMostTurns = 10_000_000;
 /** Vectors below this share of the longest one end a line. */
 const kStillShare = 1e-6;
 
@@ -55,14 +57,22 @@ export class Streamlines {
   }
 
   all(seeds: readonly Seeds[]): LineSoup {
-    for (const its of seeds) {
-      const places = placesOf(its, this.box, (some) =>
-        Array.from(cellsAt(this.walk, some), (cell) => cell >= 0),
-      );
-      const cells = cellsAt(this.walk, places);
-      if (its.kind === 'even')
-        chooseEven(this.box, places, its.count, (i) => this.trace(cells[i]!, places[i]!));
-      else places.forEach((place, i) => this.trace(cells[i]!, place));
+    const isIn = (some: readonly Vector[]): boolean[] =>
+      Array.from(cellsAt(this.walk, some), (cell) => cell >= 0);
+    const byKind = seeds.map((its) => ({its, places: placesOf(its, this.box, isIn)}));
+    // one pass over the cells for all
+    const cells = cellsAt(
+      this.walk,
+      byKind.flatMap(({places}) => places),
+    );
+    let first = 0;
+    for (const {its, places} of byKind) {
+      const from = first;
+      first += places.length;
+      const trace = (i: number): Float32Array | null => this.trace(cells[from + i]!, places[i]!);
+      if (its.kind === 'even') chooseEven(this.box, places, its.count, trace);
+      else places.forEach((_, i) => trace(i));
+      if (this.isEnough) break;
     }
     return this.lines.take(this.crossing, this.isEnough);
   }
@@ -75,7 +85,8 @@ export class Streamlines {
   }
 
   private get isEnough(): boolean {
-    return this.tracer.steps >= kMostSteps || this.lines.isFull;
+    const isLong = this.tracer.steps >= kMostSteps || this.walk.turns >= kMostTurns;
+    return isLong || this.lines.isFull;
   }
 
   private trace(cell: number, place: Vector): Float32Array | null {

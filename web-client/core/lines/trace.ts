@@ -47,6 +47,8 @@ const kLongestStep = 0.5;
 const kShortestStep = 1 / 128;
 /** A step may be off by this share of the size of its cell. */
 const kTolerance = 1e-3;
+/** A step that is off by this share of itself leads nowhere. */
+const kTurned = 0.5;
 /** The next step is this much shorter than its error allows. */
 const kSafety = 0.9;
 const kMostGrowth = 3;
@@ -92,6 +94,7 @@ export class Tracer {
         if (!this.clock) return 'still';
         // it waits for the vectors of a later time
         ++count;
+        ++this.steps;
         time += Math.min(untilTime, kWaits * this.clock.spacing);
         if (this.timeLeft(time, sign) > 0) this.begin(x, y, z, sign);
         continue;
@@ -116,9 +119,9 @@ export class Tracer {
         return 'boundary';
       }
       const allowed = kTolerance * size;
-      if (error > allowed) {
-        // only round a place without motion do vectors turn so soon
-        if (isShortest) return 'still';
+      // only round a place without motion do vectors turn so soon
+      if (isShortest && error > kTurned * h * speed) return 'still';
+      if (error > allowed && !isShortest) {
         walk.enter(from);
         const shrink = kSafety * Math.sqrt(Math.sqrt(allowed / error));
         share = Math.max(kShortestStep, share * Math.max(kMostShrink, shrink));

@@ -23,7 +23,7 @@ export const kOutside = 0xffffffff;
 /** A share of a corner below this lies outside: places on a face belong to both cells. */
 const kLeastShare = -1e-9;
 /** A walk through more cells than this is lost: between flat ones it may turn in circles. */
-const kMostTurns = 4096;
+const kMostTurns = 512;
 
 /** Cells that are remembered: a step takes places in a few, and goes to and fro between them. */
 const kKept = 16;
@@ -69,6 +69,8 @@ export class VectorWalk {
   vz = 0;
   /** The shares of the cell's corners at that place. */
   readonly shares = new Float64Array(4);
+  /** The cells that all walks went through. */
+  turns = 0;
 
   /** By `cell % kKept` what is known of it. */
   private readonly cells = new Int32Array(kKept).fill(-1);
@@ -206,7 +208,7 @@ export class VectorWalk {
     const py = cz * dx - cx * dz;
     const pz = cx * dy - cy * dx;
     const volume = bx * px + by * py + bz * pz;
-    const inverse = 1 / volume; // of a flat cell it is infinite: no place is in it
+    const inverse = volume === 0 ? NaN : 1 / volume; // no place is in a flat cell
     known[at] = x;
     known[at + 1] = y;
     known[at + 2] = z;
@@ -229,6 +231,7 @@ export class VectorWalk {
    */
   find(x: number, y: number, z: number): boolean {
     const {known, shares} = this;
+    let before = kOutside;
     for (let turn = 0; turn < kMostTurns; ++turn) {
       const at = kCellWidth * this.slot;
       const dx = x - known[at]!;
@@ -246,8 +249,11 @@ export class VectorWalk {
         this.read(at);
         return true;
       }
-      const other = this.onward(a, b, c, d);
+      const {cell} = this;
+      const other = Number.isFinite(b) ? this.onward(a, b, c, d) : this.through([x, y, z], before);
       if (other === kOutside) return false;
+      before = cell;
+      ++this.turns;
       this.enter(other);
     }
     return false;
@@ -259,14 +265,31 @@ export class VectorWalk {
     const worst = a <= b && a <= c && a <= d ? 0 : b <= c && b <= d ? 1 : c <= d ? 2 : 3;
     const first = mesh.across(cell, worst);
     if (first !== kOutside) return first;
-    // flat cells know no sides: any way on is as good
-    const isFlat = !Number.isFinite(a);
     const all = [a, b, c, d];
     for (let corner = 0; corner < 4; ++corner) {
-      if (corner === worst || !(isFlat || all[corner]! < kLeastShare)) continue;
+      if (corner === worst || !(all[corner]! < kLeastShare)) continue;
       const next = mesh.across(cell, corner);
       if (next !== kOutside) return next;
     }
     return kOutside;
+  }
+
+  /**
+   * A cell without volume knows no sides. The walk goes on to a neighbour on the place's side of
+   * their face, or else to any but the last one.
+   */
+  private through(place: Vector, before: number): number {
+    const {cell, mesh, shares} = this;
+    let other = kOutside;
+    for (let corner = 0; corner < 4; ++corner) {
+      const next = mesh.across(cell, corner);
+      if (next === kOutside) continue;
+      if (next !== before) other = next;
+      this.takeShares(next, place);
+      for (let back = 0; back < 4; ++back)
+        if (mesh.across(next, back) === cell && shares[back]! >= kLeastShare) return next;
+    }
+    this.enter(cell);
+    return other;
   }
 }

@@ -20,6 +20,8 @@ export interface Drawn {
   chunks: number;
 }
 
+type Lines = Display['streamlines'];
+
 /** A wanted instant has no values yet, while another one of its series is shown. */
 export function isWaiting(assembler: Assembler, wanted: Display, drawn: Drawn | null): boolean {
   if (!drawn) return false;
@@ -48,11 +50,18 @@ export function drawable(assembler: Assembler, wanted: Display, drawn: Drawn | n
   ): T | null | undefined =>
     its && before && areOfSeries(assembler, its, before) ? {...its, field: before.field} : its;
   const {color, warp, streamlines, arrows} = wanted;
+  // the instants of path lines go with the one that is shown
+  const heldLines = (its: Lines, before: Lines): Lines => {
+    const lines = held(its, before);
+    return lines && before?.field === lines.field
+      ? {...before, seeds: lines.seeds, limits: lines.limits}
+      : lines;
+  };
   const display: Display = {
     ...wanted,
     color: held(color, drawn.color) ?? null,
     warp: held(warp, drawn.warp) ?? null,
-    ...(streamlines && {streamlines: held(streamlines, drawn.streamlines) ?? null}),
+    ...(streamlines && {streamlines: heldLines(streamlines, drawn.streamlines) ?? null}),
     ...(arrows && {arrows: held(arrows, drawn.arrows) ?? null}),
   };
   return derivation.held?.(display, drawn) ?? display;

@@ -181,9 +181,9 @@ export class Inspector {
     {cell, place}: {cell: number; place: Vector},
     display: Display,
   ): Promise<LineSoup | null> {
-    const {makeAt} = await retry(() => import('../lines/shown_lines'));
+    const lines = await import('../lines/shown_lines').catch(() => null);
     const mesh = meshArrays(this.assembler, display);
-    return mesh && makeAt(this.assembler, mesh, display, {cell, place});
+    return lines && mesh && lines.makeAt(this.assembler, mesh, display, {cell, place});
   }
 
   /** The coloured field from one lattice point to another; null while there is none. */

@@ -26,7 +26,7 @@ import {KeptCreases} from './kept_creases';
 import type {Snapshot} from './worker_messages';
 
 export type Picture = Omit<Snapshot, 'statistics' | 'costMs'>;
-type Body = Pick<Snapshot, 'surface' | 'volume' | 'streamlines' | 'arrows' | keyof LayerSoups>;
+type Body = Pick<Snapshot, 'surface' | 'volume' | 'streamlines' | keyof LayerSoups>;
 
 /** Measuring these takes time. They change with the surface only. */
 interface Measures {
@@ -77,6 +77,8 @@ export class PictureMaker {
       ...this.figures(mesh, display, measures),
       cuts: cutsOf(mesh, display, kept),
       planes: cuttingPlanes(display),
+      // they stand on cuts, and not above planes
+      arrows: lateMaking.arrows?.(this.assembler, {...mesh, kept}, display) ?? null,
       ...(!isOnlyCut && this.body(mesh, display, kept)),
     };
   }
@@ -90,7 +92,6 @@ export class PictureMaker {
       ...layerSoups(mesh, display, kept),
       volume: scale ? volumeCells(mesh, scale, kept) : null,
       streamlines: lateMaking.lines?.(this.assembler, {...mesh, kept}, display) ?? null,
-      arrows: lateMaking.arrows?.(this.assembler, {...mesh, kept}, display) ?? null,
     };
   }
 

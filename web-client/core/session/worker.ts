@@ -126,7 +126,7 @@ function obey(
       return session.start(message.source);
     case 'display': {
       ({display: last} = message);
-      const coming = missingFor(last);
+      const coming = missingFor(last, publisher);
       if (coming)
         return void coming.then(
           () => obey({session, publisher, coarse, ...its}, {type: 'display', display: last!}),
@@ -162,17 +162,27 @@ function obey(
   }
 }
 
+/** The code that makes lines and arrows. */
+let linesComing: Promise<void> | null = null;
+/** A picture waits for it so long; then lines and arrows follow it. */
+const kPatienceMs = 3000;
+
 /** Loads the code that the display needs and that is not here; null: all is. */
-function missingFor({parts: its, streamlines, arrows}: Display): Promise<unknown> | null {
+function missingFor(
+  {parts: its, streamlines, arrows}: Display,
+  publisher: Publisher,
+): Promise<unknown> | null {
   if (its && !partCells.paint)
     return retry(() => import('../layers/part_cells')).then((cells) =>
       Object.assign(partCells, cells),
     );
-  if ((streamlines || arrows) && !lateMaking.lines)
-    return retry(() => import('../lines/shown_lines')).then((lines) =>
-      Object.assign(lateMaking, lines),
-    );
-  return null;
+  if (!(streamlines || arrows) || lateMaking.lines || linesComing) return null;
+  linesComing = retry(() => import('../lines/shown_lines')).then(
+    (lines) => void Object.assign(lateMaking, lines),
+    () => void (lateMaking.lines = lateMaking.arrows = () => null), // pictures stay without
+  );
+  void linesComing.then(() => publisher.changed(true));
+  return Promise.race([linesComing, new Promise((done) => setTimeout(done, kPatienceMs))]);
 }
 
 function reply({id}: {id: number}, coming: Promise<Answer>): void {

@@ -130,7 +130,9 @@ export class ShownMesh {
   take(snapshot: Snapshot): void {
     // Other figures are newer than a picture that waited for a view.
     if (this.progress.statistics === kNoStatistics) this.progress.statistics = snapshot.statistics;
-    this.snapshot = snapshot;
+    const streamlines = snapshot.streamlines ?? this.snapshot?.streamlines;
+    const isCut = snapshot.streamlines === undefined && streamlines !== undefined;
+    this.snapshot = isCut ? {...snapshot, streamlines} : snapshot;
     this.derived?.fit(snapshot);
     if (!snapshot.surface) return; // a new cut of the same mesh
     this.hasMissing = [snapshot.surface, ...snapshot.cuts].some(({values}) =>

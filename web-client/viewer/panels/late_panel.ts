@@ -22,6 +22,7 @@ interface LateKind {
 class LatePanel implements Panel {
   private readonly place: HTMLElement;
   private readonly section: HTMLElement;
+  private coming: Promise<LateContent | null> | null = null;
   private content: LateContent | null = null;
   private isSeen = false;
   /** The words of the last update. */
@@ -61,9 +62,10 @@ class LatePanel implements Panel {
     if (isSeen === this.isSeen) return;
     this.isSeen = isSeen;
     if (isSeen && !this.content) {
-      const content = await this.kind.load(this.tools, this.place).catch(() => null);
-      if (!content) return void (this.isSeen = false);
-      this.content ??= content;
+      this.coming ??= this.kind.load(this.tools, this.place).catch(() => null);
+      const content = await this.coming;
+      if (!content) return void (this.coming = null); // the next time tries again
+      this.content = content;
       if (this.last) content.update?.(...this.last);
     }
     this.content?.see(this.isSeen);

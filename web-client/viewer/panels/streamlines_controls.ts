@@ -30,8 +30,8 @@ import type {PanelTools, Scene} from './panel';
 import styles from './streamlines.css?inline';
 import {chooseVectors, fillVectors} from './vector_menu';
 
-/** Digits of places that are written. */
-const kDigits = 6;
+/** Digits of places that are written. A georeferenced mesh has millions of metres. */
+const kDigits = 10;
 /** The first radius of a sphere, over the diagonal. */
 const kSphereShare = 0.12;
 /** The surface's opacity through which lines are seen well. */
@@ -193,7 +193,8 @@ export class StreamlinesControls implements LateContent {
     }
     if (first.kind !== 'plane') return;
     const [axis = '', share = '0.5'] = first.plane.split(':');
-    this.radio('seeds-axis', axis.replace('-', ''));
+    for (const radio of this.place.querySelectorAll<HTMLInputElement>('[name=seeds-axis]'))
+      radio.checked = radio.value === axis.replace('-', '');
     this.put('share', share);
   }
 
@@ -241,9 +242,11 @@ export class StreamlinesControls implements LateContent {
     const numbers = parseNumbers(this.input(`seeds-${name}`).value);
     if (name === 'count') return {...first, count: numbers[0] ?? 0};
     if (name === 'axis' || name === 'share') {
-      const axis = this.place.querySelector<HTMLInputElement>('[name=seeds-axis]:checked')!.value;
-      const plane = `${axis}:${this.input('seeds-share').value}`;
-      return first.kind === 'plane' ? {...first, plane} : null;
+      if (first.kind !== 'plane') return null;
+      const axis = this.place.querySelector<HTMLInputElement>('[name=seeds-axis]:checked')?.value;
+      const [direction = ''] = first.plane.split(':');
+      const share = this.input('seeds-share').value;
+      return {...first, plane: `${name === 'axis' ? axis : direction}:${share}`};
     }
     if (name === 'radius') return {...first, radius: numbers[0] ?? 0} as SeedsText;
     return numbers.length === 3 ? {...first, [name]: numbers} : null;
@@ -282,6 +285,7 @@ export class StreamlinesControls implements LateContent {
     on('pointerdown', ({clientX: x, clientY: y}) => (this.pressed = {x, y}));
     on('pointerup', (event) => {
       const {x, y} = this.pressed;
+      if (event.button !== 0 || !event.isPrimary) return;
       if (Math.hypot(event.clientX - x, event.clientY - y) > kClickPixels) return;
       this.pointer = [event.offsetX, event.offsetY];
       void this.ask(true);

@@ -14,6 +14,7 @@ import {kArrowComponents} from '../../core/layers/arrows_text';
 import {kLayerRules} from '../../core/layers/layer_rules';
 import {fieldLayers} from '../../core/layers/layers';
 import {partField, partFields, unknownParts} from '../../core/layers/parts_text';
+import {vectorField} from '../../core/layers/streamlines_text';
 import {kMagnitude} from '../../core/picture/field_scale';
 import {parseBeyond} from '../../core/picture/color_map_text';
 import {isColorMapName, kColorMapNames} from '../../core/picture/color_maps';
@@ -192,8 +193,8 @@ export function unfittingParts(read: Read, {fields, levels}: Manifest): string[]
   for (const [name, of, takes] of kTakes) {
     const text = read(name);
     const info = fields[parseScalar(text, fields)?.field ?? -1];
-    const isFit = info && takes.includes(info.components);
-    if (text === null || (isFit && (!of || info.association === 'point'))) continue;
+    const isFit = name === 'flux' ? info?.components === 3 : vectorField(text, fields, takes) >= 0;
+    if (text === null || isFit) continue;
     const counts = takes.length > 1 ? 'three or six' : 'three';
     sentences.push(
       info
