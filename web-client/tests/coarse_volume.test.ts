@@ -5,6 +5,7 @@ import {kPlainDisplay, type Display} from '../core/picture/display';
 import {parseFrame} from '../core/protocol/messages';
 import {kCoarseCells} from '../core/picture/volume';
 import {FakeCodec, fieldFrame, headFrame, kFakeValues, meshFrame, type FakeLog} from './fakes';
+import '../core/session/late_code'; // it makes volumes
 
 /** Each chunk brings one cell. */
 const kLog: FakeLog = {fields: ['p', 'v'], chunks: kCoarseCells + 100};

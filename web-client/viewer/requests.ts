@@ -53,12 +53,7 @@ export function displayOf(
     restEdges: settings.restEdges,
     volume: settings.volume !== null,
     flux: parseScalar(read('flux'), fields),
-    parts: lateRequests.parts?.(read, fields, mesh.selectedPart) ?? null,
-    arrows: lateRequests.arrows?.(read, fields) ?? null,
-    streamlines:
-      lateRequests.streamlines?.(read, mesh.manifest!, (plane) =>
-        planeOf(plane, mesh.base.bounds),
-      ) ?? null,
+    ...lateRequests.read?.(read, mesh),
     ...(ahead.length > 0 && {ahead}),
   };
   const used = [color?.field];

@@ -3,7 +3,6 @@
 import {kArrowWidth, type ArrowSoup, type ArrowsRequest} from '../picture/arrows';
 import {surfaceFaces} from '../picture/cell_surface';
 import {kMissing, type FieldScale} from '../picture/field_scale';
-import {isHole} from '../picture/neighbours';
 import {pointBounds} from '../picture/triangle_soup';
 import {dot, type Plane, type Vector} from '../protocol/geometry';
 import {cellsAt} from './cells_at';
@@ -11,6 +10,7 @@ import {principalAxes} from './principal_axes';
 import {planePlaces} from './seeds';
 import {placesOnFaces, type CellPlace} from './surface_places';
 import {VectorWalk, type Vectors, type WalkMesh} from './vector_walk';
+import {isHole} from '../picture/section';
 
 export interface ArrowsMesh extends WalkMesh {
   /** 3 vertices a triangle of the boundary. */

@@ -2,7 +2,7 @@
 // if a cell contains it.
 
 import type {Vector} from '../protocol/geometry';
-import {isHole} from './neighbours';
+import {isHole} from './section';
 
 type Corners = [Vector, Vector, Vector, Vector];
 

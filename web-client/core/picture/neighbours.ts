@@ -1,11 +1,8 @@
 // Finds each cell's neighbours: a line of sight passes from one to the next.
 
-const kNone = -1;
+import {isHole} from './section';
 
-/** A slot in the codec's arrays whose cell has not arrived yet. */
-export function isHole(tetrahedra: Uint32Array, cell: number): boolean {
-  return tetrahedra[4 * cell] === tetrahedra[4 * cell + 1];
-}
+const kNone = -1;
 
 /**
  * Four neighbours a cell, across the faces opposite to its corners; -1 if there is none. Holes have

@@ -1,7 +1,7 @@
 // How many cells the parts of a mesh have, and how much of its volume.
 
 import type {MeshArrays} from './display';
-import {isHole} from './neighbours';
+import {isHole} from './section';
 
 export interface PartCount {
   label: number;

@@ -17,6 +17,11 @@ export interface Cells {
   paint?: CellPaint | null;
 }
 
+/** A slot in the codec's arrays whose cell has not arrived yet. */
+export function isHole(tetrahedra: Uint32Array, cell: number): boolean {
+  return tetrahedra[4 * cell] === tetrahedra[4 * cell + 1];
+}
+
 /** How cells are drawn. */
 export interface CellPaint {
   /** From 0 to 65535; null: all are alike. Between two kinds the side of the higher is drawn. */

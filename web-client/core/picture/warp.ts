@@ -2,8 +2,7 @@
 
 import type {FieldInfo} from '../protocol/fields';
 import {kMissing} from './field_scale';
-import {isHole} from './neighbours';
-import type {Cells} from './section';
+import {isHole, type Cells} from './section';
 
 /** A point field of three components, and the factor of its vectors; 1 is the true size. */
 export interface Warp {

@@ -4,8 +4,9 @@
 import type {Assembler} from '../decode/assembler';
 import {fieldsOf, hidingKey, keptCells} from '../layers/shown';
 import {colorScale, type Display} from '../picture/display';
+import {lateMaking} from '../picture/late_making';
 import {meshArrays} from '../picture/mesh_arrays';
-import {kCoarseCells, volumeCells, type CoarseCells, type VolumeCells} from '../picture/volume';
+import {kCoarseCells, type CoarseCells, type VolumeCells} from '../picture/volume';
 import type {Frame} from '../protocol/messages';
 
 export class CoarseVolume {
@@ -68,7 +69,8 @@ export class CoarseVolume {
     while (assembler.step(fields, hasRoom())) continue;
     const mesh = meshArrays(assembler, display);
     const scale = mesh && colorScale(mesh, display);
-    if (!mesh || !scale) throw new Error('there are no values yet');
-    return volumeCells(mesh, scale, keptCells(mesh, display));
+    const cells = mesh && scale && lateMaking.volume?.(mesh, scale, keptCells(mesh, display));
+    if (!cells) throw new Error('there are no values yet');
+    return cells;
   }
 }

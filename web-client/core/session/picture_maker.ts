@@ -19,7 +19,6 @@ import {meshArrays} from '../picture/mesh_arrays';
 import {amountsOf, middleOf} from '../picture/spread';
 import {lateMaking} from '../picture/late_making';
 import {noSoup, pointBounds, type CreasesOf} from '../picture/triangle_soup';
-import {volumeCells} from '../picture/volume';
 import type {Warp} from '../picture/warp';
 import type {FieldInfo} from '../protocol/fields';
 import {KeptCreases} from './kept_creases';
@@ -90,7 +89,7 @@ export class PictureMaker {
     return {
       surface: hasSurface ? surfaceOf(mesh, display, kept, creasesOf) : noSoup(),
       ...layerSoups(mesh, display, kept),
-      volume: scale ? volumeCells(mesh, scale, kept) : null,
+      volume: (scale ? lateMaking.volume?.(mesh, scale, kept) : null) ?? null,
       streamlines: lateMaking.lines?.(this.assembler, {...mesh, kept}, display) ?? null,
     };
   }

@@ -5,11 +5,9 @@ import {WasmCodec} from '../decode/codec';
 import {kDraco} from '../decode/draco';
 import {isForbidden, decoderFailure} from '../protocol/wasm_policy';
 import {fieldsOf} from '../layers/shown';
-import {partCells} from '../layers/parts';
 import {derivation} from '../picture/derivation';
 import type {DerivedFields} from '../picture/derived_field';
 import type {Display} from '../picture/display';
-import {lateMaking} from '../picture/late_making';
 import {buffersOfVolume, type CoarseCells} from '../picture/volume';
 import {retry} from '../transport/retry';
 import {CoarseVolume} from './coarse_volume';
@@ -35,6 +33,8 @@ declare global {
 
 let parts: Parts;
 let run: number | undefined;
+/** The code for parts, lines, arrows and volumes is here, or did not come. */
+let hasLateCode = false;
 /** The page's last wish. */
 let last: Display | null = null;
 
@@ -114,10 +114,8 @@ async function compile(url: string): Promise<WebAssembly.Module> {
   return WebAssembly.compile(await response.arrayBuffer());
 }
 
-function obey(
-  {session, publisher, coarse, ...its}: Parts,
-  message: Exclude<ToWorker, {type: 'load'}>,
-): void {
+function obey(all: Parts, message: Exclude<ToWorker, {type: 'load'}>): void {
+  const {session, publisher, coarse} = all;
   // The inspector answers all others, as the type of `answer` checks.
   // eslint-disable-next-line @typescript-eslint/switch-exhaustiveness-check
   switch (message.type) {
@@ -126,12 +124,16 @@ function obey(
       return session.start(message.source);
     case 'display': {
       ({display: last} = message);
-      const coming = missingFor(last, publisher);
-      if (coming)
-        return void coming.then(
-          () => obey({session, publisher, coarse, ...its}, {type: 'display', display: last!}),
-          fail,
-        );
+      const {parts: its, streamlines, arrows, volume} = last;
+      if ((its || volume || streamlines || arrows) && !hasLateCode) {
+        const of = run;
+        const again = (): void => {
+          hasLateCode = true;
+          if (of === run) obey(all, {type: 'display', display: last!});
+        };
+        // without lines and arrows a picture says nothing wrong
+        return void retry(() => import('./late_code')).then(again, its || volume ? fail : again);
+      }
       publisher.show(last);
       return session.want(fieldsOf(last), last.ahead);
     }
@@ -146,9 +148,9 @@ function obey(
     case 'repeat':
       return publisher.repeat();
     case 'derive':
-      return reply(message, its.derive(message.text));
+      return reply(message, all.derive(message.text));
     case 'digest':
-      return reply(message, its.digest());
+      return reply(message, all.digest());
     case 'coarse': {
       const {id, have} = message;
       const send = (answer: CoarseCells | null): void =>
@@ -158,31 +160,8 @@ function obey(
       return void coarse.cells(have, publisher.now).then(send, () => send(null));
     }
     default:
-      return reply(message, its.answer(message));
+      return reply(message, all.answer(message));
   }
-}
-
-/** The code that makes lines and arrows. */
-let linesComing: Promise<void> | null = null;
-/** A picture waits for it so long; then lines and arrows follow it. */
-const kPatienceMs = 3000;
-
-/** Loads the code that the display needs and that is not here; null: all is. */
-function missingFor(
-  {parts: its, streamlines, arrows}: Display,
-  publisher: Publisher,
-): Promise<unknown> | null {
-  if (its && !partCells.paint)
-    return retry(() => import('../layers/part_cells')).then((cells) =>
-      Object.assign(partCells, cells),
-    );
-  if (!(streamlines || arrows) || lateMaking.lines || linesComing) return null;
-  linesComing = retry(() => import('../lines/shown_lines')).then(
-    (lines) => void Object.assign(lateMaking, lines),
-    () => void (lateMaking.lines = lateMaking.arrows = () => null), // pictures stay without
-  );
-  void linesComing.then(() => publisher.changed(true));
-  return Promise.race([linesComing, new Promise((done) => setTimeout(done, kPatienceMs))]);
 }
 
 function reply({id}: {id: number}, coming: Promise<Answer>): void {

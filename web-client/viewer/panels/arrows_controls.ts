@@ -11,6 +11,7 @@ import {
 import type {ArrowsRequest} from '../../core/picture/arrows';
 import {find, setText} from '../page/find';
 import {formatCount, formatFactor} from '../page/format';
+import {readLate} from '../page/late_readers';
 import {lateRequests} from '../page/late_requests';
 import {setMarkup} from '../page/trusted';
 import type {Settings} from '../settings/settings';
@@ -60,7 +61,7 @@ export class ArrowsControls implements LateContent {
     private readonly place: HTMLElement,
   ) {
     const {page} = tools;
-    lateRequests.arrows = readArrows;
+    lateRequests.read = readLate;
     setMarkup(place, kMarkup);
     this.on = find(place, 'input[name=arrows]');
     this.on.addEventListener('change', () =>

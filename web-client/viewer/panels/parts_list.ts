@@ -7,7 +7,6 @@ import {
   partField,
   partFields,
   partsTexts,
-  readParts,
   readState,
   type PartsState,
 } from '../../core/layers/parts_text';
@@ -19,6 +18,7 @@ import type {PartCount} from '../../core/picture/part_counts';
 import type {FieldInfo} from '../../core/protocol/fields';
 import {find, onClick, setAttribute, setText} from '../page/find';
 import {formatCount} from '../page/format';
+import {readLate} from '../page/late_readers';
 import {lateRequests} from '../page/late_requests';
 import {adopt, setMarkup} from '../page/trusted';
 import {fillSelect} from '../page/select';
@@ -106,7 +106,7 @@ export class PartsList implements LateContent {
     private readonly place: HTMLElement,
   ) {
     const {page, signal} = tools;
-    lateRequests.parts = readParts;
+    lateRequests.read = readLate;
     adopt(page.root, styles);
     setMarkup(place, kMarkup);
     this.rows = find(place, '.part-rows');

@@ -9,7 +9,6 @@ import {
   kMostLines,
   vectorField,
   parseSeeds,
-  readStreamlines,
   seedsText,
   type SeedsText,
 } from '../../core/layers/streamlines_text';
@@ -19,6 +18,7 @@ import {errorsOfLevel} from '../../core/protocol/limit';
 import {positionOf, type Vector} from '../../core/protocol/geometry';
 import {find, onClick, setText} from '../page/find';
 import {formatCount, formatError} from '../page/format';
+import {readLate} from '../page/late_readers';
 import {lateRequests} from '../page/late_requests';
 import {fillSelect} from '../page/select';
 import {adopt, setMarkup} from '../page/trusted';
@@ -97,7 +97,7 @@ export class StreamlinesControls implements LateContent {
     private readonly place: HTMLElement,
   ) {
     const {page, signal} = tools;
-    lateRequests.streamlines = readStreamlines;
+    lateRequests.read = readLate;
     adopt(page.root, styles);
     setMarkup(place, kMarkup);
     this.marks = find<SVGSVGElement>(page.root, '.marks').cloneNode() as SVGSVGElement;
