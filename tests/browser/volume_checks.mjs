@@ -319,10 +319,8 @@ async function drawsFewCellsOfANewVolumeFirst({server, browser}) {
   await viewer.waitForState('complete');
   await viewer.waitForPicture();
   await viewer.inView(({scene}) => {
-    const {loadVolume} = scene;
-    scene.loadVolume = async () => {
-      const loaded = await loadVolume.call(scene);
-      const {drawer} = scene.volume;
+    const {awaits} = scene;
+    const watch = ({drawer}) => {
       for (const way of ['drawAtOnce', 'drawStrips']) {
         const draw = drawer[way];
         drawer[way] = async (picture, its, ...words) => {
@@ -332,7 +330,14 @@ async function drawsFewCellsOfANewVolumeFirst({server, browser}) {
           return done;
         };
       }
-      return loaded;
+    };
+    scene.awaits = (snapshot) => {
+      const isNew = !scene.volume;
+      const coming = awaits.call(scene, snapshot);
+      return coming?.then((its) => {
+        if (isNew && scene.volume) watch(scene.volume);
+        return its;
+      });
     };
   });
   const seen = [];
