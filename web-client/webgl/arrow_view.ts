@@ -12,8 +12,9 @@ const kHeadRadius = 0.1;
 const kHeadLength = 0.32;
 /** It is seen on most colours of maps. */
 const kPlain = [0.97, 0.97, 0.98];
-/** Round enough at the size of an arrow. */
-const kSides = 9;
+/** Round enough at the size of an arrow; many arrows are small. */
+const kSides = [9, 4] as const;
+const kManyArrows = 5000;
 
 const kVertexShader = /* glsl */ `precision highp float;
   uniform mat4 modelViewMatrix;
@@ -49,16 +50,16 @@ ${kColorShader}
   }`;
 
 /** Place and normal of each corner, 6 numbers. */
-function shape(): Float32Array {
+function shape(sides: number): Float32Array<ArrayBuffer> {
   const corners: number[] = [];
   const at = (i: number): [number, number] => {
-    const turn = (2 * Math.PI * i) / kSides;
+    const turn = (2 * Math.PI * i) / sides;
     return [Math.cos(turn), Math.sin(turn)];
   };
   const foot = 1 - kHeadLength;
   const slope = Math.hypot(kHeadRadius, kHeadLength);
   const [out, up] = [kHeadLength / slope, kHeadRadius / slope];
-  for (let i = 0; i < kSides; ++i) {
+  for (let i = 0; i < sides; ++i) {
     const [[a, b], [c, d]] = [at(i), at(i + 1)];
     const [x, y] = at(i + 0.5);
     const corner = (
@@ -104,7 +105,7 @@ export class ArrowView {
   private soup: ArrowSoup | null = null;
   private readonly program: Program;
   private readonly made: Made<Buffers>;
-  private readonly shape = shape();
+  private shape = new Float32Array(0);
 
   constructor(private readonly graphics: Graphics) {
     const {gl} = graphics;
@@ -122,6 +123,7 @@ export class ArrowView {
 
   show(soup: ArrowSoup | null): void {
     this.soup = soup;
+    this.shape = shape(kSides[Number((soup?.count ?? 0) > kManyArrows)]!);
     this.made.dispose();
   }
 

@@ -34,8 +34,10 @@ export interface Shown {
 
 /** More are no picture any more, and graphics draw so many smoothly. */
 export const kMostArrows = 20_000;
-/** Places inside that are looked for: a tenth of a second of work. */
+/** Points of the grid over the mesh's box. */
 const kMostPlaces = 100_000;
+/** More than there are points of a grid along an axis. */
+const kGrid = 4096;
 /** Logarithmic lengths span so many decades. */
 const kDecades = 3;
 const kTensorComponents = 6;
@@ -121,7 +123,7 @@ export class Arrows {
       case 'shown':
         return this.shownPlaces(shown);
       case 'volume':
-        return this.inside(this.grid());
+        return this.gridPlaces();
       case 'vertices':
         return this.vertices();
     }
@@ -153,31 +155,52 @@ export class Arrows {
     });
   }
 
-  /** Every other layer lies between the places of the last. */
-  private grid(): Vector[] {
-    const {box} = this;
-    const countWith = (spacing: number): number[] =>
-      [0, 1, 2].map((axis) => Math.floor((box[axis + 3]! - box[axis]!) / spacing) + 1);
-    let counts = countWith(this.spacing);
-    while (counts.reduce((all, count) => all * count) > kMostPlaces) {
+  /**
+   * The points of a grid that lie in cells. Each cell looks at the points in its box: there are far
+   * fewer than cells.
+   */
+  private gridPlaces(): CellPlace[] {
+    const {box, mesh, walk} = this;
+    const pointsIn = (spacing: number): number =>
+      [0, 1, 2].reduce((all, i) => all * (1 + (box[i + 3]! - box[i]!) / spacing), 1);
+    while (pointsIn(this.spacing) > kMostPlaces) {
       this.spacing *= 1.25;
       this.isCut = true;
-      counts = countWith(this.spacing);
     }
+    const found = new Map<number, CellPlace>();
+    const [low, high] = [
+      [0, 0, 0],
+      [0, 0, 0],
+    ];
+    for (let cell = 0; cell < mesh.tetrahedra.length / 4; ++cell) {
+      if (mesh.kept?.[cell] === 0 || isHole(mesh.tetrahedra, cell)) continue;
+      boxOf(mesh, cell, low, high);
+      this.eachInBox(low, high, (key, place) => {
+        if (!found.has(key) && walk.holds(cell, place)) found.set(key, {cell, place});
+      });
+    }
+    return [...found.keys()].sort((p, q) => p - q).map((key) => found.get(key)!);
+  }
+
+  /** Every other layer of the grid lies between the places of the last. */
+  private eachInBox(
+    low: readonly number[],
+    high: readonly number[],
+    use: (key: number, place: Vector) => void,
+  ): void {
     const {spacing} = this;
-    const first = [0, 1, 2].map((axis) => Math.ceil(box[axis]! / spacing));
-    const places: Vector[] = [];
-    for (let z = 0; z < counts[2]!; ++z)
-      for (let y = 0; y < counts[1]!; ++y)
-        for (let x = 0; x < counts[0]!; ++x) {
-          const aside = (first[2]! + z) & 1 ? 0.5 : 0;
-          places.push([
-            (first[0]! + x + aside) * spacing,
-            (first[1]! + y + aside) * spacing,
-            (first[2]! + z) * spacing,
-          ]);
-        }
-    return places;
+    for (let z = Math.ceil(low[2]! / spacing); z * spacing <= high[2]!; ++z) {
+      const aside = z & 1 ? 0.5 : 0;
+      const fromX = Math.ceil(low[0]! / spacing - aside);
+      const fromY = Math.ceil(low[1]! / spacing - aside);
+      const columns = Math.floor(high[0]! / spacing - aside) - fromX + 1;
+      const count = columns * Math.max(0, Math.floor(high[1]! / spacing - aside) - fromY + 1);
+      for (let i = 0; i < count; ++i) {
+        const [x, y] = [fromX + (i % columns), fromY + Math.floor(i / columns)];
+        const place: Vector = [(x + aside) * spacing, (y + aside) * spacing, z * spacing];
+        use((z * kGrid + y) * kGrid + x, place);
+      }
+    }
   }
 
   private vertices(): CellPlace[] {
@@ -213,6 +236,19 @@ export class Arrows {
     if (!(its >= kLeastLength)) return null;
     const factor = (share * its * request.size * spacing) / length;
     return direction.map((x) => x * factor) as Vector;
+  }
+}
+
+function boxOf({points, tetrahedra}: WalkMesh, cell: number, low: number[], high: number[]): void {
+  const a = 3 * tetrahedra[4 * cell]!;
+  const b = 3 * tetrahedra[4 * cell + 1]!;
+  const c = 3 * tetrahedra[4 * cell + 2]!;
+  const d = 3 * tetrahedra[4 * cell + 3]!;
+  for (let axis = 0; axis < 3; ++axis) {
+    const [p, q] = [points[a + axis]!, points[b + axis]!];
+    const [r, s] = [points[c + axis]!, points[d + axis]!];
+    low[axis] = Math.min(p, q, r, s);
+    high[axis] = Math.max(p, q, r, s);
   }
 }
 
