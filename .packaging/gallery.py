@@ -54,6 +54,11 @@ SAMPLES = (
             ("Moving dashes from a plane", {"streamlines": "Velocity", "field": "Velocity",
                                             "seeds": "plane x:0.05 8", "opacity": "0.1",
                                             "edges": "off", "streamline-look": "dashes"}),
+            (
+                "Kept points and a kept line",
+                {"points": "Inlet: -2,0,0; Bend: 1,0.4,0; Outlet: 1.4,3,0",
+                 "lines": "Across: 1,-0.3,0 1,0.9,0", "field": "Velocity", "clip": "z:0.5"},
+            ),
             ("Pressure on the wall", {"field": "Pressure", "clip": "none"}),
         ),
     ),
