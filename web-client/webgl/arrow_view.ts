@@ -2,8 +2,9 @@
 
 import {kArrowWidth, type ArrowSoup} from '../core/picture/arrows';
 import {kColorShader} from './field_shaders';
-import {Made, type Graphics} from './gl/graphics';
+import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
+import {VertexArrays} from './gl/vertex_arrays';
 import type {Eye} from './lens';
 
 /** Shares of the length of the shape. */
@@ -50,7 +51,7 @@ ${kColorShader}
   }`;
 
 /** Place and normal of each corner, 6 numbers. */
-function shape(sides: number): Float32Array<ArrayBuffer> {
+function shape(sides: number): Float32Array {
   const corners: number[] = [];
   const at = (i: number): [number, number] => {
     const turn = (2 * Math.PI * i) / sides;
@@ -92,39 +93,28 @@ function shape(sides: number): Float32Array<ArrayBuffer> {
   return Float32Array.from(corners);
 }
 
-/** Numbers of the attributes of a corner of the shape, and of an arrow. */
-const kAttributes = {place: 3, normal: 3, tail: 3, way: 3, value: 1};
+/** Those of a corner of the shape, and of an arrow. */
+const kAttributes = ['place', 'normal', 'tail', 'way', 'value'];
 const kShapeWidth = 6;
-
-interface Buffers {
-  vertices: WebGLVertexArrayObject;
-  buffers: WebGLBuffer[];
-}
 
 export class ArrowView {
   private soup: ArrowSoup | null = null;
   private readonly program: Program;
-  private readonly made: Made<Buffers>;
-  private shape = new Float32Array(0);
+  private readonly arrays: VertexArrays;
+  private shape: Float32Array = new Float32Array(0);
 
   constructor(private readonly graphics: Graphics) {
-    const {gl} = graphics;
-    const names = Object.keys(kAttributes);
-    this.program = new Program(graphics, kVertexShader, kFragmentShader, names);
-    this.made = new Made(
-      graphics,
-      () => this.upload(),
-      ({vertices, buffers}) => {
-        gl.deleteVertexArray(vertices);
-        for (const buffer of buffers) gl.deleteBuffer(buffer);
-      },
-    );
+    this.program = new Program(graphics, kVertexShader, kFragmentShader, kAttributes);
+    this.arrays = new VertexArrays(graphics, () => [
+      {data: this.shape, sizes: [3, 3], stride: kShapeWidth, ofInstances: false},
+      {data: this.soup!.arrows, sizes: [3, 3, 1], stride: kArrowWidth, ofInstances: true},
+    ]);
   }
 
   show(soup: ArrowSoup | null): void {
     this.soup = soup;
     this.shape = shape(kSides[Number((soup?.count ?? 0) > kManyArrows)]!);
-    this.made.dispose();
+    this.arrays.dispose();
   }
 
   /** `look` has the uniforms of all that is coloured. */
@@ -139,36 +129,11 @@ export class ArrowView {
       modelViewMatrix: toEye,
       projectionMatrix: toCube,
     });
-    gl.bindVertexArray(this.made.get().vertices);
-    gl.drawArraysInstanced(gl.TRIANGLES, 0, this.shape.length / kShapeWidth, count);
-    gl.bindVertexArray(null);
+    this.arrays.draw(gl.TRIANGLES, this.shape.length / kShapeWidth, count);
   }
 
   dispose(): void {
-    this.made.dispose();
+    this.arrays.dispose();
     this.program.dispose();
-  }
-
-  private upload(): Buffers {
-    const {gl} = this.graphics;
-    const vertices = gl.createVertexArray();
-    gl.bindVertexArray(vertices);
-    const buffers = [
-      {data: this.shape, width: kShapeWidth, from: 0, divisor: 0},
-      {data: this.soup!.arrows, width: kArrowWidth, from: 2, divisor: 1},
-    ].map(({data, width, from, divisor}) => {
-      const buffer = gl.createBuffer();
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
-      const sizes = Object.values(kAttributes).slice(from);
-      for (let i = 0, at = 0; at < width; at += sizes[i]!, ++i) {
-        gl.enableVertexAttribArray(from + i);
-        gl.vertexAttribPointer(from + i, sizes[i]!, gl.FLOAT, false, 4 * width, 4 * at);
-        gl.vertexAttribDivisor(from + i, divisor);
-      }
-      return buffer;
-    });
-    gl.bindVertexArray(null);
-    return {vertices, buffers};
   }
 }

@@ -3,8 +3,9 @@
 
 import {kLineWidth, type LineSoup} from '../core/picture/streamlines';
 import {kColorShader} from './field_shaders';
-import {Made, type Graphics} from './gl/graphics';
+import type {Graphics} from './gl/graphics';
 import {Program, type Uniform} from './gl/program';
+import {VertexArrays} from './gl/vertex_arrays';
 import type {Eye} from './lens';
 
 /** The radius of a tube over the diagonal of the mesh's box. */
@@ -92,7 +93,6 @@ ${kColorShader}
 
 /** In the order of kLineWidth: those of one point follow those of the last. */
 const kAttributes = ['from', 'fromMore', 'to', 'toMore'];
-const kBytes = 4 * kLineWidth;
 
 export interface FlowLook {
   /** A LinesLook. */
@@ -103,29 +103,19 @@ export interface FlowLook {
   pixelRatio: number;
 }
 
-interface Buffers {
-  vertices: WebGLVertexArrayObject;
-  buffer: WebGLBuffer;
-}
-
 export class FlowLines {
   private soup: LineSoup | null = null;
   /** The share of a period that has passed. Dashes at rest, and in tiles of a picture, stay. */
   private clock = 0;
   private readonly program: Program;
-  private readonly made: Made<Buffers>;
+  private readonly arrays: VertexArrays;
 
   constructor(private readonly graphics: Graphics) {
-    const {gl} = graphics;
     this.program = new Program(graphics, kVertexShader, kFragmentShader, kAttributes);
-    this.made = new Made(
-      graphics,
-      () => this.upload(),
-      ({vertices, buffer}) => {
-        gl.deleteVertexArray(vertices);
-        gl.deleteBuffer(buffer);
-      },
-    );
+    this.arrays = new VertexArrays(graphics, () => [
+      // the numbers of a point follow those of the last one
+      {data: this.soup!.points, sizes: [3, 3, 3, 3], stride: kLineWidth, ofInstances: true},
+    ]);
   }
 
   /** Dashes are where they should be now. */
@@ -139,7 +129,7 @@ export class FlowLines {
 
   show(soup: LineSoup | null): void {
     this.soup = soup;
-    this.made.dispose();
+    this.arrays.dispose();
   }
 
   /** `look` has the uniforms of all that is coloured. */
@@ -165,29 +155,11 @@ export class FlowLines {
       period: kind === 'dashes' ? kPeriodShare * soup.crossing : 0,
       clock: this.clock,
     });
-    gl.bindVertexArray(this.made.get().vertices);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, segments);
-    gl.bindVertexArray(null);
+    this.arrays.draw(gl.TRIANGLE_STRIP, 4, segments);
   }
 
   dispose(): void {
-    this.made.dispose();
+    this.arrays.dispose();
     this.program.dispose();
-  }
-
-  private upload(): Buffers {
-    const {gl} = this.graphics;
-    const vertices = gl.createVertexArray();
-    const buffer = gl.createBuffer();
-    gl.bindVertexArray(vertices);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, this.soup!.points, gl.STATIC_DRAW);
-    for (const at of kAttributes.keys()) {
-      gl.enableVertexAttribArray(at);
-      gl.vertexAttribPointer(at, 3, gl.FLOAT, false, kBytes, 12 * at);
-      gl.vertexAttribDivisor(at, 1);
-    }
-    gl.bindVertexArray(null);
-    return {vertices, buffer};
   }
 }

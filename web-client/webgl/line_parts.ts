@@ -1,8 +1,9 @@
 // Lines of even width, with a rim that sets them off from what lies behind. The ground and the
 // colours of a mesh may both be light or dark.
 
-import {Made, type Graphics} from './gl/graphics';
+import type {Graphics} from './gl/graphics';
 import {Program} from './gl/program';
+import {VertexArrays} from './gl/vertex_arrays';
 import type {Eye} from './lens';
 
 /** In pixels of the canvas, across. */
@@ -51,11 +52,6 @@ const kFragmentShader = /* glsl */ `precision highp float;
     fragColor = color;
   }`;
 
-interface Buffers {
-  vertices: WebGLVertexArrayObject;
-  buffer: WebGLBuffer;
-}
-
 export interface LineLook {
   onDark: boolean;
   opacity: number;
@@ -67,25 +63,19 @@ export class LineParts {
   /** 6 lattice coordinates a line. */
   lines: Float32Array = new Float32Array(0);
   private readonly program: Program;
-  private readonly made: Made<Buffers>;
+  private readonly arrays: VertexArrays;
 
   constructor(private readonly graphics: Graphics) {
-    const {gl} = graphics;
     this.program = new Program(graphics, kVertexShader, kFragmentShader, ['from', 'to']);
-    this.made = new Made(
-      graphics,
-      () => this.upload(),
-      ({vertices, buffer}) => {
-        gl.deleteVertexArray(vertices);
-        gl.deleteBuffer(buffer);
-      },
-    );
+    this.arrays = new VertexArrays(graphics, () => [
+      {data: this.lines, sizes: [3, 3], stride: 6, ofInstances: true},
+    ]);
   }
 
   /** Null: none. */
   show(lines: Float32Array | null): void {
     this.lines = lines ?? new Float32Array(0);
-    this.made.dispose();
+    this.arrays.dispose();
   }
 
   /** All rims come first, so that none lies over a line. */
@@ -105,30 +95,12 @@ export class LineParts {
         width: width * pixelRatio,
         color,
       });
-      gl.bindVertexArray(this.made.get().vertices);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.lines.length / 6);
-      gl.bindVertexArray(null);
+      this.arrays.draw(gl.TRIANGLE_STRIP, 4, this.lines.length / 6);
     }
   }
 
   dispose(): void {
-    this.made.dispose();
+    this.arrays.dispose();
     this.program.dispose();
-  }
-
-  private upload(): Buffers {
-    const {gl} = this.graphics;
-    const vertices = gl.createVertexArray();
-    const buffer = gl.createBuffer();
-    gl.bindVertexArray(vertices);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, this.lines, gl.STATIC_DRAW);
-    for (const end of [0, 1]) {
-      gl.enableVertexAttribArray(end);
-      gl.vertexAttribPointer(end, 3, gl.FLOAT, false, 24, 12 * end);
-      gl.vertexAttribDivisor(end, 1);
-    }
-    gl.bindVertexArray(null);
-    return {vertices, buffer};
   }
 }

@@ -4,7 +4,7 @@
 import {kMagnitude} from '../picture/field_scale';
 import type {LineInstant, LineLimits, Seeds, StreamlinesRequest} from '../picture/streamlines';
 import type {FieldInfo} from '../protocol/fields';
-import type {Plane, Vector} from '../protocol/geometry';
+import {placeOf, type Plane, type Vector} from '../protocol/geometry';
 import type {Manifest} from '../protocol/manifest';
 import {parseClip, type ClipSetting} from './clip';
 import {fieldOfKey, parseNumbers, scalarText} from './field_values';
@@ -149,8 +149,7 @@ export function readStreamlines(
   const {fields, lattice} = manifest;
   const field = vectorField(read('streamlines'), fields);
   if (field < 0) return null;
-  const onLattice = (place: Vector): Vector =>
-    place.map((x, axis) => (x - lattice.origin[axis]!) / lattice.step) as Vector;
+  const onLattice = (place: Vector): Vector => placeOf(lattice, place);
   const seeds = (parseSeeds(read('seeds') ?? kFirstSeeds) ?? parseSeeds(kFirstSeeds)!).map(
     (its): Seeds => {
       switch (its.kind) {

@@ -4,7 +4,7 @@ import {kArrowWidth, type ArrowSoup, type ArrowsRequest} from '../picture/arrows
 import {surfaceFaces} from '../picture/cell_surface';
 import {kMissing, type FieldScale} from '../picture/field_scale';
 import {pointBounds} from '../picture/triangle_soup';
-import {dot, type Plane, type Vector} from '../protocol/geometry';
+import {dot, sidesOf, type Plane, type Vector} from '../protocol/geometry';
 import {cellsAt} from './cells_at';
 import {principalAxes} from './principal_axes';
 import {planePlaces} from './seeds';
@@ -66,8 +66,7 @@ export class Arrows {
     this.longest = range[1];
     // a warp may make the mesh larger
     this.box = pointBounds(mesh.points, mesh.boundary);
-    const sides = [0, 1, 2].map((axis) => this.box[axis + 3]! - this.box[axis]!);
-    this.spacing = Math.max(mesh.longest, ...sides) / request.density;
+    this.spacing = Math.max(mesh.longest, ...sidesOf(this.box)) / request.density;
   }
 
   /** `scale` colours; null: they are plain. */
@@ -162,7 +161,7 @@ export class Arrows {
   private gridPlaces(): CellPlace[] {
     const {box, mesh, walk} = this;
     const pointsIn = (spacing: number): number =>
-      [0, 1, 2].reduce((all, i) => all * (1 + (box[i + 3]! - box[i]!) / spacing), 1);
+      sidesOf(box).reduce((all, side) => all * (1 + side / spacing), 1);
     while (pointsIn(this.spacing) > kMostPlaces) {
       this.spacing *= 1.25;
       this.isCut = true;

@@ -2,7 +2,7 @@
 // one is near. The distance shrinks until there are enough.
 
 import {kLineWidth} from '../picture/streamlines';
-import type {Vector} from '../protocol/geometry';
+import {sidesOf, type Vector} from '../protocol/geometry';
 import type {Box} from './seeds';
 
 /** Distances over the diagonal of the box: 1 / 3, and each time 1 / sqrt(2) of it. */
@@ -20,7 +20,7 @@ class TakenBoxes {
     private readonly box: Box,
     private readonly size: number,
   ) {
-    this.counts = [0, 1, 2].map((axis) => Math.floor((box[axis + 3]! - box[axis]!) / size) + 3);
+    this.counts = sidesOf(box).map((side) => Math.floor(side / size) + 3);
     const [x, y, z] = this.counts;
     this.taken = new Uint8Array(x! * y! * z!);
     this.around = Array.from({length: 27}, (_, i) => {
@@ -64,7 +64,7 @@ export function chooseEven(
   count: number,
   trace: (place: number) => Float32Array | null,
 ): void {
-  const diagonal = Math.hypot(...[0, 1, 2].map((i) => box[i + 3]! - box[i]!));
+  const diagonal = Math.hypot(...sidesOf(box));
   const all = Array.from({length: kDistances}, (_, k) => {
     const size = Math.max(1, diagonal / (kFirstShare * Math.SQRT2 ** k));
     return new TakenBoxes(box, size);

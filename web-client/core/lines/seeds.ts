@@ -1,8 +1,9 @@
 // The places from which lines begin. They are fixed in space, so that a line stays where it is
 // while the mesh refines, and while time plays.
 
+import {sideways} from '../picture/cell_ray';
 import type {Seeds} from '../picture/streamlines';
-import type {Vector} from '../protocol/geometry';
+import {sidesOf, type Vector} from '../protocol/geometry';
 
 /** [x0, y0, z0, x1, y1, z1], on the lattice. */
 export type Box = readonly number[];
@@ -41,7 +42,7 @@ export function placesOf(
 }
 
 function rounded(box: Box): number[] {
-  const unit = Math.max(1, kBoxShare * Math.max(...[0, 1, 2].map((i) => box[i + 3]! - box[i]!)));
+  const unit = Math.max(1, kBoxShare * Math.max(...sidesOf(box)));
   return box.map((x, i) => unit * (i < 3 ? Math.floor(x / unit) : Math.ceil(x / unit)));
 }
 
@@ -74,11 +75,7 @@ function onPlane(
       const steps = Math.max(1, Math.round((to - from) / side));
       return Array.from({length: steps}, (_, i) => from + ((i + 0.5) / steps) * (to - from));
     }) as [number[], number[]];
-    return vs.flatMap((b) =>
-      us.map(
-        (a) => normal.map((n, i) => offset * n + a * across[0][i]! + b * across[1][i]!) as Vector,
-      ),
-    );
+    return placesAt({normal, offset}, across, us, vs);
   };
   const probes = grid(cornersOf(box), kProbesAlong);
   const are = isIn(probes);
@@ -99,12 +96,19 @@ export function planePlaces(
     const count = Math.max(0, Math.floor(to / spacing) - first + 1);
     return Array.from({length: count}, (_, i) => (first + i) * spacing);
   }) as [number[], number[]];
-  return vs.flatMap((b) =>
-    us.map(
-      (a) => normal.map((n, i) => offset * n + a * across[0][i]! + b * across[1][i]!) as Vector,
-    ),
-  );
+  return placesAt({normal, offset}, across, us, vs);
 }
+
+/** The places of a plane at these numbers along two directions. */
+const placesAt = (
+  {normal, offset}: {normal: readonly number[]; offset: number},
+  [u, v]: readonly [Vector, Vector],
+  us: readonly number[],
+  vs: readonly number[],
+): Vector[] =>
+  vs.flatMap((b) =>
+    us.map((a) => normal.map((n, i) => offset * n + a * u[i]! + b * v[i]!) as Vector),
+  );
 
 const cornersOf = (box: Box): Vector[] =>
   Array.from(
@@ -112,20 +116,9 @@ const cornersOf = (box: Box): Vector[] =>
     (_, i) => [0, 1, 2].map((axis) => box[axis + ((i >> axis) & 1) * 3]!) as Vector,
   );
 
-/** Two directions across a unit vector, and across each other. */
-function acrossOf(normal: Vector): [Vector, Vector] {
-  const least = [0, 1, 2].reduce((best, axis) =>
-    Math.abs(normal[axis]!) < Math.abs(normal[best]!) ? axis : best,
-  );
-  const share = normal[least]!;
-  const raw = normal.map((x, axis) => Number(axis === least) - share * x) as Vector;
-  const u = raw.map((x) => x / Math.hypot(...raw)) as Vector;
-  const v = [1, 2, 0].map((i) => {
-    const k = (i + 1) % 3;
-    return normal[i]! * u[k]! - normal[k]! * u[i]!;
-  }) as Vector;
-  return [u, v];
-}
+/** Two directions of length 1 across another one, and across each other. */
+const acrossOf = (normal: Vector): [Vector, Vector] =>
+  sideways(normal).map((its) => its.map((x) => x / Math.hypot(...its))) as [Vector, Vector];
 
 function extentOf(corners: readonly Vector[], direction: Vector): [number, number] {
   const at = corners.map((corner) => corner.reduce((sum, x, i) => sum + x * direction[i]!, 0));

@@ -3,7 +3,7 @@
 import type {FieldScale} from '../picture/field_scale';
 import type {LineLimits, LineSoup, Seeds} from '../picture/streamlines';
 import {pointBounds} from '../picture/triangle_soup';
-import type {Vector} from '../protocol/geometry';
+import {sidesOf, type Vector} from '../protocol/geometry';
 import {cellsAt} from './cells_at';
 import {chooseEven} from './even_lines';
 import {InstantsClock, type TimedVectors} from './instants_clock';
@@ -46,7 +46,7 @@ export class Streamlines {
     changes: {instants: readonly TimedVectors[]; begin: number} | null = null,
   ) {
     this.box = pointBounds(mesh.points, mesh.boundary);
-    const diagonal = Math.hypot(...[0, 1, 2].map((i) => this.box[i + 3]! - this.box[i]!));
+    const diagonal = Math.hypot(...sidesOf(this.box));
     const fastest = info.range[1] / mesh.step;
     this.crossing = fastest > 0 ? diagonal / fastest : 1;
     this.limits = {steps, time, length: length * diagonal, stillSpeed: kStillShare * fastest};

@@ -1,6 +1,7 @@
 // Places on a surface, evenly spaced: in each cube of a grid the one that is nearest to its middle.
 // So they stay nearly where they are while a mesh refines.
 
+import {minus} from '../picture/cell_value';
 import {cross, dot, type Vector} from '../protocol/geometry';
 
 export interface CellPlace {
@@ -82,7 +83,6 @@ function cubesOf([a, b, c]: [Vector, Vector, Vector], spacing: number): [Vector,
 
 const squared = (a: Vector, b: Vector): number =>
   (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2;
-const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 const plus = (a: Vector, s: number, u: Vector, t = 0, v: Vector = u): Vector => [
   a[0] + s * u[0] + t * v[0],
   a[1] + s * u[1] + t * v[1],

@@ -117,21 +117,19 @@ export class VectorWalk {
   }
 
   /** Whether the cell has the place. It is in hand then. */
-  holds(cell: number, place: Vector): boolean {
-    this.takeShares(cell, place);
-    const {shares} = this;
-    for (let corner = 0; corner < 4; ++corner) if (!(shares[corner]! >= kLeastShare)) return false;
-    return true;
+  holds(cell: number, [x, y, z]: Vector): boolean {
+    this.enter(cell);
+    return this.takeShares(x, y, z);
   }
 
   /** The vector at a place in the cell or close to it, and its shares there. */
   readAt(cell: number, place: Vector): void {
-    this.takeShares(cell, place);
+    this.holds(cell, place);
     this.read(kCellWidth * this.slot);
   }
 
-  private takeShares(cell: number, [x, y, z]: Vector): void {
-    this.enter(cell);
+  /** Those of the cell in hand. Returns whether it has the place. */
+  private takeShares(x: number, y: number, z: number): boolean {
     const {known, shares} = this;
     const at = kCellWidth * this.slot;
     const dx = x - known[at]!;
@@ -140,10 +138,12 @@ export class VectorWalk {
     const b = known[at + 3]! * dx + known[at + 4]! * dy + known[at + 5]! * dz;
     const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
     const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
-    shares[0] = 1 - b - c - d;
+    const a = 1 - b - c - d;
+    shares[0] = a;
     shares[1] = b;
     shares[2] = c;
     shares[3] = d;
+    return a >= kLeastShare && b >= kLeastShare && c >= kLeastShare && d >= kLeastShare;
   }
 
   /** The value of a field at the place of `shares`. */
@@ -230,27 +230,15 @@ export class VectorWalk {
    * mesh; the last cell is in hand then. REQUIRES: a cell in hand.
    */
   find(x: number, y: number, z: number): boolean {
-    const {known, shares} = this;
     let before = kOutside;
     for (let turn = 0; turn < kMostTurns; ++turn) {
-      const at = kCellWidth * this.slot;
-      const dx = x - known[at]!;
-      const dy = y - known[at + 1]!;
-      const dz = z - known[at + 2]!;
-      const b = known[at + 3]! * dx + known[at + 4]! * dy + known[at + 5]! * dz;
-      const c = known[at + 6]! * dx + known[at + 7]! * dy + known[at + 8]! * dz;
-      const d = known[at + 9]! * dx + known[at + 10]! * dy + known[at + 11]! * dz;
-      const a = 1 - b - c - d;
-      if (a >= kLeastShare && b >= kLeastShare && c >= kLeastShare && d >= kLeastShare) {
-        shares[0] = a;
-        shares[1] = b;
-        shares[2] = c;
-        shares[3] = d;
-        this.read(at);
+      if (this.takeShares(x, y, z)) {
+        this.read(kCellWidth * this.slot);
         return true;
       }
       const {cell} = this;
-      const other = Number.isFinite(b) ? this.onward(a, b, c, d) : this.through([x, y, z], before);
+      const isFlat = Number.isNaN(this.shares[0]);
+      const other = isFlat ? this.through([x, y, z], before) : this.onward();
       if (other === kOutside) return false;
       before = cell;
       ++this.turns;
@@ -260,14 +248,14 @@ export class VectorWalk {
   }
 
   /** Across the face that the place is farthest behind, or another that it is behind. */
-  private onward(a: number, b: number, c: number, d: number): number {
-    const {cell, mesh} = this;
-    const worst = a <= b && a <= c && a <= d ? 0 : b <= c && b <= d ? 1 : c <= d ? 2 : 3;
+  private onward(): number {
+    const {cell, mesh, shares} = this;
+    let worst = 0;
+    for (let corner = 1; corner < 4; ++corner) if (shares[corner]! < shares[worst]!) worst = corner;
     const first = mesh.across(cell, worst);
     if (first !== kOutside) return first;
-    const all = [a, b, c, d];
     for (let corner = 0; corner < 4; ++corner) {
-      if (corner === worst || !(all[corner]! < kLeastShare)) continue;
+      if (corner === worst || !(shares[corner]! < kLeastShare)) continue;
       const next = mesh.across(cell, corner);
       if (next !== kOutside) return next;
     }
@@ -285,7 +273,7 @@ export class VectorWalk {
       const next = mesh.across(cell, corner);
       if (next === kOutside) continue;
       if (next !== before) other = next;
-      this.takeShares(next, place);
+      this.holds(next, place);
       for (let back = 0; back < 4; ++back)
         if (mesh.across(next, back) === cell && shares[back]! >= kLeastShare) return next;
     }

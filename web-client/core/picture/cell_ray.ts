@@ -158,7 +158,7 @@ function insideOf(
 type Vector4 = [number, number, number, number];
 
 /** Two directions perpendicular to the given one and to each other. */
-function sideways(direction: Vector): [Vector, Vector] {
+export function sideways(direction: Vector): [Vector, Vector] {
   const smallest = [0, 1, 2].sort((a, b) => Math.abs(direction[a]!) - Math.abs(direction[b]!))[0]!;
   const axis: Vector = [0, 0, 0];
   axis[smallest] = 1;

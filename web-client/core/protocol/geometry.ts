@@ -13,6 +13,10 @@ export const cross = (a: Vector, b: Vector): Vector => [
 export const positionOf = ({origin, step}: {origin: Vector; step: number}, place: Vector): Vector =>
   place.map((x, axis) => origin[axis]! + step * x) as Vector;
 
+/** The inverse: the place on the lattice. */
+export const placeOf = ({origin, step}: {origin: Vector; step: number}, position: Vector): Vector =>
+  position.map((x, axis) => (x - origin[axis]!) / step) as Vector;
+
 /** The way from places of one lattice to those of another: factor * place + offset. */
 export interface LatticeChange {
   factor: number;
@@ -37,3 +41,7 @@ export interface Plane {
   normal: [number, number, number];
   offset: number;
 }
+
+/** The lengths of a box, [x0, y0, z0, x1, y1, z1], along the axes. */
+export const sidesOf = (bounds: readonly number[]): number[] =>
+  [0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!);

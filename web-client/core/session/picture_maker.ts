@@ -76,8 +76,10 @@ export class PictureMaker {
       ...this.figures(mesh, display, measures),
       cuts: cutsOf(mesh, display, kept),
       planes: cuttingPlanes(display),
-      // they stand on cuts, and not above planes
-      arrows: lateMaking.arrows?.(this.assembler, {...mesh, kept}, display) ?? null,
+      // Only those on what is drawn depend on planes.
+      ...((!isOnlyCut || display.arrows?.places === 'shown') && {
+        arrows: lateMaking.arrows?.(this.assembler, {...mesh, kept}, display) ?? null,
+      }),
       ...(!isOnlyCut && this.body(mesh, display, kept)),
     };
   }

@@ -130,9 +130,9 @@ export class ShownMesh {
   take(snapshot: Snapshot): void {
     // Other figures are newer than a picture that waited for a view.
     if (this.progress.statistics === kNoStatistics) this.progress.statistics = snapshot.statistics;
-    const streamlines = snapshot.streamlines ?? this.snapshot?.streamlines;
-    const isCut = snapshot.streamlines === undefined && streamlines !== undefined;
-    this.snapshot = isCut ? {...snapshot, streamlines} : snapshot;
+    // A new cut leaves lines, and most arrows, as they are.
+    const {streamlines, arrows} = this.snapshot ?? {};
+    this.snapshot = {...(streamlines && {streamlines}), ...(arrows && {arrows}), ...snapshot};
     this.derived?.fit(snapshot);
     if (!snapshot.surface) return; // a new cut of the same mesh
     this.hasMissing = [snapshot.surface, ...snapshot.cuts].some(({values}) =>

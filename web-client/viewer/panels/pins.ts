@@ -5,7 +5,7 @@
 
 import {isEqual} from '../../core/protocol/equal';
 import type {FieldInfo} from '../../core/protocol/fields';
-import type {Vector} from '../../core/protocol/geometry';
+import {placeOf, type Vector} from '../../core/protocol/geometry';
 import type {KeptLine, KeptValues, Pick} from '../../core/session/inspector';
 import {find, setText} from '../page/find';
 import {formatValue} from '../page/format';
@@ -160,9 +160,8 @@ class Pins implements Panel {
   private ask(): Promise<KeptValues | null> | null {
     const {client, mesh, opening} = this.tools.host;
     if (this.pins.length === 0 || !mesh.snapshot || opening !== null) return null;
-    const {origin, step} = mesh.manifest!.lattice;
-    const on = (place: Vector): Vector =>
-      place.map((x, axis) => (x - origin[axis]!) / step) as Vector;
+    const {lattice} = mesh.manifest!;
+    const on = (place: Vector): Vector => placeOf(lattice, place);
     return client.kept({
       points: this.kept.points.map(({places: [place]}) => on(place!)),
       lines: this.kept.lines.map(({places: [from, to]}) => [on(from!), on(to!)]),

@@ -3,6 +3,7 @@
 import {parseScalar, scalarText} from '../../core/layers/field_values';
 import {kMagnitude} from '../../core/picture/field_scale';
 import type {Warp} from '../../core/picture/warp';
+import {sidesOf} from '../../core/protocol/geometry';
 import type {FieldInfo} from '../../core/protocol/fields';
 import type {Manifest} from '../../core/protocol/manifest';
 import type {Settings} from './settings';
@@ -96,9 +97,6 @@ export function firstWarp(mesh: Warpable): string | null {
   const moves = share > edge && share >= kSeenShare && share <= kLongestShare;
   return moves ? scalarText({field, component: kMagnitude}, fields) : null;
 }
-
-const sidesOf = (bounds: readonly number[]): number[] =>
-  [0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!);
 
 /** The longest vector as a share of the diagonal; 0 if that is not known. */
 function largestShare(field: number, {manifest, bounds}: Warpable): number {
