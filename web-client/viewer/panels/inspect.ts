@@ -9,6 +9,7 @@ import type {View} from '../../webgl/view';
 import {formatIn, formatValue} from '../page/format';
 import type {Point} from '../page/card_place';
 import {save} from '../page/save';
+import {onScene, onSceneClick} from '../page/scene_events';
 import {OverTime, type OverTimeHost, type TimeCard} from './over_time';
 import {cellOutline, shape} from './marks';
 import {segments} from './markup';
@@ -51,7 +52,6 @@ export interface InspectHost extends OverTimeHost {
 export class Inspect {
   private tool: Tool = 'none';
   private points: Pick[] = [];
-  private pressed: {x: number; y: number} | null = null;
   private readonly card: ResultCard;
   private readonly overTime: OverTime;
   private readonly marks: SVGSVGElement;
@@ -81,25 +81,10 @@ export class Inspect {
       close: () => this.card.closePlot(),
     });
     this.marks = root.querySelector('.marks')!;
-    const onCanvas = (
-      type: 'pointerdown' | 'pointerup',
-      receive: (event: PointerEvent) => void,
-    ): void =>
-      root.addEventListener(type, (event) => {
-        if ((event.target as Element).matches('.scene')) receive(event as PointerEvent);
-      });
-    onCanvas('pointerdown', (event) => void (this.pressed = {x: event.clientX, y: event.clientY}));
-    onCanvas('pointerup', (event) => {
-      const moved = this.pressed
-        ? Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y)
-        : Infinity;
-      this.pressed = null;
-      if (moved <= kClickPixels && this.tool !== 'none')
-        void this.click(event.offsetX, event.offsetY);
+    onSceneClick({root}, kClickPixels, (event) => {
+      if (this.tool !== 'none') void this.click(event.offsetX, event.offsetY);
     });
-    root.addEventListener('dblclick', (event) => {
-      if ((event.target as Element).matches('.scene')) void this.centre(event as MouseEvent);
-    });
+    onScene({root}, 'dblclick', (event) => void this.centre(event));
     root
       .querySelector('.tools')!
       .addEventListener('change', (event) =>

@@ -21,6 +21,7 @@ import {formatCount} from '../page/format';
 import {readLate} from '../page/late_readers';
 import {lateRequests} from '../page/late_requests';
 import {adopt, setMarkup} from '../page/trusted';
+import {onSceneClick} from '../page/scene_events';
 import {fillSelect} from '../page/select';
 import {shownScalar, type Settings} from '../settings/settings';
 import type {LateContent} from './late_panel';
@@ -95,7 +96,6 @@ export class PartsList implements LateContent {
   private selected: number | null = null;
   private isSeen = false;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private pressed = {x: NaN, y: NaN};
   private readonly question = new RepeatedQuestion(
     () => this.ask(),
     (counts) => this.takeCounts(counts),
@@ -138,20 +138,11 @@ export class PartsList implements LateContent {
     onClick(place, '.plain-parts', () => {
       for (const name of kPartAttributes) page.write(name, null);
     });
-    const onScene = (type: string, act: (event: PointerEvent) => void): void =>
-      page.root.addEventListener(
-        type,
-        (event) => {
-          if ((event.target as Element).matches('.scene')) act(event as PointerEvent);
-        },
-        {signal},
-      );
-    onScene('pointerdown', ({clientX: x, clientY: y}) => (this.pressed = {x, y}));
-    onScene('pointerup', (event) => {
-      const {x, y} = this.pressed;
-      if (Math.hypot(event.clientX - x, event.clientY - y) <= kClickPixels)
-        void this.pick(event.offsetX, event.offsetY);
-    });
+    onSceneClick(
+      {root: page.root, signal},
+      kClickPixels,
+      (event) => void this.pick(event.offsetX, event.offsetY),
+    );
     signal.addEventListener('abort', () => clearTimeout(this.timer));
   }
 

@@ -20,6 +20,7 @@ import {find, onClick, setText} from '../page/find';
 import {formatCount, formatError} from '../page/format';
 import {readLate} from '../page/late_readers';
 import {lateRequests} from '../page/late_requests';
+import {onScene, onSceneClick} from '../page/scene_events';
 import {fillSelect} from '../page/select';
 import {adopt, setMarkup} from '../page/trusted';
 import type {Settings} from '../settings/settings';
@@ -90,7 +91,6 @@ export class StreamlinesControls implements LateContent {
   private isAsking = false;
   /** Where the pointer is, on the canvas; null: nowhere. */
   private pointer: [number, number] | null = null;
-  private pressed = {x: NaN, y: NaN};
 
   constructor(
     private readonly tools: PanelTools,
@@ -267,26 +267,14 @@ export class StreamlinesControls implements LateContent {
   // ---- the line at the pointer
 
   private watchPointer(signal: AbortSignal): void {
-    const {root} = this.tools.page;
-    const on = (type: string, act: (event: PointerEvent) => void): void =>
-      root.addEventListener(
-        type,
-        (event) => {
-          if (this.followsPointer && (event.target as Element).matches('.scene'))
-            act(event as PointerEvent);
-        },
-        {signal},
-      );
-    on('pointermove', (event) => {
-      if (event.buttons === 0 && event.pointerType !== 'touch')
+    const its = {root: this.tools.page.root, signal};
+    onScene(its, 'pointermove', (event) => {
+      if (this.followsPointer && event.buttons === 0 && event.pointerType !== 'touch')
         this.point([event.offsetX, event.offsetY]);
     });
-    on('pointerout', () => this.point(null));
-    on('pointerdown', ({clientX: x, clientY: y}) => (this.pressed = {x, y}));
-    on('pointerup', (event) => {
-      const {x, y} = this.pressed;
-      if (event.button !== 0 || !event.isPrimary) return;
-      if (Math.hypot(event.clientX - x, event.clientY - y) > kClickPixels) return;
+    onScene(its, 'pointerout', () => this.point(null));
+    onSceneClick(its, kClickPixels, (event) => {
+      if (!this.followsPointer || event.button !== 0 || !event.isPrimary) return;
       this.pointer = [event.offsetX, event.offsetY];
       void this.ask(true);
     });
