@@ -1,13 +1,19 @@
-// The time and memory that a process used, as far as a module knows.
+// The time and memory that a process used, as far as a module knows. METIS includes it from C.
 #pragma once
 
 #include <sys/time.h>
 
-constexpr int RUSAGE_SELF = 0;
+enum { RUSAGE_SELF = 0 };
 
 struct rusage {
-  timeval ru_utime, ru_stime;
+  struct timeval ru_utime, ru_stime;
   long ru_maxrss;  ///< kB
 };
 
-extern "C" int getrusage(int who, rusage* used);
+#ifdef __cplusplus
+extern "C" {
+#endif
+int getrusage(int who, struct rusage* used);
+#ifdef __cplusplus
+}
+#endif
