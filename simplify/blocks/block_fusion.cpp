@@ -346,11 +346,11 @@ class BlockRun {
 
 }  // namespace
 
-CellMiddle middleOf(const MeshPiece& piece, CellId cell) {
+CellMiddle middleOf(std::span<const LatticePoint> points, const Tetrahedron& cell) {
   CellMiddle out{};
-  for (const VertexId v : piece.tetrahedra[cell])
+  for (const VertexId v : cell)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      out[axis] += static_cast<std::uint32_t>(piece.points[v][axis]);
+      out[axis] += static_cast<std::uint32_t>(points[v][axis]);
   return out;
 }
 

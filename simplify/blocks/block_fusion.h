@@ -66,7 +66,10 @@ struct SampledParts {
 [[nodiscard]] SampledParts sampleParts(const Block& block, const BlockFrame& frame,
                                        std::size_t cells, std::uint32_t oneIn, double share);
 
-/// Four times the middle of a tetrahedron of the piece.
-[[nodiscard]] CellMiddle middleOf(const MeshPiece& piece, CellId cell);
+/// Four times the middle of a tetrahedron.
+[[nodiscard]] CellMiddle middleOf(std::span<const LatticePoint> points, const Tetrahedron& cell);
+[[nodiscard]] inline CellMiddle middleOf(const MeshPiece& piece, CellId cell) {
+  return middleOf(piece.points, piece.tetrahedra[cell]);
+}
 
 }  // namespace qtet

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
-#include <type_traits>
 #include <utility>
 
-#include "proto/crc32c.h"
+#include "simplify/blocks/array_bytes.h"
 
 namespace qtet {
 namespace {
@@ -45,73 +43,6 @@ void appendCellValues(const MeshPiece& from, const PieceShape& shape, CellId c, 
     appendRow(from.missing[f], c, widthOf(shape.fields[f]), to.missing[f]);
   }
 }
-
-class ArrayWriter {
- public:
-  template <class T>
-  void put(const std::vector<T>& values) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    putRaw(values.size());
-    const std::size_t at = bytes_.size(), size = values.size() * sizeof(T);
-    bytes_.resize(at + size);
-    if (size > 0) std::memcpy(bytes_.data() + at, values.data(), size);
-  }
-  template <class T>
-  void put(const std::vector<std::vector<T>>& lists) {
-    putRaw(lists.size());
-    for (const std::vector<T>& list : lists) put(list);
-  }
-  [[nodiscard]] Bytes take() {
-    const std::uint32_t sum = crc32c(ByteView(bytes_).subspan(sizeof sum));
-    std::memcpy(bytes_.data(), &sum, sizeof sum);
-    return std::move(bytes_);
-  }
-
- private:
-  void putRaw(std::uint64_t n) {
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + sizeof n);
-    std::memcpy(bytes_.data() + at, &n, sizeof n);
-  }
-
-  Bytes bytes_ = Bytes(sizeof(std::uint32_t));
-};
-
-/// REQUIRES: bytes whose checksum holds. It stays empty-handed once they end early.
-class ArrayReader {
- public:
-  explicit ArrayReader(ByteView bytes) : left_(bytes) {}
-
-  template <class T>
-  void get(std::vector<T>& values) {
-    const std::uint64_t count = size(sizeof(T));
-    values.resize(count);
-    if (count > 0) std::memcpy(values.data(), left_.data(), count * sizeof(T));
-    left_ = left_.subspan(count * sizeof(T));
-  }
-  template <class T>
-  void get(std::vector<std::vector<T>>& lists) {
-    lists.resize(size(sizeof(std::uint64_t)));
-    for (std::vector<T>& list : lists) get(list);
-  }
-  [[nodiscard]] bool isWhole() const { return isWhole_ && left_.empty(); }
-
- private:
-  std::uint64_t size(std::size_t element) {
-    std::uint64_t n = 0;
-    if (isWhole_ && left_.size() >= sizeof n) {
-      std::memcpy(&n, left_.data(), sizeof n);
-      left_ = left_.subspan(sizeof n);
-      if (n <= left_.size() / element) return n;
-    }
-    isWhole_ = false;
-    left_ = {};
-    return 0;
-  }
-
-  ByteView left_;
-  bool isWhole_ = true;
-};
 
 /// Calls give(member) for each array of the piece, in their order in its bytes.
 template <class Piece, class Give>
@@ -312,17 +243,11 @@ Bytes toBytes(const MeshPiece& piece) {
 }
 
 Result<MeshPiece> pieceFrom(ByteView bytes) {
-  std::uint32_t sum = 0;
-  if (bytes.size() < sizeof sum)
-    return fail(ErrorCode::kTruncated, "a piece of the mesh ends early");
-  std::memcpy(&sum, bytes.data(), sizeof sum);
-  const ByteView content = bytes.subspan(sizeof sum);
-  if (crc32c(content) != sum)
-    return fail(ErrorCode::kBadChecksum, "a piece of the mesh is not what was written");
+  Result<ArrayReader> reader = ArrayReader::of(bytes);
+  if (!reader) return std::unexpected(reader.error());
   MeshPiece out;
-  ArrayReader reader(content);
-  forEachArray(out, [&](auto& array) { reader.get(array); });
-  if (!reader.isWhole()) return fail(ErrorCode::kTruncated, "a piece of the mesh ends early");
+  forEachArray(out, [&](auto& array) { reader->get(array); });
+  if (!reader->isWhole()) return fail(ErrorCode::kTruncated, "a piece of the mesh ends early");
   return out;
 }
 

@@ -11,11 +11,9 @@
 #include <utility>
 
 #include "codec/mesh/boundary.h"
-#include "codec/mesh/predicates.h"
 #include "simplify/blocks/block_fusion.h"
+#include "simplify/blocks/original_sampler.h"
 #include "simplify/blocks/shared_vertices.h"
-#include "simplify/cost/boundary_weight.h"
-#include "simplify/measure/field_replay.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/workers.h"
 #include "simplify/parts/band_price.h"
@@ -23,8 +21,6 @@
 namespace qtet {
 namespace {
 
-/// Cells whose middles choose the planes of a band, about.
-constexpr std::size_t kSampledMiddles = 200'000;
 /// A band ends at the price at which one in so many cells is left. Blocks have fewer seams than
 /// parts (kBandFactor). With 2.5 the last level of fin has 1.18 times the error of one piece, with
 /// 2 it has 1.07 times that.
@@ -52,59 +48,6 @@ T orThrow(Result<T>&& result) {
 }
 void throwIfFailed(const Status& status) {
   if (!status) throw BlockFailed{status.error()};
-}
-
-/// All tetrahedra of a mesh as one piece.
-MeshPiece wholeOf(LatticeMesh&& mesh, std::vector<std::vector<std::uint8_t>>&& missing) {
-  MeshPiece out;
-  out.vertices.resize(mesh.points.size());
-  std::iota(out.vertices.begin(), out.vertices.end(), WholeVertex{0});
-  out.points = std::move(mesh.points);
-  out.values = std::move(mesh.values);
-  out.missing = std::move(missing);
-  out.missing.resize(mesh.fields.size());
-  out.tetrahedra = std::move(mesh.tetrahedra);
-  auto next = mesh.boundary.begin();  // in the order of the cells, boundary.h
-  for (CellId c = 0; c < out.tetrahedra.size() && next != mesh.boundary.end(); ++c)
-    for (int opposite = 0; opposite < 4 && next != mesh.boundary.end(); ++opposite)
-      if (cellFace(out.tetrahedra[c], opposite) == *next) out.boundary.push_back({*next++, c});
-  assert(next == mesh.boundary.end());
-  return out;
-}
-
-/// The places and values of the original.
-OriginalSamples sampled(const LatticeMesh& mesh, const ReduceOptions& options) {
-  constexpr std::uint64_t kFieldSeed = 0x5EEDF1E1D5u;  // other numbers than the surface's
-  OriginalSamples out;
-  const SampledPlaces drawn =
-      placesOf(mesh.points, mesh.tetrahedra, options.samples, options.seed ^ kFieldSeed);
-  out.uniform = drawn.uniform;
-  for (const ErrorSample& sample : drawn.places) out.places.push_back({sample.at, sample.cell});
-  out.ranges = rangesOf(mesh.fields, mesh.values, mesh.tetrahedra, mesh.points.size());
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    const std::size_t n = mesh.fields[f].components;
-    std::vector<double>& truth = out.truth.emplace_back();
-    for (const ErrorSample& sample : drawn.places)
-      for (std::size_t c = 0; c < n; ++c)
-        truth.push_back(
-            isCellField(mesh.fields[f])
-                ? mesh.values[f][sample.cell * n + c]
-                : valueIn(mesh.tetrahedra[sample.cell], sample.weights, mesh.values[f], n, c));
-  }
-  std::vector<Tetrahedron> triangles;
-  std::vector<std::uint32_t> ids;
-  Int128 volume = 0;
-  for (const Triangle& t : mesh.boundary) {
-    ids.push_back(static_cast<std::uint32_t>(triangles.size()));
-    triangles.push_back({t[0], t[1], t[2], kGhost});
-    volume += volume6({0, 0, 0}, mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-  }
-  for (const ErrorSample& sample :
-       samplesOnSurface(mesh.points, triangles, ids, options.surfaceSamples, options.seed))
-    out.surface.push_back(sample.at);
-  out.volume6 = static_cast<double>(volume);
-  out.diagonal = diagonalOf(mesh);
-  return out;
 }
 
 /// The blocks of a band, and what waits for them.
@@ -136,15 +79,14 @@ class Reduction {
     frame_.options.progress = {};
   }
 
-  /// Deals the whole mesh to the blocks of the first band.
-  void begin(MeshPiece&& whole) {
-    std::vector<CellMiddle> middles;
-    const std::size_t step = all_ / kSampledMiddles + 1;
-    for (std::size_t c = 0; c < all_; c += step)
-      middles.push_back(middleOf(whole, static_cast<CellId>(c)));
+  /// Deals the pieces of the whole mesh to the blocks of the first band.
+  void begin(std::vector<CellMiddle> middles, LatticePieces& original, OriginalSampler& sampler) {
     beginBand(0, all_, std::move(middles));
-    const MeshPiece piece = std::move(whole);
-    dealTo(piece, 0, {});
+    throwIfFailed(original.forEach([&](GivenPiece&& given) -> Status {
+      sampler.take(given);
+      dealTo(given.piece, given.number, given.shared);
+      return {};
+    }));
     endDeal();
   }
 
@@ -370,24 +312,24 @@ class Reduction {
   OneSidedDistance toMesh_, toOriginal_;  // in lattice steps
 };
 
-ReducedMesh reduced(LatticeMesh&& mesh, std::vector<std::vector<std::uint8_t>>&& missing,
+ReducedMesh reduced(LatticePieces& original, const OriginalFigures& figures,
                     const FusionOptions& options, const ReduceOptions& reduce) {
-  OriginalSamples samples = sampled(mesh, reduce);
-  const CostFrame cost(mesh, options.cost);
+  const CostFrame cost = orThrow(figures.costFrame(options.cost));
   ReducedMesh out{.mesh = {}, .missing = {}, .fusions = {cost, {}}, .samples = {}};
-  out.tetrahedra = mesh.tetrahedra.size(), out.vertices = mesh.points.size();
-  out.mesh.lattice = mesh.lattice;
-  out.mesh.fields = mesh.fields;
-  PieceShape shape{mesh.fields, 0, 0};
+  out.tetrahedra = original.tetrahedra(), out.vertices = original.vertices();
+  out.mesh.lattice = original.lattice();
+  out.mesh.fields = original.fields();
+  PieceShape shape{original.fields(), 0, 0};
   const std::size_t components = cost.basis.components();
   shape.quadricSums = FusionCost::sumsOf(components);
   shape.quadricSize = shape.quadricSums + components;
-  Reduction reduction({mesh.lattice, shape, cost, options, &samples}, reduce,
-                      mesh.tetrahedra.size(), options.threads);
-  MeshPiece whole = wholeOf(std::move(mesh), std::move(missing));
-  for (std::uint32_t i = 0; i < samples.places.size(); ++i)
-    whole.places.push_back({i, samples.places[i].tetrahedron});
-  reduction.begin(std::move(whole));
+  OriginalSamples samples;
+  samples.diagonal = figures.diagonal();
+  Reduction reduction({original.lattice(), shape, cost, options, &samples}, reduce,
+                      original.tetrahedra(), options.threads);
+  OriginalSampler sampler(original, figures, {reduce.samples, reduce.surfaceSamples, reduce.seed});
+  reduction.begin(figures.middles(), original, sampler);
+  samples = sampler.samples();
   reduction.run();
   MeshPiece left = reduction.take();
   for (const PiecePlace& place : left.places)
@@ -409,12 +351,12 @@ ReducedMesh reduced(LatticeMesh&& mesh, std::vector<std::vector<std::uint8_t>>&&
 
 }  // namespace
 
-Result<ReducedMesh> reduceMesh(LatticeMesh&& mesh, std::vector<std::vector<std::uint8_t>> missing,
+Result<ReducedMesh> reduceMesh(LatticePieces& original, const OriginalFigures& figures,
                                const FusionOptions& options, const ReduceOptions& reduce) {
   assert(options.kept.empty() && reduce.blockCells > 0);
   return orCancelled([&]() -> Result<ReducedMesh> {
     try {
-      return reduced(std::move(mesh), std::move(missing), options, reduce);
+      return reduced(original, figures, options, reduce);
     } catch (const BlockFailed& failed) {
       return std::unexpected(failed.error);
     }

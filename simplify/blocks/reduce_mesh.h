@@ -8,6 +8,8 @@
 #include <stop_token>
 #include <vector>
 
+#include "simplify/blocks/lattice_pieces.h"
+#include "simplify/blocks/original_figures.h"
 #include "simplify/blocks/piece_store.h"
 #include "simplify/fuse/qtetfusion.h"
 #include "simplify/measure/original_samples.h"
@@ -39,11 +41,12 @@ struct ReducedMesh {
   double envelopeTolerance = 0;  ///< that is left, FusionOptions::envelopeTolerance
 };
 
-/// The result depends on mesh and options, and on no number of threads. `options` are those for the
-/// whole; the threads take a block each. Errors: limit-exceeded (no fusion is left, and more cells
-/// are), cancelled, the spool's. REQUIRES: as simplify; no vertices to keep.
-[[nodiscard]] Result<ReducedMesh> reduceMesh(LatticeMesh&& mesh,
-                                             std::vector<std::vector<std::uint8_t>> missing,
+/// The result depends on the pieces and options, and on no number of threads. `options` are those
+/// for the whole; the threads take a block each. Errors: limit-exceeded (no fusion is left, and
+/// more cells are), cancelled, the spool's, those of the pieces. REQUIRES: as simplify; no vertices
+/// to keep; figures of these pieces.
+[[nodiscard]] Result<ReducedMesh> reduceMesh(LatticePieces& original,
+                                             const OriginalFigures& figures,
                                              const FusionOptions& options,
                                              const ReduceOptions& reduce);
 

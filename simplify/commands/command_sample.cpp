@@ -6,6 +6,7 @@
 #include "simplify/log/write_mesh.h"
 #include "simplify/mesh/moved_place.h"
 #include "simplify/produce/instant_collection.h"
+#include "simplify/produce/piece_summary.h"
 #include "simplify/samples/samples.h"
 #include "simplify/words/json_report.h"
 #include "simplify/words/output.h"
@@ -56,6 +57,46 @@ Result<std::uint64_t> writeSteps(const TetMesh& mesh, const std::filesystem::pat
   return steps.bytes();
 }
 
+struct WrittenPieces {
+  std::uint64_t cells = 0, bytes = 0;
+};
+
+/// The fin in pieces, of which one at a time is made.
+Result<WrittenPieces> writePieces(std::uint64_t cells, std::uint32_t pieces,
+                                  const std::filesystem::path& file) {
+  WrittenPieces out;
+  InstantCollection files(file);
+  TetMesh mesh;
+  for (std::uint32_t i = 0; i < pieces; ++i) {
+    mesh = finPiece(cells, i, pieces);
+    out.cells += mesh.tetrahedra.size();
+    if (Status s = files.add(std::nullopt, vtuBytes(mesh)); !s) return std::unexpected(s.error());
+  }
+  if (Status s = files.finish(pieceSummary(mesh, files.names())); !s)
+    return std::unexpected(s.error());
+  out.bytes = files.bytes();
+  return out;
+}
+
+int runPieces(const ParsedWords& parsed, const Output& output, Console& console) {
+  const auto cells = static_cast<std::uint64_t>(
+      parsed.has("cells") ? parsed.number("cells", 1, static_cast<double>(kMaxCellsInPieces))
+                          : static_cast<double>(kFinCells));
+  if (parsed.get<std::string>("NAME") != "fin" || parsed.has("steps"))
+    throw UsageError("only the steady fin comes in pieces; leave out --pieces");
+  const std::uint32_t layers = finLayers(cells);
+  const auto pieces =
+      static_cast<std::uint32_t>(parsed.integer("pieces", 1, static_cast<int>(layers)));
+  const Result<WrittenPieces> written = writePieces(cells, pieces, output.file);
+  if (!written) return reportFailure(written.error(), false, console);
+  reportOutput(output,
+               output.name() + ": " + counted(written->cells, "tetrahedron", "tetrahedra") +
+                   " in " + counted(pieces, "piece", "pieces") + ", " + grouped(written->bytes) +
+                   " bytes\n",
+               console);
+  return kExitOk;
+}
+
 /// Returns the bytes that were written.
 Result<std::uint64_t> writeSample(const TetMesh& mesh, const Output& output) {
   if (output.file.extension() == ".pvd") return writeSteps(mesh, output.file);
@@ -76,11 +117,14 @@ int runSample(const Words& words, Console& console) {
       "steps", po::value<int>(),
       ("so many time steps of each field, 2 to " + std::to_string(kMaxSampleInstants) +
        " (fin, beam)")
-          .c_str());
+          .c_str())("pieces", po::value<int>(),
+                    "so many files, which NAME.pvtu lists (fin): a mesh of up to 1,000,000,000 "
+                    "tetrahedra, of which one piece at a time is in memory");
   addNoClobber(options);
   const ParsedWords parsed(
       words,
-      {"sample", "sample NAME -o FILE.vtu|FILE.pvd [--cells N] [--steps N]", listOfSamples(),
+      {"sample", "sample NAME -o FILE.vtu|FILE.pvd|FILE.pvtu [--cells N] [--steps N] [--pieces N]",
+       listOfSamples(),
        "  qtet sample box -o box.vtu\n  qtet sample fin --cells 1000000 -o fin.vtu\n"
        "  qtet sample fin --steps 40 -o run.vtu\n  qtet sample fin --cells 5000 --steps 8 -o "
        "run.pvd\n"
@@ -89,8 +133,12 @@ int runSample(const Words& words, Console& console) {
   if (parsed.helped(console)) return kExitOk;
 
   const Output output = outputOf(parsed, console);
-  if (Status checked = checkOutput(output, ".vtu .pvd"); !checked)
+  if (Status checked = checkOutput(output, ".vtu .pvd .pvtu"); !checked)
     return reportFailure(checked.error(), false, console);
+  const bool isList = output.file.extension() == ".pvtu";
+  if (parsed.has("pieces") != isList)
+    throw UsageError("--pieces N and a file NAME.pvtu go together; give both, or neither");
+  if (isList) return runPieces(parsed, output, console);
   std::optional<std::uint64_t> cells;
   if (parsed.has("cells")) cells = static_cast<std::uint64_t>(parsed.number("cells", 1, 1e12));
   const auto steps =

@@ -10,6 +10,7 @@
 #include "simplify/produce/simplified_list.h"
 #include "simplify/produce/simplified_log.h"
 #include "simplify/read/listed_files.h"
+#include "simplify/words/byte_count.h"
 #include "simplify/words/error_words.h"
 #include "simplify/words/field_names.h"
 #include "simplify/words/fusion_words.h"
@@ -88,6 +89,13 @@ SimplifyRequest requestOf(const ParsedWords& parsed, const Output& output) {
   if (parsed.has("finest"))
     options.finest =
         static_cast<std::size_t>(parsed.integer("finest", 1, std::numeric_limits<int>::max()));
+  if (parsed.has("memory")) {
+    const std::string text = parsed.get<std::string>("memory");
+    options.memory = parseByteCount(text);
+    if (!options.memory || *options.memory < kLeastMemory)
+      throw UsageError("--memory '" + text + "' is no size of at least 1G, such as 4G or 1500M");
+    if (!options.finest) options.finest = finestWithin(*options.memory);
+  }
   if (parsed.has("parts")) {
     options.parts = PartsOptions{.partition = metisPartitioner()};
     if (!options.parts->partition)
@@ -130,7 +138,7 @@ and so on.)",
             {"target-ratio", "base-cells", "base-error", "max-boundary-error", "envelope-tolerance",
              "placement", "shape-weight", "preserve-regions", "position-bits"}},
            {"output", {"value-codec", "keep-order", "original-ids", "measure"}},
-           {"rare", {"algorithm", "exact-coarse", "finest", "parts"}}}};
+           {"rare", {"algorithm", "exact-coarse", "finest", "memory", "parts"}}}};
 }
 
 }  // namespace
@@ -162,6 +170,10 @@ int runSimplify(const Words& words, Console& console) {
       "finest", po::value<int>(),
       "experimental: the last level has at most so many tetrahedra, to which the mesh is reduced "
       "before; the errors of all levels are against the input")(
+      "memory", po::value<std::string>(),
+      "experimental: the bytes that may be used, such as 4G. A .vtu or .pvtu file is read in "
+      "pieces "
+      "then, and the log ends at as many tetrahedra as fit, unless --finest says how many")(
       "parts",
       "experimental: simplify a mesh of over a million cells in parts, each of which a thread "
       "takes; the log does not depend on the number of threads")(

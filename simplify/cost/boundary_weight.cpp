@@ -93,8 +93,13 @@ double diagonalOf(const LatticeMesh& mesh) {
 double balancedBoundaryWeight(const LatticeMesh& mesh, std::span<const CostPart> parts,
                               std::span<const double> fieldErrors) {
   assert(parts.size() == fieldErrors.size());
+  BoundarySums sums;
+  sums.add(mesh, parts);
+  return balancedBoundaryWeight(sums, diagonalOf(mesh), expectedBoundaryError(mesh), fieldErrors);
+}
+
+void BoundarySums::add(const LatticeMesh& mesh, std::span<const CostPart> parts) {
   const Steepness steepness(mesh, parts);
-  double volume = 0, area = 0, steep = 0;
   auto face = mesh.boundary.begin();  // the next: they come in the order of the cells
   for (const Tetrahedron& t : mesh.tetrahedra) {
     const double own = volumeOf(mesh, t);
@@ -106,14 +111,17 @@ double balancedBoundaryWeight(const LatticeMesh& mesh, std::span<const CostPart>
       steep += a * steepness.in(t);
     }
   }
-  if (!(area > 0)) return kMaxWeight;
+}
+
+double balancedBoundaryWeight(const BoundarySums& sums, double diagonal, double boundaryError,
+                              std::span<const double> fieldErrors) {
+  if (!(sums.area > 0)) return kMaxWeight;
   // Means over area and volume: boundary area / diagonal against volume is how the two terms of the
   // cost are summed.
-  const double scale = diagonalOf(mesh) * volume / area;
-  const double worth = kWorth * scale * (steep / area);
-  const double boundary = expectedBoundaryError(mesh);
+  const double scale = diagonal * sums.volume / sums.area;
+  const double worth = kWorth * scale * (sums.steep / sums.area);
   const double fields = std::max(0.0, std::accumulate(fieldErrors.begin(), fieldErrors.end(), 0.0));
-  const double balance = boundary > 0 ? kBalance * scale * fields / boundary : kMaxWeight;
+  const double balance = boundaryError > 0 ? kBalance * scale * fields / boundaryError : kMaxWeight;
   return std::clamp(std::min(worth, std::sqrt(worth * balance)), kMinWeight, kMaxWeight);
 }
 

@@ -23,4 +23,18 @@ namespace qtet {
                                             std::span<const CostPart> parts,
                                             std::span<const double> fieldErrors);
 
+/// Sums over the cells of a mesh that may come in pieces.
+struct BoundarySums {
+  double volume = 0;  ///< of cells of positive volume
+  double area = 0;    ///< of their boundary triangles
+  double steep = 0;   ///< the sum of the fields' squared gradients there, times the area
+
+  /// Adds the cells of `mesh`, whose boundary is in the order of its cells.
+  void add(const LatticeMesh& mesh, std::span<const CostPart> parts);
+};
+/// The same by the sums over the mesh, its diagonalOf and its expectedBoundaryError.
+[[nodiscard]] double balancedBoundaryWeight(const BoundarySums& sums, double diagonal,
+                                            double boundaryError,
+                                            std::span<const double> fieldErrors);
+
 }  // namespace qtet

@@ -2,6 +2,7 @@
 // everything counts as it does in the whole.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "codec/mesh/mesh.h"
@@ -13,6 +14,13 @@ namespace qtet {
 
 struct CostFrame {
   CostFrame(const LatticeMesh& mesh, const CostOptions& options);
+  /// The same of a mesh that is not at hand: its fields, the bits of its lattice, its diagonalOf.
+  /// REQUIRES: a boundary weight.
+  CostFrame(std::span<const FieldInfo> fields, std::vector<CostPart> theParts, CostBasis theBasis,
+            int latticeBits, double theDiagonal, const CostOptions& options);
+
+  CostFrame(const LatticeMesh& mesh, const std::vector<CostPart>& theParts,
+            const CostOptions& options);
 
   std::vector<CostPart> parts;  ///< the fields that count
   CostBasis basis;

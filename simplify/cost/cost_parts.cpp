@@ -7,21 +7,29 @@
 
 namespace qtet {
 
-std::vector<CostPart> costPartsOf(const LatticeMesh& mesh, std::span<const double> weights) {
+std::vector<std::uint8_t> oneValueOf(const LatticeMesh& mesh) {
+  std::vector<std::uint8_t> out;
+  for (const std::vector<std::int32_t>& values : mesh.values)
+    out.push_back(std::ranges::all_of(values, [&](std::int32_t v) { return v == values[0]; }));
+  return out;
+}
+
+std::vector<CostPart> costPartsOf(std::span<const FieldInfo> fields,
+                                  std::span<const std::uint8_t> isOneValue,
+                                  std::span<const double> weights) {
   std::vector<CostPart> parts;
   std::vector<double> chosen;
   double total = 0;
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    const FieldInfo& info = mesh.fields[f];
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const FieldInfo& info = fields[f];
     const double weight = weights.empty() ? isFloatType(info.type) : weights[f];
-    const auto [low, high] = std::ranges::minmax(mesh.values[f]);
-    if (isCellField(info) || weight <= 0 || low == high) continue;
+    if (isCellField(info) || weight <= 0 || isOneValue[f]) continue;
     parts.push_back({f, 1});
     chosen.push_back(weight);
     total += weight;
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const FieldInfo& info = mesh.fields[parts[i].field];
+    const FieldInfo& info = fields[parts[i].field];
     // A vector takes the larger of its lengths' range and its components' range: directions may
     // turn while their lengths stay.
     const double extent = info.step * (std::ldexp(1.0, info.bits) - 1);

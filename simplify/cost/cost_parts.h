@@ -1,6 +1,7 @@
 // Decides which fields the cost of a fusion counts, and in what unit (ALGORITHM.md, "Cost").
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,16 @@ struct CostPart {
   double scale = 1;  ///< from the field's integers to the unit of residuals
 };
 
-/// `weights` is CostOptions::fieldWeights.
-[[nodiscard]] std::vector<CostPart> costPartsOf(const LatticeMesh& mesh,
+/// One a field, 1 where all of its integers are equal.
+[[nodiscard]] std::vector<std::uint8_t> oneValueOf(const LatticeMesh& mesh);
+
+/// `isOneValue` is oneValueOf, `weights` is CostOptions::fieldWeights.
+[[nodiscard]] std::vector<CostPart> costPartsOf(std::span<const FieldInfo> fields,
+                                                std::span<const std::uint8_t> isOneValue,
                                                 std::span<const double> weights);
+[[nodiscard]] inline std::vector<CostPart> costPartsOf(const LatticeMesh& mesh,
+                                                       std::span<const double> weights) {
+  return costPartsOf(mesh.fields, oneValueOf(mesh), weights);
+}
 
 }  // namespace qtet

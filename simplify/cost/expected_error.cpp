@@ -16,6 +16,8 @@ namespace {
 
 // Faces that speak for all: their mean is known to a few per cent.
 constexpr std::size_t kFaces = 100'000;
+// The same of the edges of a boundary that comes in pieces: they take 100 MB at most.
+constexpr std::size_t kEdges = 500'000;
 // The cosine of 40 degrees: an edge of the boundary that is sharper is a crease.
 constexpr double kCrease = 0.766;
 // The variance of what rounding to integers changes, in steps.
@@ -51,8 +53,8 @@ class Mean {
   double sum_ = 0, weight_ = 0;
 };
 
-/// A number of the face's places, whatever the order of its vertices.
-std::uint64_t numberOf(const LatticeMesh& mesh, const Triangle& face) {
+/// A number of the vertices' places, whatever the order of its vertices.
+std::uint64_t numberOf(const LatticeMesh& mesh, std::span<const VertexId> face) {
   std::uint64_t number = 0;
   for (const VertexId v : face) {
     std::uint64_t place = 0;
@@ -63,14 +65,12 @@ std::uint64_t numberOf(const LatticeMesh& mesh, const Triangle& face) {
   return number;
 }
 
-std::vector<Side<3>> sidesOfFaces(const LatticeMesh& mesh) {
-  // a face inside has two sides, so there are twice as many faces as cells
-  const std::uint64_t every = std::max<std::size_t>(1, 2 * mesh.tetrahedra.size() / kFaces);
+std::vector<Side<3>> sidesOfFaces(const LatticeMesh& mesh, std::uint64_t step) {
   std::vector<Side<3>> sides;
   for (std::uint32_t c = 0; c < mesh.tetrahedra.size(); ++c) {
     for (int corner = 0; corner < 4; ++corner) {
       Triangle face = cellFace(mesh.tetrahedra[c], corner);
-      if (every > 1 && numberOf(mesh, face) % every != 0) continue;
+      if (!isSampledFace(mesh, face, step)) continue;
       std::ranges::sort(face);
       sides.push_back({face, mesh.tetrahedra[c][static_cast<std::size_t>(corner)], c});
     }
@@ -127,8 +127,22 @@ Plane planeOf(const LatticeMesh& mesh, const Triangle& t) {
 
 }  // namespace
 
+std::uint64_t faceStep(std::uint64_t cells) {
+  // a face inside has two sides, so there are twice as many faces as cells
+  return std::max<std::uint64_t>(1, 2 * cells / kFaces);
+}
+
+bool isSampledFace(const LatticeMesh& mesh, const Triangle& face, std::uint64_t step) {
+  return step == 1 || numberOf(mesh, face) % step == 0;
+}
+
 std::vector<double> expectedFieldErrors(const LatticeMesh& mesh, std::span<const CostPart> parts) {
-  std::vector<Side<3>> sides = sidesOfFaces(mesh);
+  return expectedFieldErrors(mesh, parts, faceStep(mesh.tetrahedra.size()));
+}
+
+std::vector<double> expectedFieldErrors(const LatticeMesh& mesh, std::span<const CostPart> parts,
+                                        std::uint64_t step) {
+  std::vector<Side<3>> sides = sidesOfFaces(mesh, step);
   std::vector<Mean> missed(parts.size());
   forEachPair(sides, [&](const Side<3>& a, const Side<3>& b) {
     const Tetrahedron &here = mesh.tetrahedra[a.owner], &there = mesh.tetrahedra[b.owner];
@@ -146,13 +160,23 @@ std::vector<double> expectedFieldErrors(const LatticeMesh& mesh, std::span<const
   return out;
 }
 
-double expectedBoundaryError(const LatticeMesh& mesh) {
+std::uint64_t edgeStep(std::uint64_t triangles) {
+  return std::max<std::uint64_t>(1, 3 * triangles / (2 * kEdges));
+}
+
+bool isSampledEdge(const LatticeMesh& mesh, VertexId a, VertexId b, std::uint64_t step) {
+  return step == 1 || numberOf(mesh, std::array{a, b}) % step == 0;
+}
+
+double expectedBoundaryError(const LatticeMesh& mesh) { return expectedBoundaryError(mesh, 1); }
+
+double expectedBoundaryError(const LatticeMesh& mesh, std::uint64_t step) {
   std::vector<Side<2>> sides;
   for (std::uint32_t t = 0; t < mesh.boundary.size(); ++t) {
     const Triangle& face = mesh.boundary[t];
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [least, most] = std::minmax(face[(i + 1) % 3], face[(i + 2) % 3]);
-      sides.push_back({{least, most}, face[i], t});
+      if (isSampledEdge(mesh, least, most, step)) sides.push_back({{least, most}, face[i], t});
     }
   }
   Mean missed;

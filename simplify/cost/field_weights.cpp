@@ -23,12 +23,13 @@ double weightOf(double error, double largest) {
 
 }  // namespace
 
-std::vector<double> balancedFieldWeights(const LatticeMesh& mesh, std::span<const CostPart> parts,
+std::vector<double> balancedFieldWeights(std::span<const FieldInfo> fields,
+                                         std::span<const CostPart> parts,
                                          std::span<const double> errors) {
   assert(parts.size() == errors.size());
   std::map<std::string_view, SeriesError> series;  // a field without a time is one, too
   const auto seriesOfPart = [&](const CostPart& part) -> SeriesError& {
-    return series[mesh.fields[part.field].name.withoutTime()];
+    return series[fields[part.field].name.withoutTime()];
   };
   for (std::size_t i = 0; i < parts.size(); ++i) {
     SeriesError& its = seriesOfPart(parts[i]);
@@ -36,7 +37,7 @@ std::vector<double> balancedFieldWeights(const LatticeMesh& mesh, std::span<cons
   }
   double largest = 0;
   for (const auto& [name, its] : series) largest = std::max(largest, its.mean());
-  std::vector<double> weights(mesh.fields.size(), 0);
+  std::vector<double> weights(fields.size(), 0);
   for (const CostPart& part : parts)
     weights[part.field] = weightOf(seriesOfPart(part).mean(), largest);
   return weights;

@@ -18,7 +18,7 @@ inline constexpr double kMaxFieldWeight = 8;
 /// expectedFieldErrors of `parts`. REQUIRES: the parts' scales are those of equal weights.
 /// (Measured: by the squared errors themselves, rough fields lose up to a fifth more where the
 /// shape limits the smooth ones.)
-[[nodiscard]] std::vector<double> balancedFieldWeights(const LatticeMesh& mesh,
+[[nodiscard]] std::vector<double> balancedFieldWeights(std::span<const FieldInfo> fields,
                                                        std::span<const CostPart> parts,
                                                        std::span<const double> errors);
 

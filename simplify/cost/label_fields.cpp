@@ -45,21 +45,27 @@ void forEachFaceInside(const LatticeMesh& mesh, const Visit& visit) {
   });
 }
 
+/// Whether its names say that it is a label, if it can be.
+bool isKnownLabel(const FieldInfo& field) {
+  return isAmong(kLabelNames, field.name) || !field.labelNames.empty();
+}
+
 /// All instants of a series are labels if one is, or none if some is no integer.
-std::vector<std::size_t> wholeSeries(const LatticeMesh& mesh, std::vector<std::size_t> labels) {
+std::vector<std::size_t> wholeSeries(std::span<const FieldInfo> fields,
+                                     const std::vector<std::size_t>& labels) {
   std::map<std::string_view, bool> series;  // whether all can be
   for (const std::size_t f : labels)
-    if (const auto name = mesh.fields[f].name.instant()) series.emplace(name->series, true);
+    if (const auto name = fields[f].name.instant()) series.emplace(name->series, true);
   std::set<std::size_t> out(labels.begin(), labels.end());
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    const FieldName& name = mesh.fields[f].name;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const FieldName& name = fields[f].name;
     const auto at = name.isInstant() ? series.find(name.withoutTime()) : series.end();
-    if (at == series.end() || !isCellField(mesh.fields[f])) continue;
-    at->second &= isOneInteger(mesh.fields[f]);
+    if (at == series.end() || !isCellField(fields[f])) continue;
+    at->second &= isOneInteger(fields[f]);
     out.insert(f);
   }
   std::erase_if(out, [&](std::size_t f) {
-    const auto name = mesh.fields[f].name.instant();
+    const auto name = fields[f].name.instant();
     return name && !series.at(name->series);
   });
   return {out.begin(), out.end()};
@@ -69,6 +75,43 @@ std::vector<std::size_t> wholeSeries(const LatticeMesh& mesh, std::vector<std::s
 
 bool isOneInteger(const FieldInfo& field) {
   return isCellField(field) && !isFloatType(field.type) && field.components == 1 && field.step == 1;
+}
+
+LabelFinder::LabelFinder(std::vector<FieldInfo> fields)
+    : fields_(std::move(fields)), values_(fields_.size()), equal_(fields_.size()) {}
+
+void LabelFinder::add(const LatticeMesh& piece) {
+  bool asks = false;
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    if (!isOneInteger(fields_[f])) continue;
+    for (const std::int32_t value : piece.values[f])
+      if (values_[f].size() <= kMaxLabelValues) values_[f].insert(value);
+    asks |= values_[f].size() <= kMaxLabelValues && !isKnownLabel(fields_[f]) &&
+            !isAmong(kProcessNames, fields_[f].name);
+  }
+  if (!asks) return;
+  forEachFaceInside(piece, [&](FaceSide first, FaceSide second) {
+    ++faces_;
+    for (std::size_t f = 0; f < fields_.size(); ++f)
+      if (isOneInteger(fields_[f]))
+        equal_[f] += piece.values[f][cellOf(first)] == piece.values[f][cellOf(second)] ? 1 : 0;
+  });
+}
+
+bool LabelFinder::canBe(std::size_t field) const {
+  assert(field < fields_.size());
+  return values_[field].size() >= 2 && values_[field].size() <= kMaxLabelValues;
+}
+
+std::vector<std::size_t> LabelFinder::labels() const {
+  std::vector<std::size_t> out;
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    if (!canBe(f) || isAmong(kProcessNames, fields_[f].name)) continue;
+    if (isKnownLabel(fields_[f]) ||
+        static_cast<double>(equal_[f]) > kLabelNeighbours * static_cast<double>(faces_))
+      out.push_back(f);
+  }
+  return wholeSeries(fields_, out);
 }
 
 bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
@@ -83,26 +126,9 @@ bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
 }
 
 std::vector<std::size_t> labelsOf(const LatticeMesh& mesh) {
-  std::vector<std::size_t> labels, asked;
-  for (std::size_t f = 0; f < mesh.fields.size(); ++f) {
-    const FieldName& name = mesh.fields[f].name;
-    if (!canBeLabel(mesh, f) || isAmong(kProcessNames, name)) continue;
-    const bool isKnown = isAmong(kLabelNames, name) || !mesh.fields[f].labelNames.empty();
-    (isKnown ? labels : asked).push_back(f);
-  }
-  if (asked.empty()) return wholeSeries(mesh, std::move(labels));
-  std::size_t faces = 0;
-  std::vector<std::size_t> equal(asked.size());
-  forEachFaceInside(mesh, [&](FaceSide first, FaceSide second) {
-    ++faces;
-    for (std::size_t i = 0; i < asked.size(); ++i)
-      equal[i] +=
-          mesh.values[asked[i]][cellOf(first)] == mesh.values[asked[i]][cellOf(second)] ? 1 : 0;
-  });
-  for (std::size_t i = 0; i < asked.size(); ++i)
-    if (static_cast<double>(equal[i]) > kLabelNeighbours * static_cast<double>(faces))
-      labels.push_back(asked[i]);
-  return wholeSeries(mesh, std::move(labels));
+  LabelFinder finder(mesh.fields);
+  finder.add(mesh);
+  return finder.labels();
 }
 
 LabelNames namesOfValues(const FieldInfo& info, const std::vector<std::int32_t>& integers) {

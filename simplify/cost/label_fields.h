@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <set>
 #include <vector>
 
 #include "codec/mesh/mesh.h"
@@ -27,6 +29,26 @@ inline constexpr double kLabelNeighbours = 0.6;
 /// one, or neighbours that mostly agree. The numbers of processes are none. All instants of a
 /// series are labels, or none.
 [[nodiscard]] std::vector<std::size_t> labelsOf(const LatticeMesh& mesh);
+
+/// Finds canBeLabel and labelsOf of a mesh that comes in pieces. Faces between pieces do not count.
+class LabelFinder {
+ public:
+  explicit LabelFinder(std::vector<FieldInfo> fields);
+
+  void add(const LatticeMesh& piece);
+  [[nodiscard]] bool canBe(std::size_t field) const;
+  [[nodiscard]] std::vector<std::size_t> labels() const;
+  /// Ascending, kMaxLabelValues + 1 at most. REQUIRES: isOneInteger(fields[field]).
+  [[nodiscard]] const std::set<std::int32_t>& valuesOf(std::size_t field) const {
+    return values_[field];
+  }
+
+ private:
+  std::vector<FieldInfo> fields_;
+  std::vector<std::set<std::int32_t>> values_;  // of each field that is one integer
+  std::size_t faces_ = 0;
+  std::vector<std::size_t> equal_;  // faces between equal values, by field
+};
 
 /// The names of values that are among the integers.
 [[nodiscard]] LabelNames namesOfValues(const FieldInfo& info,

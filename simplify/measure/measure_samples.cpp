@@ -1,5 +1,4 @@
 #include "simplify/measure/measure_samples.h"
-#include "simplify/mesh/split_mix64.h"
 
 #include <algorithm>
 #include <cassert>
@@ -15,15 +14,6 @@ std::array<Vector3, N> cornersOf(std::span<const LatticePoint> points,
   std::array<Vector3, N> out;
   for (std::size_t i = 0; i < N; ++i) out[i] = toVector(points[cell[i]]);
   return out;
-}
-
-double areaOf(const std::array<Vector3, 3>& t) {
-  const Vector3 normal = cross(t[1] - t[0], t[2] - t[0]);
-  return std::sqrt(dot(normal, normal));
-}
-
-double volumeOf(const std::array<Vector3, 4>& t) {
-  return std::abs(dot(cross(t[1] - t[0], t[2] - t[0]), t[3] - t[0]));
 }
 
 /// Uniform in the unit triangle: the square's other half is turned onto it.
@@ -53,48 +43,75 @@ std::array<double, 4> tetrahedronWeights(SplitMix64& random) {
 
 /// One place in each of `count` equal parts of the total measure, cells lined up in the order of
 /// `ids`.
-template <std::size_t N, class MeasureOf, class Weights>
+template <std::size_t N>
 std::vector<ErrorSample> stratified(std::span<const LatticePoint> points, CellSpan cells,
                                     std::span<const std::uint32_t> ids, std::size_t count,
-                                    std::uint64_t seed, const MeasureOf& measureOf,
-                                    const Weights& weights) {
+                                    std::uint64_t seed) {
   double total = 0;
-  for (const std::uint32_t id : ids) total += measureOf(cornersOf<N>(points, cells[id]));
+  for (const std::uint32_t id : ids) total += placesMeasure(cornersOf<N>(points, cells[id]));
   std::vector<ErrorSample> out;
   if (!(total > 0)) return out;
   out.reserve(count);
-  SplitMix64 random(seed);
-  const auto next = [&] {
-    return (static_cast<double>(out.size()) + random.unit()) / static_cast<double>(count) * total;
-  };
-  double end = 0, wanted = next();
-  std::size_t lastWithMeasure = 0;
+  PlaceDraw draw(total, count, seed);
   const auto drawIn = [&](std::uint32_t id) {
-    assert(out.size() < count);
     const auto corners = cornersOf<N>(points, cells[id]);
-    ErrorSample sample{{}, id, weights(random)};
+    ErrorSample sample{{}, id, N == 3 ? draw.takeInTriangle() : draw.takeInTetrahedron()};
     std::array<double, N> own;
     std::copy_n(sample.weights.begin(), N, own.begin());
     sample.at = blend(corners, own);
     out.push_back(sample);
-    wanted = next();
   };
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const double measure = measureOf(cornersOf<N>(points, cells[ids[i]]));
-    end += measure;
-    if (measure > 0) lastWithMeasure = i;
-    while (measure > 0 && wanted < end && out.size() < count) drawIn(ids[i]);
+  std::uint32_t lastWithMeasure = 0;
+  for (const std::uint32_t id : ids) {
+    const double measure = placesMeasure(cornersOf<N>(points, cells[id]));
+    if (measure > 0) lastWithMeasure = id;
+    draw.enter(measure);
+    while (draw.hasPlace()) drawIn(id);
   }
-  while (out.size() < count) drawIn(ids[lastWithMeasure]);  // what rounding left behind the end
+  while (draw.isWanting()) drawIn(lastWithMeasure);  // what rounding left behind the end
   return out;
 }
 
 }  // namespace
 
+double placesMeasure(const std::array<Vector3, 3>& t) {
+  const Vector3 normal = cross(t[1] - t[0], t[2] - t[0]);
+  return std::sqrt(dot(normal, normal));
+}
+
+double placesMeasure(const std::array<Vector3, 4>& t) {
+  return std::abs(dot(cross(t[1] - t[0], t[2] - t[0]), t[3] - t[0]));
+}
+
+PlaceDraw::PlaceDraw(double total, std::size_t count, std::uint64_t seed)
+    : total_(total), count_(count), random_(seed) {
+  next();
+}
+
+void PlaceDraw::next() {
+  wanted_ = (static_cast<double>(drawn_) + random_.unit()) / static_cast<double>(count_) * total_;
+}
+
+std::array<double, 4> PlaceDraw::takeInTriangle() {
+  assert(isWanting());
+  const std::array<double, 4> out = triangleWeights(random_);
+  ++drawn_;
+  next();
+  return out;
+}
+
+std::array<double, 4> PlaceDraw::takeInTetrahedron() {
+  assert(isWanting());
+  const std::array<double, 4> out = tetrahedronWeights(random_);
+  ++drawn_;
+  next();
+  return out;
+}
+
 std::vector<ErrorSample> samplesOnSurface(std::span<const LatticePoint> points, CellSpan cells,
                                           std::span<const std::uint32_t> ids, std::size_t count,
                                           std::uint64_t seed) {
-  return stratified<3>(points, cells, ids, count, seed, areaOf, triangleWeights);
+  return stratified<3>(points, cells, ids, count, seed);
 }
 
 std::vector<ErrorSample> samplesInVolume(std::span<const LatticePoint> points, CellSpan cells,
@@ -102,7 +119,7 @@ std::vector<ErrorSample> samplesInVolume(std::span<const LatticePoint> points, C
   std::vector<std::uint32_t> ids;
   for (std::uint32_t i = 0; i < cells.size(); ++i)
     if (cells[i][3] != kGhost) ids.push_back(i);
-  return stratified<4>(points, cells, ids, count, seed, volumeOf, tetrahedronWeights);
+  return stratified<4>(points, cells, ids, count, seed);
 }
 
 }  // namespace qtet

@@ -1,12 +1,15 @@
 // Places that stand for a surface or a volume: uniform, stratified, and the same on every machine.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "codec/mesh/mesh.h"
 #include "simplify/mesh/measure_geometry.h"
+#include "simplify/mesh/split_mix64.h"
 
 namespace qtet {
 
@@ -18,6 +21,38 @@ struct ErrorSample {
   Vector3 at;
   std::uint32_t cell;
   std::array<double, 4> weights;  ///< barycentric
+};
+
+/// Twice the area, by which triangles share out places.
+[[nodiscard]] double placesMeasure(const std::array<Vector3, 3>& triangle);
+/// Six times the volume's magnitude, by which tetrahedra do.
+[[nodiscard]] double placesMeasure(const std::array<Vector3, 4>& tetrahedron);
+
+/// Draws places while the cells of a mesh go by in their order: one in each of `count` equal parts
+/// of the total measure. For each cell: enter, then `take` while it has a place.
+class PlaceDraw {
+ public:
+  /// `total` is the sum of all measures, in the same order.
+  PlaceDraw(double total, std::size_t count, std::uint64_t seed);
+
+  void enter(double measure) {
+    end_ += measure;
+    isOpen_ = measure > 0;
+  }
+  [[nodiscard]] bool hasPlace() const { return isOpen_ && wanted_ < end_ && isWanting(); }
+  /// Whether places are left. Rounding may leave one behind the last cell.
+  [[nodiscard]] bool isWanting() const { return drawn_ < count_; }
+  /// Barycentric weights of the place. REQUIRES: isWanting.
+  [[nodiscard]] std::array<double, 4> takeInTriangle();
+  [[nodiscard]] std::array<double, 4> takeInTetrahedron();
+
+ private:
+  void next();
+
+  double total_ = 0, end_ = 0, wanted_ = 0;
+  std::size_t count_ = 0, drawn_ = 0;
+  bool isOpen_ = false;
+  SplitMix64 random_;
 };
 
 using CellSpan = std::span<const std::array<VertexId, 4>>;

@@ -27,6 +27,15 @@ struct MeshField {
   LabelNames labelNames{};
 };
 
+[[nodiscard]] inline MeshField withoutValues(const MeshField& field) {
+  return {.name = field.name,
+          .components = field.components,
+          .type = field.type,
+          .values = {},
+          .association = field.association,
+          .labelNames = field.labelNames};
+}
+
 struct TetMesh {
   std::vector<Position> points;
   std::vector<Tetrahedron> tetrahedra;

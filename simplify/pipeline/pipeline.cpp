@@ -1,23 +1,29 @@
 #include "simplify/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
 #include <utility>
 
 #include "codec/log/log_manifest.h"
 #include "proto/field_key.h"
 #include "proto/version.h"
+#include "simplify/blocks/original_figures.h"
 #include "simplify/blocks/reduce_mesh.h"
 #include "simplify/cost/cost_parts.h"
 #include "simplify/cost/label_fields.h"
+#include "simplify/cost/mesh_figures.h"
 #include "simplify/log/lift_fields.h"
 #include "simplify/measure/focus.h"
 #include "simplify/measure/opening.h"
 #include "simplify/mesh/missing_values.h"
 #include "simplify/mesh/moved_place.h"
+#include "simplify/pieces/cleaned_pieces.h"
+#include "simplify/pieces/cut_pieces.h"
 #include "simplify/pipeline/fusion_choice.h"
 #include "simplify/pipeline/loss_warnings.h"
 #include "simplify/pipeline/moved_flips.h"
@@ -92,10 +98,11 @@ struct Run {
 
 /// Statistics have the unit of their series, unless they are given one. Errors: not-found (a unit
 /// of no field).
-Status takeUnits(const std::vector<MeshField>& fields, Run& run) {
+template <class Field>
+Status takeUnits(const std::vector<Field>& fields, Run& run) {
   const auto isThere = [&](std::string_view name) {
     return std::ranges::any_of(
-        fields, [&](const MeshField& field) { return field.name.withoutTime() == name; });
+        fields, [&](const Field& field) { return field.name.withoutTime() == name; });
   };
   run.units = run.options.units;
   for (const auto& [name, unit] : run.options.units) {
@@ -155,36 +162,6 @@ Result<QuantisedMesh> prepare(TetMesh&& given, Run& run) {
   return out;
 }
 
-/// Whether the mesh has more cells than the log's last level may have.
-bool isReduced(const LatticeMesh& mesh, const PipelineOptions& options) {
-  return options.finest && mesh.tetrahedra.size() > *options.finest;
-}
-
-/// REQUIRES: isReduced.
-Status reduce(QuantisedMesh& quantised, FusionOptions& options, Run& run) {
-  const std::size_t cells = quantised.mesh.tetrahedra.size();
-  ReduceOptions own;
-  own.cells = *run.options.finest;
-  own.spool = run.options.spool;
-  own.progress = run.stages.progress();
-  if (run.options.measure) {
-    const MeasuredPlaces places = placesFor(run.options.measure->effort, cells);
-    own.samples = {places.volume, places.vertices};
-    own.surfaceSamples = places.surface;
-  }
-  Result<ReducedMesh> out =
-      reduceMesh(std::move(quantised.mesh), std::move(quantised.missing), options, own);
-  if (!out) return std::unexpected(out.error());
-  quantised.mesh = std::move(out->mesh);
-  quantised.missing = std::move(out->missing);
-  options.envelopeTolerance = out->envelopeTolerance;
-  run.note({"the log ends at " + std::to_string(quantised.mesh.tetrahedra.size()) + " of " +
-            std::to_string(out->tetrahedra) + " cells; the mesh was reduced to them in " +
-            std::to_string(out->bands) + " bands of blocks"});
-  run.reduced = std::move(*out);
-  return {};
-}
-
 /// Simplifies by the algorithm asked for; the paper's leaves its figures in the report.
 Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run& run) {
   const EarlierFusions* const earlier = run.reduced ? &run.reduced->fusions : nullptr;
@@ -210,37 +187,111 @@ Result<FusionHistory> fuse(LatticeMesh&& mesh, const FusionOptions& options, Run
 constexpr double kFusingShare = 0.8;
 
 /// Notes which labels count, for measuring and the manifest.
-void takeLabels(const QuantisedMesh& quantised, const FusionOptions& options, Run& run) {
+void takeLabels(const MeshFigures& mesh, const FusionOptions& options, Run& run) {
   for (const LabelCost& label : options.cost.labels) {
-    const FieldName& name = quantised.mesh.fields[label.field].name;
-    const std::string series(name.withoutTime());
+    const FieldInfo& info = mesh.fields()[label.field];
+    const std::set<std::int32_t>& values = mesh.labels().valuesOf(label.field);
     run.labelFields.push_back(static_cast<std::uint32_t>(label.field));
-    run.labels[series].merge(
-        namesOfValues(quantised.mesh.fields[label.field], quantised.mesh.values[label.field]));
+    run.labels[std::string(info.name.withoutTime())].merge(
+        namesOfValues(info, {values.begin(), values.end()}));
     if (run.report.boundaryWeight && label.weight > 0)
-      run.report.labelWeights.emplace_back(name, label.weight);
+      run.report.labelWeights.emplace_back(info.name, label.weight);
   }
 }
 
-/// The history, with predictions of instants from others in the order of seriesOrder.
-Result<FusionHistory> simplify(QuantisedMesh& quantised, Run& run) {
-  const bool reduces = isReduced(quantised.mesh, run.options);
-  if (Status s = run.stages.begin(reduces ? Stage::kReduce : Stage::kSimplify); !s)
-    return std::unexpected(s.error());
-  Result<FusionOptions> options = fusionOptionsFor(run.options, quantised, run.report.notes);
-  if (!options) return std::unexpected(options.error());
+/// Chooses what counts when cells are fused.
+Result<FusionOptions> choose(const MeshFigures& mesh, Run& run) {
+  Result<FusionOptions> options = fusionOptionsFor(run.options, mesh, run.report.notes);
+  if (!options) return options;
   options->stop = run.options.stop;
   if (run.options.algorithm != Algorithm::kPaper &&
-      !costPartsOf(quantised.mesh, options->cost.fieldWeights).empty())
+      !costPartsOf(mesh.fields(), mesh.isOneValue(), options->cost.fieldWeights).empty())
     run.report.boundaryWeight = options->cost.boundaryWeight;
-  takeLabels(quantised, *options, run);
-  if (reduces) {
-    if (Status s = reduce(quantised, *options, run); !s) return std::unexpected(s.error());
-    if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
+  takeLabels(mesh, *options, run);
+  return options;
+}
+
+/// A mesh that is simplified from its first cell on, or what a reduction has left.
+struct ReadyMesh {
+  QuantisedMesh quantised;
+  FusionOptions options;
+};
+
+Result<ReadyMesh> readyOf(TetMesh&& mesh, Run& run) {
+  Result<QuantisedMesh> quantised = prepare(std::move(mesh), run);
+  if (!quantised) return std::unexpected(quantised.error());
+  if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
+  Result<FusionOptions> options = choose(LatticeFigures(quantised->mesh), run);
+  if (!options) return std::unexpected(options.error());
+  return ReadyMesh{std::move(*quantised), std::move(*options)};
+}
+
+/// Cleans the pieces and puts them on the lattice.
+Result<CleanedPieces> prepare(InputPieces& pieces, Run& run) {
+  if (Status s = run.stages.begin(Stage::kClean); !s) return std::unexpected(s.error());
+  Result<CleanedPieces> out = CleanedPieces::of(pieces, {.quantise = run.options.quantise,
+                                                         .units = run.options.units,
+                                                         .spool = run.options.spool,
+                                                         .stop = run.options.stop});
+  if (!out) return out;
+  run.report.tetrahedraIn = out->cellsOfInput();
+  run.report.clean = out->cleanReport();
+  run.report.quantise = out->quantiseReport();
+  run.note(run.report.clean.sentences());
+  run.note(out->notes());
+  run.note(run.report.quantise.notes);
+  if (Status s = takeUnits(out->fields(), run); !s) return std::unexpected(s.error());
+  return out;
+}
+
+/// Reduces the pieces to the log's last level.
+Result<ReadyMesh> readyOf(InputPieces& input, Run& run) {
+  Result<CleanedPieces> pieces = prepare(input, run);
+  if (!pieces) return std::unexpected(pieces.error());
+  if (Status s = run.stages.begin(Stage::kQuantise); !s) return std::unexpected(s.error());
+  Result<OriginalFigures> figures = OriginalFigures::of(*pieces);
+  if (!figures) return std::unexpected(figures.error());
+  if (Status s = run.stages.begin(Stage::kReduce); !s) return std::unexpected(s.error());
+  run.wallThickness = figures->wallThickness();
+  Result<FusionOptions> options = choose(*figures, run);
+  if (!options) return std::unexpected(options.error());
+  ReduceOptions own;
+  own.cells = *run.options.finest;
+  own.spool = run.options.spool;
+  own.progress = run.stages.progress();
+  if (run.options.measure) {
+    const MeasuredPlaces places = placesFor(run.options.measure->effort, pieces->tetrahedra());
+    own.samples = {places.volume, places.vertices};
+    own.surfaceSamples = places.surface;
   }
-  const bool hasSeries = !seriesOf(quantised.mesh.fields).empty();
-  options->progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
-  Result<FusionHistory> history = fuse(std::move(quantised.mesh), *options, run);
+  FusionOptions inBlocks = *options;
+  if (run.options.memory) {
+    const std::uint64_t blocks = std::max<std::uint64_t>(1, *run.options.memory / kBlockBytes);
+    inBlocks.threads = static_cast<int>(
+        std::min<std::uint64_t>(static_cast<std::uint64_t>(std::max(inBlocks.threads, 1)), blocks));
+  }
+  Result<ReducedMesh> out = reduceMesh(*pieces, *figures, inBlocks, own);
+  if (!out) return std::unexpected(out.error());
+  ReadyMesh ready{.quantised = {.mesh = std::move(out->mesh),
+                                .report = run.report.quantise,
+                                .missing = std::move(out->missing)},
+                  .options = std::move(*options)};
+  ready.options.envelopeTolerance = out->envelopeTolerance;
+  run.note({"the log ends at " + std::to_string(ready.quantised.mesh.tetrahedra.size()) + " of " +
+            std::to_string(out->tetrahedra) + " cells; the mesh was reduced to them in " +
+            std::to_string(out->bands) + " bands of blocks"});
+  run.reduced = std::move(*out);
+  run.focus = focusOf(ready.quantised.mesh);
+  run.opening = openingOf(ready.quantised.mesh, run.focus);
+  if (Status s = run.stages.begin(Stage::kSimplify); !s) return std::unexpected(s.error());
+  return ready;
+}
+
+/// The history, with predictions of instants from others in the order of seriesOrder.
+Result<FusionHistory> simplify(ReadyMesh& ready, Run& run) {
+  const bool hasSeries = !seriesOf(ready.quantised.mesh.fields).empty();
+  ready.options.progress = run.stages.progress(0, hasSeries ? kFusingShare : 1);
+  Result<FusionHistory> history = fuse(std::move(ready.quantised.mesh), ready.options, run);
   if (!history) return history;
   if (run.reduced) run.reduced->fusions.quadrics = {};
   const Result<std::size_t> predicted =
@@ -358,6 +409,22 @@ void warn(Run& run) {
   run.report.warnings.insert(run.report.warnings.end(), outlying.begin(), outlying.end());
 }
 
+/// Simplifies, measures and encodes.
+Result<PipelineOutput> logOf(Result<ReadyMesh> ready, Run& run) {
+  if (!ready) return std::unexpected(ready.error());
+  Result<FusionHistory> history = simplify(*ready, run);
+  if (!history) return std::unexpected(history.error());
+  Result<LevelErrors> errors = measure(*history, run);
+  if (!errors) return std::unexpected(errors.error());
+  Result<MadeLog> log = encode(*history, ready->quantised, std::move(*errors), run);
+  if (!log) return std::unexpected(log.error());
+  run.stages.end();
+  if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());
+  if (run.report.index.hasSeries()) run.note({differencesNote(run.report.index)});
+  warn(run);
+  return PipelineOutput{std::move(*log), std::move(run.report)};
+}
+
 Status badValue(std::string what) { return fail(ErrorCode::kBadValue, std::move(what)); }
 
 }  // namespace
@@ -404,20 +471,23 @@ Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& opti
   constexpr std::uint64_t kAddresses = std::numeric_limits<std::size_t>::max();
   if (Status fits = checkRoom(mesh.tetrahedra.size(), kAddresses); !fits)
     return std::unexpected(fits.error());
+  if (!options.finest || mesh.tetrahedra.size() <= *options.finest) {
+    Run run{options};
+    return logOf(readyOf(std::move(mesh), run), run);
+  }
+  if (options.timeStatistics)
+    if (Status added = addTimeStatistics(mesh.fields); !added)
+      return std::unexpected(added.error());
+  putInOrder(seriesOrder(mesh.fields), mesh.fields);
+  CutPieces pieces(std::move(mesh));
+  return simplifyToLog(pieces, options);
+}
+
+Result<PipelineOutput> simplifyToLog(InputPieces& pieces, const PipelineOptions& options) {
+  assert(options.finest);
+  if (Status checked = checkOptions(options); !checked) return std::unexpected(checked.error());
   Run run{options};
-  Result<QuantisedMesh> quantised = prepare(std::move(mesh), run);
-  if (!quantised) return std::unexpected(quantised.error());
-  Result<FusionHistory> history = simplify(*quantised, run);
-  if (!history) return std::unexpected(history.error());
-  Result<LevelErrors> errors = measure(*history, run);
-  if (!errors) return std::unexpected(errors.error());
-  Result<MadeLog> log = encode(*history, *quantised, std::move(*errors), run);
-  if (!log) return std::unexpected(log.error());
-  run.stages.end();
-  if (Status read = readBack(*log, run.report); !read) return std::unexpected(read.error());
-  if (run.report.index.hasSeries()) run.note({differencesNote(run.report.index)});
-  warn(run);
-  return PipelineOutput{std::move(*log), std::move(run.report)};
+  return logOf(readyOf(pieces, run), run);
 }
 
 }  // namespace qtet

@@ -20,6 +20,7 @@
 #include "simplify/log/kept_input.h"
 #include "simplify/measure/measure_error.h"
 #include "simplify/parts/parts_simplify.h"
+#include "simplify/pieces/input_pieces.h"
 #include "simplify/pipeline/made_log.h"
 
 namespace qtet {
@@ -53,6 +54,9 @@ struct PipelineOptions {
   /// The mesh is reduced to so many cells before, in blocks (BLOCKS.md). They are the log's last
   /// level. A mesh of no more cells stays.
   std::optional<std::size_t> finest{};
+  /// Bytes that reducing may take. It limits the blocks in hand and so the threads, never the
+  /// result.
+  std::optional<std::uint64_t> memory{};
   /// A large mesh is simplified in parts, on all cores. Without: in one piece.
   std::optional<PartsOptions> parts{};
   CodecId valueCodec = CodecId::kLifted;
@@ -116,6 +120,10 @@ struct PipelineOutput {
 
 /// Simplifying takes 275 to 340 bytes a cell, fields included; this is what it never does without.
 constexpr std::uint64_t kLeastBytesACell = 250;
+/// It takes at most so much, with a dozen of values a point.
+constexpr std::uint64_t kMostBytesACell = 340;
+/// A block of a reduction takes so much while it is fused.
+constexpr std::uint64_t kBlockBytes = 400'000'000;
 /// Error: limit-exceeded (so many cells cannot be simplified where a program has `most` bytes, such
 /// as the 4 GiB of WebAssembly).
 [[nodiscard]] Status checkRoom(std::uint64_t cells, std::uint64_t most);
@@ -127,5 +135,10 @@ constexpr std::uint64_t kLeastBytesACell = 250;
 /// that cannot be one); cancelled. REQUIRES: a mesh
 /// that checkArrays or readMesh has passed.
 [[nodiscard]] Result<PipelineOutput> simplifyToLog(TetMesh&& mesh, const PipelineOptions& options);
+/// The same of a mesh that comes in pieces, which is never held as a whole. The log has
+/// `options.finest` cells at most. Errors: the same, CleanedPieces's. REQUIRES: `finest`; no time
+/// statistics.
+[[nodiscard]] Result<PipelineOutput> simplifyToLog(InputPieces& pieces,
+                                                   const PipelineOptions& options);
 
 }  // namespace qtet

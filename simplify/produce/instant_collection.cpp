@@ -43,12 +43,19 @@ Status InstantCollection::add(std::optional<double> time, ByteView bytes) {
   return {};
 }
 
-Status InstantCollection::finish() {
-  const std::string text = collectionText(written_);
+Status InstantCollection::finish() { return finish(collectionText(written_)); }
+
+Status InstantCollection::finish(std::string_view text) {
   if (Status s = writeFileAtomically(file_, viewOf(text)); !s) return s;
   bytes_ += text.size();
   ownsFolder_ = false;
   return {};
+}
+
+std::vector<std::string> InstantCollection::names() const {
+  std::vector<std::string> out;
+  for (const auto& [time, file] : written_) out.push_back(file);
+  return out;
 }
 
 OrderedJson InstantCollection::filesJson() const {

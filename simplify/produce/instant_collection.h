@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,9 +26,13 @@ class InstantCollection {
   [[nodiscard]] Status add(std::optional<double> time, ByteView bytes);
   /// Writes NAME.pvd. Errors: writeFileAtomically's.
   [[nodiscard]] Status finish();
+  /// Writes it with another text, for files that are no instants. Errors: the same.
+  [[nodiscard]] Status finish(std::string_view text);
 
   /// The size of all files, with the collection itself when it is finished.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  /// The files so far, relative to the collection.
+  [[nodiscard]] std::vector<std::string> names() const;
   /// [{time, file}]
   [[nodiscard]] OrderedJson filesJson() const;
   /// "3 instants in wake"

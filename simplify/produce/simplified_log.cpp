@@ -1,7 +1,11 @@
 #include "simplify/produce/simplified_log.h"
 
+#include <algorithm>
 #include <chrono>
+#include <fstream>
+#include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -9,6 +13,7 @@
 #include "simplify/pipeline/series_pipeline.h"
 #include "simplify/produce/made_log_report.h"
 #include "simplify/produce/written_log.h"
+#include "simplify/read/pieces/vtu_pieces.h"
 #include "simplify/read/read_mesh.h"
 #include "simplify/read/read_times.h"
 #include "simplify/series/series.h"
@@ -74,6 +79,49 @@ struct Made {
   PipelineOutput output;
 };
 
+/// Bytes that are free, as the system tells; most where it does not.
+std::uint64_t freeMemory() {
+  std::ifstream info("/proc/meminfo");
+  std::string name, unit;
+  for (std::uint64_t kilobytes = 0; info >> name >> kilobytes;) {
+    if (name == "MemAvailable:") return kilobytes * 1024;
+    std::getline(info, unit);
+  }
+  return std::numeric_limits<std::uint64_t>::max();
+}
+
+/// Cells of a file that is to be reduced piece by piece; null: it is read as a whole.
+Result<std::unique_ptr<VtuPieces>> piecesOf(const SimplifyRequest& request,
+                                            PipelineOptions& options, std::string& note) {
+  if (options.keep.any() || options.timeStatistics || options.algorithm == Algorithm::kPaper)
+    return nullptr;
+  std::string why;
+  Result<std::unique_ptr<VtuPieces>> pieces = VtuPieces::open(request.input, request.read, why);
+  const bool isAsked = options.finest.has_value();
+  if (!pieces) return isAsked ? std::move(pieces) : nullptr;  // reading says what is wrong
+  if (!*pieces) {
+    if (options.memory) note = "the file was read as a whole: " + why;
+    return nullptr;
+  }
+  const std::uint64_t cells = (*pieces)->cells();
+  if (isAsked) return cells > *options.finest ? std::move(pieces) : nullptr;
+  const std::uint64_t free = freeMemory();
+  if (cells <= kDefaultFinest || cells <= free / kLeastBytesACell) return nullptr;
+  options.finest = kDefaultFinest;
+  note = "simplifying its " + std::to_string(cells) + " cells takes " +
+         std::to_string(cells * kLeastBytesACell / 1'000'000'000) + " GB and more, and " +
+         std::to_string(free / 1'000'000'000) + " GB are free: the log ends at " +
+         std::to_string(kDefaultFinest) + " cells; `finest` or `memory` sets another end";
+  return pieces;
+}
+
+Result<Made> makeInPieces(VtuPieces& pieces, const PipelineOptions& options) {
+  if (Status s = pieces.begin(options.spool); !s) return std::unexpected(s.error());
+  Result<PipelineOutput> made = simplifyToLog(pieces, options);
+  if (!made) return std::unexpected(made.error());
+  return Made{pieces.report(), std::move(*made)};
+}
+
 Result<Made> makeAtOnce(const SimplifyRequest& request, const std::vector<double>& times,
                         const PipelineOptions& options, Stopwatch& watch) {
   Result<ReadMesh> read = times.size() > kWindow
@@ -119,6 +167,10 @@ std::filesystem::path spoolOf(const Output& output) {
 
 }  // namespace
 
+std::size_t finestWithin(std::uint64_t memory) {
+  return std::min<std::size_t>(kDefaultFinest, memory / kMostBytesACell);
+}
+
 Result<OrderedJson> makeLog(const SimplifyRequest& request, const Output& output,
                             Progress& progress) {
   Stopwatch watch;
@@ -131,9 +183,15 @@ Result<OrderedJson> makeLog(const SimplifyRequest& request, const Output& output
   const std::vector<double>& times = chosen->times;
   const bool isLong = times.size() > kSampledInstants && !request.pipeline.keep.exact &&
                       times.size() * chosen->valuesOfAStep > kMaxValuesAtOnce;
-  const Result<Made> all = isLong ? makeInWindows(request, times, options, watch)
-                                  : makeAtOnce(request, times, options, watch);
+  std::string note;
+  const Result<std::unique_ptr<VtuPieces>> pieces =
+      times.size() > 1 ? nullptr : piecesOf(request, options, note);
+  if (!pieces) return std::unexpected(pieces.error());
+  Result<Made> all = *pieces  ? makeInPieces(**pieces, options)
+                     : isLong ? makeInWindows(request, times, options, watch)
+                              : makeAtOnce(request, times, options, watch);
   if (!all) return std::unexpected(all.error());
+  if (!note.empty()) all->read.notes.insert(all->read.notes.begin(), std::move(note));
   const PipelineOutput* const made = &all->output;
   watch.lap(made->report);
   const Result<WrittenLog> written =

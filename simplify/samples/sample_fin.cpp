@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -202,8 +204,9 @@ struct Instant {
   std::string suffix;
   FlowPhase phase;
 };
-TetMesh finMesh(std::uint64_t cells, const std::vector<Instant>& instants) {
-  const Grid grid = gridOf(cells);
+/// The cells of the layers from `begin` to `end`.
+TetMesh finMesh(const Grid& grid, VertexId begin, VertexId end,
+                const std::vector<Instant>& instants) {
   const CubeSurface surface = halfCube(grid);
   const auto perLayer = static_cast<VertexId>(surface.directions.size());
 
@@ -212,7 +215,8 @@ TetMesh finMesh(std::uint64_t cells, const std::vector<Instant>& instants) {
     for (const auto& [name, components] :
          {std::pair{"Density", 1u}, {"Pressure", 1u}, {"Velocity", 3u}})
       mesh.fields.push_back({name + instant.suffix, components, "float32", {}});
-  for (const double height : layerHeights(grid)) {
+  const std::vector<double> heights = layerHeights(grid);
+  for (const double height : std::span(heights).subspan(begin, end - begin + 1)) {
     for (const Position& direction : surface.directions) {
       const Position p = pointAt(direction, height);
       mesh.points.push_back(p);
@@ -226,7 +230,7 @@ TetMesh finMesh(std::uint64_t cells, const std::vector<Instant>& instants) {
       }
     }
   }
-  for (VertexId layer = 0; layer < grid.layers; ++layer) {
+  for (VertexId layer = 0; layer < end - begin; ++layer) {
     for (const Triangle& t : surface.triangles)
       addPrism(t, layer * perLayer, (layer + 1) * perLayer, mesh.tetrahedra);
   }
@@ -235,7 +239,21 @@ TetMesh finMesh(std::uint64_t cells, const std::vector<Instant>& instants) {
 
 }  // namespace
 
-TetMesh finSample(std::uint64_t cells) { return finMesh(cells, {{"", {}}}); }
+TetMesh finSample(std::uint64_t cells) {
+  const Grid grid = gridOf(cells);
+  return finMesh(grid, 0, grid.layers, {{"", {}}});
+}
+
+std::uint32_t finLayers(std::uint64_t cells) { return gridOf(cells).layers; }
+
+TetMesh finPiece(std::uint64_t cells, std::uint32_t piece, std::uint32_t pieces) {
+  const Grid grid = gridOf(cells);
+  assert(piece < pieces && pieces <= grid.layers);
+  const auto layer = [&](std::uint64_t i) {
+    return static_cast<VertexId>(i * grid.layers / pieces);
+  };
+  return finMesh(grid, layer(piece), layer(piece + std::uint64_t{1}), {{"", {}}});
+}
 
 TetMesh finSeries(std::uint64_t cells, std::uint32_t instants) {
   std::vector<Instant> phases;
@@ -243,7 +261,8 @@ TetMesh finSeries(std::uint64_t cells, std::uint32_t instants) {
     const double left = 1 - static_cast<double>(i) / (instants - 1);
     phases.push_back({"@" + std::to_string(i), {kShockWay * left * left, kShedBends * (1 - left)}});
   }
-  return finMesh(cells, phases);
+  const Grid grid = gridOf(cells);
+  return finMesh(grid, 0, grid.layers, phases);
 }
 
 }  // namespace qtet

@@ -16,8 +16,10 @@ namespace qtet {
 
 inline constexpr std::uint64_t kBoxCells = 3072, kFinCells = 212544, kBeamCells = 67200,
                                kSpringCells = 107520, kBallCells = 82944, kElbowCells = 72000;
-/// A mesh of this many cells takes some 30 GB to simplify.
+/// A mesh of so many cells takes 7 GB to make.
 inline constexpr std::uint64_t kMaxSampleCells = 100'000'000;
+/// One of so many in pieces fills a disk of 30 GB.
+inline constexpr std::uint64_t kMaxCellsInPieces = 1'000'000'000;
 
 struct Sample {
   std::string_view name;
@@ -52,6 +54,11 @@ inline constexpr std::uint32_t kMaxSampleInstants = kMaxFields / 3;
 /// many as asked for, 2,400 at least, in layers that grow from the wall; fields Density, Pressure,
 /// Velocity (free stream: 1, 1/1.4, Mach 2.95).
 [[nodiscard]] TetMesh finSample(std::uint64_t cells = kFinCells);
+/// Layers of the same, which are as many at least as it may have pieces.
+[[nodiscard]] std::uint32_t finLayers(std::uint64_t cells);
+/// Piece `piece` of `pieces` of the same: some layers, with all of their points. REQUIRES: piece <
+/// pieces <= finLayers(cells).
+[[nodiscard]] TetMesh finPiece(std::uint64_t cells, std::uint32_t piece, std::uint32_t pieces);
 /// The same while the stream settles: the shock travels to its place, and the wake sheds bends.
 [[nodiscard]] TetMesh finSeries(std::uint64_t cells, std::uint32_t instants);
 

@@ -17,23 +17,6 @@
 namespace qtet {
 namespace {
 
-std::string typeName(const VtuArray& array) {
-  if (array.isIdType) return "int64";
-  switch (array.type) {
-    case VtuNumber::kInt8: return "int8";
-    case VtuNumber::kBit:
-    case VtuNumber::kUInt8: return "uint8";
-    case VtuNumber::kInt16: return "int16";
-    case VtuNumber::kUInt16: return "uint16";
-    case VtuNumber::kInt32: return "int32";
-    case VtuNumber::kUInt32: return "uint32";
-    case VtuNumber::kInt64: return "int64";
-    case VtuNumber::kUInt64: return "uint64";
-    case VtuNumber::kFloat32: return "float32";
-    default: return "float64";
-  }
-}
-
 bool isFloat(const VtuArray& array) {
   return array.type == VtuNumber::kFloat32 || array.type == VtuNumber::kFloat64;
 }
@@ -202,17 +185,12 @@ class VtuReader {
     return {};
   }
 
-  static bool isOfTheShape(const VtuFields& fields, const VtuArray& array) {
-    return (array.name == kDegreesField && fields.degrees == array.name && array.components == 3) ||
-           (array.name == kWeightsField && fields.weights == array.name && array.components == 1);
-  }
-
   Result<MeshField> fieldOf(const VtuArray& array, const Association& of) {
     const auto parts = partsOf(array, of);
     if (!parts) return std::unexpected(parts.error());
     const auto certain = certainTuples(*parts);
     if (!certain) return std::unexpected(certain.error());
-    MeshField field{{}, array.components, typeName(array), {}, of.name};
+    MeshField field{{}, array.components, fieldTypeOf(array), {}, of.name};
     field.values.reserve(*certain * array.components);
     const Status done = readParts(*parts, [&](std::span<const double> values) {
       field.values.insert(field.values.end(), values.begin(), values.end());
@@ -294,6 +272,28 @@ class VtuReader {
 };
 
 }  // namespace
+
+bool isOfTheShape(const VtuFields& fields, const VtuArray& array) {
+  return (array.name == kDegreesField && fields.degrees == array.name && array.components == 3) ||
+         (array.name == kWeightsField && fields.weights == array.name && array.components == 1);
+}
+
+std::string fieldTypeOf(const VtuArray& array) {
+  if (array.isIdType) return "int64";
+  switch (array.type) {
+    case VtuNumber::kInt8: return "int8";
+    case VtuNumber::kBit:
+    case VtuNumber::kUInt8: return "uint8";
+    case VtuNumber::kInt16: return "int16";
+    case VtuNumber::kUInt16: return "uint16";
+    case VtuNumber::kInt32: return "int32";
+    case VtuNumber::kUInt32: return "uint32";
+    case VtuNumber::kInt64: return "int64";
+    case VtuNumber::kUInt64: return "uint64";
+    case VtuNumber::kFloat32: return "float32";
+    default: return "float64";
+  }
+}
 
 Result<CellMesh> readVtu(const VtuFile& file, const VtuDocument& document, const FieldNames& fields,
                          ReadReport& report) {

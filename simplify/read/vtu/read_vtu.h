@@ -19,6 +19,11 @@ namespace qtet {
 [[nodiscard]] Result<CellMesh> readVtu(const VtuFile& file, const VtuDocument& document,
                                        const FieldNames& fields, ReadReport& report);
 
+/// MeshField::type of an array's numbers.
+[[nodiscard]] std::string fieldTypeOf(const VtuArray& array);
+/// GridArray::isOfTheShape of an array among `fields`.
+[[nodiscard]] bool isOfTheShape(const VtuFields& fields, const VtuArray& array);
+
 /// The time of the document's one step; nullopt: it has none. Errors: those of readReals.
 [[nodiscard]] Result<std::optional<double>> readVtuTime(const VtuFile& file,
                                                         const VtuDocument& document);

@@ -8,6 +8,7 @@
 
 #include "codec/files/file_spool.h"
 #include "simplify/mesh/triangle_tree.h"
+#include "tests/simplify/blocks/whole_pieces.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random_solid.h"
 
@@ -18,9 +19,8 @@ const ReduceOptions kSmall{
     .cells = 1000, .blockCells = 700, .samples = {2000, 500}, .surfaceSamples = 500};
 
 Result<ReducedMesh> reduced(const LatticeMesh& mesh, const FusionOptions& options = {},
-                            const ReduceOptions& reduce = kSmall) {
-  LatticeMesh copy = mesh;
-  return reduceMesh(std::move(copy), {}, options, reduce);
+                            const ReduceOptions& reduce = kSmall, std::size_t pieces = 1) {
+  return testing::reduceWhole(mesh, {}, options, reduce, pieces);
 }
 
 Bytes bytesOf(const ReducedMesh& mesh) {
@@ -124,6 +124,20 @@ TEST(ReduceMesh, theResultDependsOnNoThreadsAndNoSpool) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
+TEST(ReduceMesh, theResultDependsOnNoPiecesOfTheOriginal) {
+  LatticeMesh mesh = testing::gridMesh(7, 4);
+  testing::addCellFields(mesh);
+  const Result<ReducedMesh> one = reduced(mesh);
+  ASSERT_TRUE(one);
+  for (const std::size_t pieces : {2, 7}) {
+    const Result<ReducedMesh> other = reduced(mesh, {}, kSmall, pieces);
+    ASSERT_TRUE(other);
+    EXPECT_EQ(bytesOf(*other), bytesOf(*one)) << pieces;
+    EXPECT_EQ(other->samples.truth, one->samples.truth);
+    EXPECT_EQ(other->samples.surface, one->samples.surface);
+  }
+}
+
 TEST(ReduceMesh, cellFieldsRegionsAndMissingValuesComeThrough) {
   LatticeMesh mesh = testing::gridMesh(8, 2);
   testing::addCellFields(mesh);
@@ -134,8 +148,7 @@ TEST(ReduceMesh, cellFieldsRegionsAndMissingValuesComeThrough) {
   FusionOptions options;
   options.regionField = 2;
   options.cost.labels = {{2, 1}};
-  LatticeMesh copy = mesh;
-  const Result<ReducedMesh> out = reduceMesh(std::move(copy), missing, options, kSmall);
+  const Result<ReducedMesh> out = testing::reduceWhole(mesh, missing, options, kSmall);
   ASSERT_TRUE(out) << out.error().text();
   EXPECT_EQ(testing::whatIsWrongWith(out->mesh), "");
   for (std::size_t f = 0; f < mesh.fields.size(); ++f) {

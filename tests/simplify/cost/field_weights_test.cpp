@@ -19,7 +19,7 @@ LatticeMesh meshWith(const std::vector<std::string>& pointFields) {
 Weights weightsBy(const std::vector<std::string>& names, const std::vector<double>& errors) {
   std::vector<CostPart> parts;
   for (std::size_t f = 1; f <= names.size(); ++f) parts.push_back({f, 1});
-  return balancedFieldWeights(meshWith(names), parts, errors);
+  return balancedFieldWeights(meshWith(names).fields, parts, errors);
 }
 
 TEST(FieldWeights, fallWithTheExpectedError) {

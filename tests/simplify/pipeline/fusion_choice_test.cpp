@@ -23,7 +23,7 @@ CostOptions costBy(const PipelineOptions& options, QuantisedMesh& quantised) {
   std::ranges::fill(mesh.fields.back().values, 1);
   std::vector<std::string> notes;
   quantised = quantise(mesh).value();
-  const auto chosen = fusionOptionsFor(options, quantised, notes);
+  const auto chosen = fusionOptionsFor(options, LatticeFigures(quantised.mesh), notes);
   EXPECT_TRUE(chosen);
   return chosen->cost;
 }

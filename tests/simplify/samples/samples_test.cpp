@@ -186,5 +186,26 @@ TEST(Samples, anUnknownNameIsToldTheKnownOnes) {
   EXPECT_NE(mesh.error().message.find("box, fin"), std::string::npos);
 }
 
+TEST(Samples, theFinInPiecesIsTheFin) {
+  const TetMesh whole = finSample(5000);
+  const std::uint32_t layers = finLayers(5000);
+  for (const std::uint32_t pieces : {1u, 3u, layers}) {
+    std::size_t cells = 0, ofPoint = 0;
+    for (std::uint32_t i = 0; i < pieces; ++i) {
+      const TetMesh piece = finPiece(5000, i, pieces);
+      const auto first = std::ranges::find(whole.points, piece.points.front());
+      ASSERT_NE(first, whole.points.end());
+      ofPoint = static_cast<std::size_t>(first - whole.points.begin());
+      for (Tetrahedron cell : piece.tetrahedra) {
+        for (VertexId& v : cell) v += static_cast<VertexId>(ofPoint);
+        ASSERT_EQ(cell, whole.tetrahedra[cells++]);
+      }
+      for (std::size_t v = 0; v < piece.points.size(); ++v)
+        ASSERT_EQ(piece.fields[1].values[v], whole.fields[1].values[ofPoint + v]);
+    }
+    EXPECT_EQ(cells, whole.tetrahedra.size());
+  }
+}
+
 }  // namespace
 }  // namespace qtet
