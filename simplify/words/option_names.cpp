@@ -24,6 +24,7 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"`lossless`", "--lossless"},
     {"`maxBoundaryError`", "--max-boundary-error"},
     {"`measure`", "--measure"},
+    {"`memory`", "--memory"},
     {"`originalIds`", "--original-ids"},
     {"`parts`", "--parts"},
     {"`readSeconds`", "--read-seconds"},

@@ -40,7 +40,7 @@ std::string whatTakesAll(const ReadOptions& options) {
   if (options.threshold) return "`threshold`";
   if (options.originalIds) return "`originalIds`";
   if (!options.listed.files.empty()) return "a series of files";
-  if (options.plot3d) return "`plot3d`";
+  if (options.plot3d) return "a PLOT3D grid";
   return {};
 }
 
