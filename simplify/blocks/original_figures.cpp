@@ -41,13 +41,6 @@ LatticeMesh meshOf(MeshPiece& piece, const LatticePieces& whole) {
   return out;
 }
 
-template <std::size_t N, class Corners>
-std::array<Vector3, N> placesOf(const LatticeMesh& mesh, const Corners& corners) {
-  std::array<Vector3, N> out;
-  for (std::size_t i = 0; i < N; ++i) out[i] = toVector(mesh.points[corners[i]]);
-  return out;
-}
-
 }  // namespace
 
 /// One look at all pieces.
@@ -80,12 +73,12 @@ class OriginalFigures::Look {
     for (const LatticePoint& p : mesh.points)
       for (std::size_t a = 0; a < 3; ++a) box_[a].include(p[a]);
     for (const Tetrahedron& cell : mesh.tetrahedra) {
-      out_.cellMeasure_ += placesMeasure(placesOf<4>(mesh, cell));
+      out_.cellMeasure_ += placesMeasure(cornersOf<4>(mesh.points, cell));
       if (cells_++ % middleStep_ == 0) out_.middles_.push_back(middleOf(mesh.points, cell));
       takeFaces(mesh, names, cell);
     }
     for (const Triangle& t : mesh.boundary) {
-      out_.surfaceMeasure_ += placesMeasure(placesOf<3>(mesh, t));
+      out_.surfaceMeasure_ += placesMeasure(cornersOf<3>(mesh.points, t));
       volume_ += qtet::volume6({0, 0, 0}, mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
       for (std::size_t i = 0; i < 3; ++i)
         if (isSampledEdge(mesh, t[i], t[(i + 1) % 3], out_.edgeStep_)) {

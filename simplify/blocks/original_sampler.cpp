@@ -12,13 +12,6 @@ namespace {
 
 constexpr std::uint64_t kFieldSeed = 0x5EEDF1E1D5u;  // other numbers than the surface's
 
-template <std::size_t N, class Corners>
-std::array<Vector3, N> cornersOf(const MeshPiece& piece, const Corners& corners) {
-  std::array<Vector3, N> out;
-  for (std::size_t i = 0; i < N; ++i) out[i] = toVector(piece.points[corners[i]]);
-  return out;
-}
-
 }  // namespace
 
 OriginalSampler::OriginalSampler(const LatticePieces& whole, const OriginalFigures& figures,
@@ -40,7 +33,7 @@ void OriginalSampler::take(GivenPiece& given) {
   MeshPiece& piece = given.piece;
   std::optional<CellId> last;  // with a volume
   for (CellId c = 0; c < piece.tetrahedra.size(); ++c) {
-    const double measure = placesMeasure(cornersOf<4>(piece, piece.tetrahedra[c]));
+    const double measure = placesMeasure(cornersOf<4>(piece.points, piece.tetrahedra[c]));
     if (measure > 0) last = c;
     volume_.enter(measure);
     while (volume_.hasPlace()) drawIn(piece, c);
@@ -48,7 +41,7 @@ void OriginalSampler::take(GivenPiece& given) {
   // what rounding left behind the end
   while (given.isLast && last && uniform_ > 0 && volume_.isWanting()) drawIn(piece, *last);
   for (const PieceTriangle& t : piece.boundary) {
-    const std::array<Vector3, 3> corners = cornersOf<3>(piece, t.corners);
+    const std::array<Vector3, 3> corners = cornersOf<3>(piece.points, t.corners);
     surface_.enter(placesMeasure(corners));
     while (surface_.hasPlace()) {
       const std::array<double, 4> weights = surface_.takeInTriangle();
@@ -61,7 +54,7 @@ void OriginalSampler::take(GivenPiece& given) {
 void OriginalSampler::drawIn(MeshPiece& piece, CellId cell) {
   const std::array<double, 4> weights = volume_.takeInTetrahedron();
   piece.places.push_back({static_cast<std::uint32_t>(out_.places.size()), cell});
-  out_.places.push_back({blend(cornersOf<4>(piece, piece.tetrahedra[cell]), weights), cell});
+  out_.places.push_back({blend(cornersOf<4>(piece.points, piece.tetrahedra[cell]), weights), cell});
   addTruth(piece, cell, weights, out_.truth);
 }
 

@@ -88,13 +88,9 @@ MatchedFaces dropDuplicateCells(Cleaning& cleaning) {
 
 Status checkCrowds(const Cleaning& cleaning, const MatchedFaces& faces) {
   if (faces.crowded.empty()) return {};
-  std::string list;
-  for (const CellId cell : faces.firstCrowd)
-    list += (list.empty() ? "" : ", ") + std::to_string(cleaning.cellNames[cell]);
-  return fail(ErrorCode::kBadInput,
-              std::to_string(faces.firstCrowd.size()) + " cells (" + list +
-                  ") share one face, so they overlap; at most two can. Remove the superfluous "
-                  "ones, or export the parts as separate files");
+  std::vector<std::uint64_t> cells;
+  for (const CellId cell : faces.firstCrowd) cells.push_back(cleaning.cellNames[cell]);
+  return overlap(cells);
 }
 
 double volume6Of(const TetMesh& mesh, const Tetrahedron& t) {
@@ -127,12 +123,7 @@ Result<std::vector<CellId>> orientComponent(CellId first, const Cleaning& cleani
         sense[other] = wanted;
         component.push_back(other);
       } else if (sense[other] != wanted) {
-        return fail(ErrorCode::kBadInput, "cells " + std::to_string(cleaning.cellNames[cell]) +
-                                              " and " + std::to_string(cleaning.cellNames[other]) +
-                                              " close a ring of cells that cannot be given one "
-                                              "inside and outside (as a Moebius strip); "
-                                              "such a mesh is not a solid in space: "
-                                              "look for wrongly merged points near these cells");
+        return ringWithoutInside(cleaning.cellNames[cell], cleaning.cellNames[other]);
       }
     }
   }
@@ -277,6 +268,23 @@ std::string sentence(const Occurrences& found, const std::string& what, const st
 }
 
 }  // namespace
+
+std::unexpected<Error> overlap(std::span<const std::uint64_t> cells) {
+  std::string list;
+  for (const std::uint64_t cell : cells) list += (list.empty() ? "" : ", ") + std::to_string(cell);
+  return fail(ErrorCode::kBadInput,
+              std::to_string(cells.size()) + " cells (" + list +
+                  ") share one face, so they overlap; at most two can. Remove the superfluous "
+                  "ones, or export the parts as separate files");
+}
+
+std::unexpected<Error> ringWithoutInside(std::uint64_t cell, std::uint64_t other) {
+  return fail(ErrorCode::kBadInput,
+              "cells " + std::to_string(cell) + " and " + std::to_string(other) +
+                  " close a ring of cells that cannot be given one inside and outside (as a "
+                  "Moebius strip); such a mesh is not a solid in space: look for wrongly merged "
+                  "points near these cells");
+}
 
 std::vector<std::string> CleanReport::sentences() const {
   std::vector<std::string> out;

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <expected>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -46,6 +48,11 @@ struct CleanReport {
   /// Changes made and unusual findings, one sentence each; empty for a flawless mesh.
   [[nodiscard]] std::vector<std::string> sentences() const;
 };
+
+/// Refuses a face of these cells, more than two, by their numbers in the input.
+[[nodiscard]] std::unexpected<Error> overlap(std::span<const std::uint64_t> cells);
+/// Refuses two neighbours whose component cannot be oriented.
+[[nodiscard]] std::unexpected<Error> ringWithoutInside(std::uint64_t cell, std::uint64_t other);
 
 /// Cleans in place: drops cells and points with their field values, orders each cell's vertices;
 /// what remains keeps its order. Errors: bad-input (no cell remains; a face of more than two cells;

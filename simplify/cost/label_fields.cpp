@@ -115,14 +115,9 @@ std::vector<std::size_t> LabelFinder::labels() const {
 }
 
 bool canBeLabel(const LatticeMesh& mesh, std::size_t field) {
-  assert(field < mesh.fields.size());
-  const FieldInfo& info = mesh.fields[field];
-  if (!isOneInteger(info)) return false;
-  std::vector<std::int32_t> values = mesh.values[field];
-  std::ranges::sort(values);
-  const auto repeated = std::ranges::unique(values);
-  const std::size_t different = values.size() - repeated.size();
-  return different >= 2 && different <= kMaxLabelValues;
+  LabelFinder finder(mesh.fields);
+  finder.add(mesh);
+  return finder.canBe(field);
 }
 
 std::vector<std::size_t> labelsOf(const LatticeMesh& mesh) {

@@ -8,14 +8,6 @@
 namespace qtet {
 namespace {
 
-template <std::size_t N>
-std::array<Vector3, N> cornersOf(std::span<const LatticePoint> points,
-                                 const std::array<VertexId, 4>& cell) {
-  std::array<Vector3, N> out;
-  for (std::size_t i = 0; i < N; ++i) out[i] = toVector(points[cell[i]]);
-  return out;
-}
-
 /// Uniform in the unit triangle: the square's other half is turned onto it.
 std::array<double, 4> triangleWeights(SplitMix64& random) {
   double s = random.unit(), t = random.unit();

@@ -23,6 +23,15 @@ struct ErrorSample {
   std::array<double, 4> weights;  ///< barycentric
 };
 
+/// The places of a cell's first N vertices.
+template <std::size_t N, class Cell>
+[[nodiscard]] std::array<Vector3, N> cornersOf(std::span<const LatticePoint> points,
+                                               const Cell& cell) {
+  std::array<Vector3, N> out;
+  for (std::size_t i = 0; i < N; ++i) out[i] = toVector(points[cell[i]]);
+  return out;
+}
+
 /// Twice the area, by which triangles share out places.
 [[nodiscard]] double placesMeasure(const std::array<Vector3, 3>& triangle);
 /// Six times the volume's magnitude, by which tetrahedra do.

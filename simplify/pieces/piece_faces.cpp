@@ -4,11 +4,11 @@
 #include <array>
 #include <cassert>
 #include <span>
-#include <string>
 #include <utility>
 
 #include "codec/mesh/boundary.h"
 #include "simplify/blocks/array_bytes.h"
+#include "simplify/clean/clean_mesh.h"
 #include "simplify/mesh/cell_faces.h"
 #include "simplify/mesh/stopping.h"
 #include "simplify/mesh/volume_sign.h"
@@ -28,23 +28,6 @@ bool sortOdd(std::array<WholeVertex, 3>& t) {
   };
   order(0, 1), order(1, 2), order(0, 1);
   return isOdd;
-}
-
-std::unexpected<Error> crowd(std::span<const std::uint64_t> cells) {
-  std::string list;
-  for (const std::uint64_t cell : cells) list += (list.empty() ? "" : ", ") + std::to_string(cell);
-  return fail(ErrorCode::kBadInput,
-              std::to_string(cells.size()) + " cells (" + list +
-                  ") share one face, so they overlap; at most two can. Remove the superfluous "
-                  "ones, or export the parts as separate files");
-}
-
-std::unexpected<Error> ring(std::uint64_t a, std::uint64_t b) {
-  return fail(ErrorCode::kBadInput,
-              "cells " + std::to_string(a) + " and " + std::to_string(b) +
-                  " close a ring of cells that cannot be given one inside and outside (as a "
-                  "Moebius strip); such a mesh is not a solid in space: look for wrongly merged "
-                  "points near these cells");
 }
 
 }  // namespace
@@ -67,7 +50,7 @@ class PieceFaces::Matching {
       std::vector<std::uint64_t> numbers;
       for (const CellId cell : matched_.firstCrowd)
         numbers.push_back(piece_.numberOf(names_[cell]));
-      return crowd(numbers);
+      return overlap(numbers);
     }
     for (CellId c = 0; c < cells_.size(); ++c)
       if (componentOf[names_[c]] == kNoComponent)
@@ -125,7 +108,7 @@ class PieceFaces::Matching {
           if (wanted) mark |= kTurnedCell;
           cells.push_back(other);
         } else if (((mark & kTurnedCell) != 0) != wanted) {
-          return ring(piece_.numberOf(names_[cell]), piece_.numberOf(names_[other]));
+          return ringWithoutInside(piece_.numberOf(names_[cell]), piece_.numberOf(names_[other]));
         }
       }
     }
@@ -229,7 +212,7 @@ Status PieceFaces::matchGroup(const GatheredPieces& pieces, std::span<const Face
     if (!piece) return std::unexpected(piece.error());
     numbers.push_back(piece->numberOf(side->cell));
   }
-  return sides.size() > 2 ? crowd(numbers) : ring(numbers[0], numbers[1]);
+  return sides.size() > 2 ? overlap(numbers) : ringWithoutInside(numbers[0], numbers[1]);
 }
 
 /// False: they hang together already, and the other way round.
